@@ -123,7 +123,7 @@ class WalkingPlanner:
             return now
         if source.places:
             return replace(now, places=source.places)
-        return replace(now, twist=source.twist, followed=source.followed(gait.period))
+        return replace(now, twist=source.twist, followed=source.followed(gait.period), march=source.march)
 
     def command(self, command: Command) -> None:
         """Do something else from the next plan on; of two commands before it the later one holds.
@@ -147,9 +147,9 @@ class WalkingPlanner:
         check_durations(gait, self.parameters.sample_time)
         # Steps of a source that is kept are asked for anew, too: their strides follow from the durations.
         source = told or self._source
-        if command.twist is not None or command.places is not None:
+        if command.twist is not None or command.places is not None or command.march:
             size, twist = self.parameters.size, command.twist or STANDING
-            source = CommandSource(self.gait, self._region, twist, command.places or (), size)
+            source = CommandSource(self.gait, self._region, twist, command.places or (), size, command.march)
         self._told = gait, source
 
     def _obey(self, time: float) -> None:

@@ -155,14 +155,21 @@ class World:
         self.tick = end
 
     def act(self, command: JointCommand, period: float) -> None:
-        """Simulate what is commanded for so long, a whole number of physics steps [s]; errors as of `advance`."""
+        """Simulate what is commanded for so long, a whole number of physics steps [s]; errors as of `advance`.
+
+        Drives with gains are faster than a step of the physics: within it they count with the speed that they make, as
+        an implicit step of their joint's own inertia does, so that no damping is too much for a light limb.
+        """
         steps = round(period * self.physics_rate)
         if command.servo is None:
             self.advance(command.torque, steps)
             return
-        pushed = np.zeros(3)
+        pushed, h = np.zeros(3), 1.0 / self.physics_rate
+        s, q, v = command.servo, self._qpos[7:], self._qvel[6:]
+        share = 1.0 / (1.0 + h * (s.damping + h * s.stiffness) / self.model.dof_M0[6:])
         for _ in range(steps):
-            self.advance(command.torque_at(self._qpos[7:], self._qvel[6:]), 1)
+            pull = s.stiffness * (s.position - q - h * v) + s.damping * (s.velocity - v)
+            self.advance(command.torque + share * pull, 1)
             pushed += self._pushes.mean
         self._pushes.mean[:] = pushed / steps
 

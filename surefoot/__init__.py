@@ -27,7 +27,8 @@ if TYPE_CHECKING:
     from surefoot.scenarios.file.schema import Scenario
     from surefoot.scenarios.judge.verdict import Verdict, judge
     from surefoot.scenarios.log.reader import Log, read
-    from surefoot.scenarios.run.controller import Controller, Parts
+    from surefoot.scenarios.run.assembly import Parts
+    from surefoot.scenarios.run.controller import Controller
     from surefoot.scenarios.run.planning import RunFault
     from surefoot.scenarios.run.plant import Plant
     from surefoot.scenarios.run.run import Result, run
@@ -85,7 +86,8 @@ if not TYPE_CHECKING:  # a type checker shall still refuse names that are not th
             "scenarios.log.reader": ("Log", "read"),
             "scenarios.run.planning": ("RunFault",),
             "scenarios.run.plant": ("Plant",),
-            "scenarios.run.controller": ("Controller", "Parts"),
+            "scenarios.run.assembly": ("Parts",),
+            "scenarios.run.controller": ("Controller",),
             "scenarios.run.run": ("Result", "run"),
             "scenarios.setup.load": ("load",),
             "scenarios.setup.walk": ("Walk",),

@@ -37,6 +37,13 @@ class JointCommand:
     torque: Array
     servo: Servo | None = None
 
+    def with_joints(self, chosen: NDArray[np.bool_], other: "JointCommand") -> "JointCommand":
+        """The same with another command for some joints, bool, shape (nj,)."""
+        mine, theirs = (one.servo or _no_servo(len(one.torque)) for one in (self, other))
+        names = ("position", "velocity", "stiffness", "damping")
+        servo = Servo(*(np.where(chosen, getattr(theirs, name), getattr(mine, name)) for name in names))
+        return JointCommand(np.where(chosen, other.torque, self.torque), servo)
+
     def torque_at(self, position: Array, velocity: Array) -> Array:
         """Torque at joint angles and speeds, before the limits of the motors, shape (nj,) [N·m].
 
@@ -48,3 +55,9 @@ class JointCommand:
         if s is None:
             return self.torque
         return self.torque + s.stiffness * (s.position - position) + s.damping * (s.velocity - velocity)
+
+
+def _no_servo(joints: int) -> Servo:
+    """One that adds no torque."""
+    zero = np.zeros(joints)
+    return Servo(zero, zero, zero, zero)

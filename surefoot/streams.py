@@ -23,6 +23,7 @@ class Stream(IntEnum):
     IMU = 10
     WRENCH = 11
     MOTOR = 12
+    DRIVEN = 13
 
 
 def generator(seed: int, stream: Stream | None = None, part: int | None = None) -> np.random.Generator:

@@ -16,6 +16,7 @@ from surefoot.wbc.balance import SupportRegion
 from surefoot.wbc.compiled import CompiledTick
 from surefoot.wbc.cone import CONE_ROWS, wrench_cone
 from surefoot.wbc.contacts import ContactSchedule, ContactState
+from surefoot.wbc.driven import DrivenRows, without_driven
 from surefoot.wbc.dynamics import HardConstraints
 from surefoot.wbc.external import LoadObserver
 from surefoot.wbc.limits import JointLimits
@@ -23,7 +24,7 @@ from surefoot.wbc.model import BodyFrames, RobotTerms
 from surefoot.wbc.parameters import WbcParameters
 from surefoot.wbc.qp import UNBOUNDED, WRENCH_UNIT, QpData, QpLayout, allocate
 from surefoot.wbc.separation import Separation
-from surefoot.wbc.solvers import EqualityFirst, QpSolution, equalities_only, make_solver
+from surefoot.wbc.solvers import Daqp, EqualityFirst, QpSolution, equalities_only, make_solver
 from surefoot.wbc.tasks.default import default_tasks
 from surefoot.wbc.tasks.diagonal import ForceDistribution, Posture, Regularisation
 from surefoot.wbc.tasks.registry import TaskLayout
@@ -48,13 +49,19 @@ FADE, FADE_DAMPING = 0.05, 0.02
 
 @dataclass(frozen=True, slots=True)
 class Sole:
-    """The sole's contact: half sizes [m] and the friction coefficient that the controller counts on [-]."""
+    """The sole's contact.
+
+    Attributes:
+        half_length: half the sole's length [m].
+        half_width: half its width [m].
+        friction: Coulomb coefficient that the controller counts on [-].
+        cop_share: share of the half sizes that the planned CoP may use [-].
+    """
 
     half_length: float
     half_width: float
     friction: float
     cop_share: float = 0.9
-    """Share of the half sizes that the planned CoP may use [-]."""
 
 
 @dataclass(frozen=True, slots=True)
@@ -92,6 +99,7 @@ class WholeBodyController:
         qp: the QP, as last built.
         schedule: which contacts the QP holds, from plan and feeling.
         tasks: the weighted tasks.
+        driven: rows of joints that somebody else drives; None without such joints.
     """
 
     def __init__(
@@ -108,6 +116,7 @@ class WholeBodyController:
         arm_joints: tuple[int, int] | None = None,
         tasks: Sequence[Task] = (),
         arm_back: tuple[float, float] = (1.0, 1.0),
+        driven: NDArray[np.bool_] | None = None,
     ) -> None:
         """Build the QP for a robot.
 
@@ -123,12 +132,15 @@ class WholeBodyController:
             limbs: shapes with the collision pairs that are kept apart; None looks at none.
             arm_joints: which joints are the left and the right shoulder pitch; None for arms that do not swing.
             arm_back: sign of the angles of these that swing the arms back.
+            driven: which joints somebody else drives, bool, shape (nj,); None for none.
             tasks: others, after the default ones.
 
         Raises:
             ValueError: a frame does not exist, a sole has no extent, or a task no name of its own, size or weight.
         """
         size, limits = parameters.size, parameters.size.scaled(limits)
+        if driven is not None and limbs is not None:
+            limbs = without_driven(model, limbs, driven)
         self.terms = RobotTerms(model, frames, WRENCH_UNIT * size.factor("N"))
         self.layout = QpLayout(model.nv, CONE_ROWS, parameters.separation.slots if limbs is not None else 0)
         self.qp: QpData = allocate(self.layout)
@@ -149,7 +161,8 @@ class WholeBodyController:
         )
         self._region = SupportRegion(sole.half_length, sole.half_width, parameters.balance.polygon_share)
         self._region_contacts: tuple[tuple[bool, bool], int] | None = None
-        arms = ArmSwing(arm_joints, parameters.arm_swing, arm_back) if arm_joints and parameters.arm_swing else None
+        swings = arm_joints and parameters.arm_swing and not (driven is not None and driven[list(arm_joints)].any())
+        arms = ArmSwing(arm_joints, parameters.arm_swing, arm_back) if arm_joints and swings else None
         weights, gains, toe = parameters.weights, parameters.gains, sole.half_length
         balance, waist = parameters.balance, self.terms.waist
         default = default_tasks(
@@ -157,13 +170,17 @@ class WholeBodyController:
         )
         diagonal = (
             Regularisation(weights, size.length),
-            Posture(weights, gains, posture, leg_joints, arms),
+            Posture(weights, gains, posture, leg_joints, arms, driven),
             ForceDistribution(weights, self.terms.wrench_unit),
         )
         self.tasks = TaskStack(self.qp, (*default, *tasks), diagonal, self._tick)
         self.schedule = ContactSchedule(parameters.schedule, self.terms.mass * GRAVITY, control_period)
         self._observer = LoadObserver(self.terms.mass, control_period, size, self.terms.compiled)
         self._solvers = (make_solver(parameters.solver), make_solver(parameters.second_solver))
+        self.driven: DrivenRows | None = None
+        if driven is not None and driven.any():
+            self.driven = DrivenRows(self.layout, driven, control_period)
+            self._solvers = (Daqp(fixed=self.driven.fixed), self._solvers[1])
         if isinstance(self._solvers[0], EqualityFirst):
             self._solvers[0].prepare(self.qp)
         self._limits, self._toe = limits, toe
@@ -238,6 +255,8 @@ class WholeBodyController:
             self._tick.refer(reference)
             self.tasks.write_compiled(terms, reference)
             self._hard.write_compiled(contacts)
+        if self.driven is not None:
+            self.driven.write(self.qp, terms.bias, terms.v)
         if self._separation is not None:
             self._separation.write(terms.data, terms.v, self._gap_rows, self._gap_lower, UNBOUNDED)
         return self.qp

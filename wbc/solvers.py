@@ -6,6 +6,7 @@ from typing import Protocol
 
 import daqp
 import numpy as np
+from numpy.typing import NDArray
 from proxsuite import proxqp
 
 from surefoot.native.library import Library, library
@@ -102,9 +103,14 @@ class Daqp:
 
     name = "daqp"
 
-    def __init__(self, accuracy: float = 1e-9) -> None:
-        """``accuracy``: largest violation of a normalised row that counts as none [-]."""
-        self._accuracy = accuracy
+    def __init__(self, accuracy: float = 1e-9, fixed: NDArray[np.intp] | None = None) -> None:
+        """What counts as an equality.
+
+        Args:
+            accuracy: largest violation of a normalised row that counts as none [-].
+            fixed: numbers of bounds that are equalities where both of them are the same; None for none.
+        """
+        self._accuracy, self._fixed = accuracy, fixed
         self._sense = np.zeros(0, dtype=np.intc)
 
     def solve(self, qp: QpData) -> QpSolution | None:
@@ -115,6 +121,9 @@ class Daqp:
         if self._sense.shape[0] != total:
             self._sense = np.zeros(total, dtype=np.intc)
             self._sense[n : n + EQUALITY_ROWS] = 5
+        if self._fixed is not None:
+            same = qp.bounds_lower[self._fixed] == qp.bounds_upper[self._fixed]
+            self._sense[self._fixed] = np.where(same, 5, 0)
         x, _, flag, info = daqp.solve(
             qp.H, qp.g, qp.A, qp.bounds_upper, qp.bounds_lower, self._sense, primal_tol=self._accuracy
         )

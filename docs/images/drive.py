@@ -1,4 +1,4 @@
-"""Draw docs/images/drive.gif: a robot that is driven and pushed in a browser page, by a headless Chromium.
+"""Draw docs/images/drive.webp: a robot that is driven and pushed in a browser page, by a headless Chromium.
 
     python docs/images/drive.py
 
@@ -17,12 +17,12 @@ from PIL import Image
 from websockets.sync.client import connect
 
 ROOT = Path(__file__).parents[2]
-sys.path.insert(0, str(ROOT / "tests" / "scenarios"))
+sys.path.insert(0, str(ROOT / "tests"))
 
-from animate import palette, save  # noqa: E402  of all pictures
 from browser import Browser  # noqa: E402  the tests' own
+from webp import save_webp  # noqa: E402  of all pictures
 
-PICTURE = Path(__file__).with_name("drive.gif")
+PICTURE = Path(__file__).with_name("drive.webp")
 SIZE, WIDTH = (1150, 800), 720
 EVERY = 0.2
 """Simulated time from one picture to the next [s]."""
@@ -86,7 +86,7 @@ def main() -> None:
             process.wait()
     width, height = pictures[0].size
     small = [picture.resize((WIDTH, WIDTH * height // width), Image.Resampling.LANCZOS) for picture in pictures]
-    save(PICTURE, small, round(1000 * EVERY), palette(small))
+    save_webp(PICTURE, small, round(1000 * EVERY))
     print(f"{len(small)} pictures, {PICTURE.stat().st_size / 1e6:.2f} MB")
 
 

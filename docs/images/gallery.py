@@ -9,9 +9,8 @@ import argparse
 import tempfile
 from pathlib import Path
 
-import numpy as np
-from animate import Shot, pictures, save
-from PIL import Image
+from animate import Shot, pictures
+from webp import save_webp
 
 from surefoot.models import RobotOptions, describe
 from surefoot.scenarios.log import Log, read
@@ -23,7 +22,6 @@ from surefoot.sim.render import Camera
 FOLDER = Path(__file__).parent
 ROBOTS = ("talos", "g1", "alexander", "jvrc1", "gr3")
 SIZE = (320, 320)
-COLORS = 48
 
 DISTANCE, LOWER = 3.1, 0.15
 """Of the camera from the robot, and of the middle of the picture under its base, in lengths of its leg [-]."""
@@ -42,9 +40,8 @@ def shot(log: Log, leg: float) -> Shot:
 def draw(name: str, log: Log) -> Path:
     """Draw a robot in colours of its own."""
     images, period = pictures(log, shot(log, describe(name, RobotOptions()).leg_length))
-    sample = Image.fromarray(np.concatenate([np.asarray(image) for image in images[::5]]))
-    path = FOLDER / f"robot-{Path(name).stem.lower()}.gif"
-    save(path, images, period, sample.quantize(COLORS))
+    path = FOLDER / f"robot-{Path(name).stem.lower()}.webp"
+    save_webp(path, images, period)
     return path
 
 

@@ -124,9 +124,9 @@ OF_CAMPAIGNS = (
     "push-map-as-it-was.png",
     "robustness.png",
     "courses.png",
-    "drive.gif",
-    *(f"recovery-{name}.gif" for name in ("forward", "crossing", "standing", "sideways", "stairs", "lasting")),
-    *(f"robot-{name}.gif" for name in ("talos", "g1", "alexander", "jvrc1", "gr3", "h1")),
+    "drive.webp",
+    *(f"recovery-{name}.webp" for name in ("forward", "crossing", "standing", "sideways", "stairs", "lasting")),
+    *(f"robot-{name}.webp" for name in ("talos", "g1", "alexander", "jvrc1", "gr3", "h1")),
 )
 """Pictures that others draw: `campaigns.py` those of campaigns that take hours, one as it drew it before, `courses.py`,
 `drive.py`, `recoveries.py`, `gallery.py` and `front.py`."""

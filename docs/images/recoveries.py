@@ -11,7 +11,8 @@ import tempfile
 from dataclasses import dataclass
 from pathlib import Path
 
-from animate import Shot, palette, pictures, save
+from animate import Shot, pictures
+from webp import save_webp
 
 from surefoot.scenarios.log import read
 from surefoot.scenarios.run.run import run_scenario
@@ -61,24 +62,24 @@ def _push(impulse: float, degrees: float, when: str) -> str:
 
 SWING = "step: 3, phase: single, fraction: 0.2"
 RECOVERIES = {
-    "recovery-forward.gif": Recovery(
+    "recovery-forward.webp": Recovery(
         "walk",
         (*WALK, "duration=6.0"),
         _push(0.785, 0, "step: 3, phase: single, fraction: 0.5"),
         ReplayWindow(2.4, 5.2),
         SIDE,
     ),
-    "recovery-crossing.gif": Recovery("walk", WALK, _push(0.27, -90, SWING), ReplayWindow(2.2, 5.0), FRONT),
-    "recovery-standing.gif": Recovery(
+    "recovery-crossing.webp": Recovery("walk", WALK, _push(0.27, -90, SWING), ReplayWindow(2.2, 5.0), FRONT),
+    "recovery-standing.webp": Recovery(
         "stand", (*NATURAL, "duration=4.0"), _push(0.5, 0, "time: 0.5"), ReplayWindow(0.3, 3.0), SIDE
     ),
-    "recovery-sideways.gif": Recovery(
+    "recovery-sideways.webp": Recovery(
         "stand", (*NATURAL, "duration=4.5"), _push(0.5, 90, "time: 0.5"), ReplayWindow(0.3, 3.6), FRONT
     ),
-    "recovery-stairs.gif": Recovery(
+    "recovery-stairs.webp": Recovery(
         "stairs-down", ("duration=17.0",), _push(0.2, -90, SWING), ReplayWindow(4.0, 7.6), FRONT
     ),
-    "recovery-lasting.gif": Recovery(
+    "recovery-lasting.webp": Recovery(
         "walk",
         WALK,
         "{step: 3, phase: single, fraction: 0.5, duration: 2.0, impulse: 0.8, direction: 1.5708}",
@@ -100,7 +101,7 @@ def main() -> None:
             if result.verdict.metrics["fell"]:
                 raise SystemExit(f"{name}: the robot fell")
             images, period = pictures(read(result.log), Shot(recovery.window, SIZE, recovery.camera))
-        save(FOLDER / name, images, period, palette(images))
+        save_webp(FOLDER / name, images, period)
         print(f"written: {FOLDER / name}")
 
 

@@ -190,7 +190,17 @@ def interface_page(face: str) -> str:
     module = importlib.import_module(face)
     names = sorted(name for name in module.__all__ if f"{face}.{name}" not in ERRORS and not name.startswith("__"))
     head = f"# {face}\n\n```{{eval-rst}}\n.. automodule:: {face}\n   :no-members:\n```\n"
-    return "\n".join([head, *(_documented(f"{face}.{name}") for name in names)])
+    return "\n".join([head, *(_told(face, name) for name in names)])
+
+
+def _told(face: str, name: str) -> str:
+    """A public name: what it is, or where that stands when a layer has it too."""
+    thing = getattr(importlib.import_module(face), name)
+    others = (layer for layer in FACES if layer != face and layer.startswith(f"{face}."))
+    owner = next((layer for layer in others if getattr(importlib.import_module(layer), name, None) is thing), None)
+    if owner is None:
+        return _documented(f"{face}.{name}")
+    return f"## {name}\n\nIt is [{owner}.{name}]({owner.rpartition('.')[2]}.md#{name.lower()}).\n"
 
 
 def _documented(name: str) -> str:

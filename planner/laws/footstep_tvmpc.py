@@ -175,6 +175,7 @@ class FootstepTvmpc:
         self._solver, kernels = AxesSolver(parameters.solvers), library()
         if kernels is not None and not math.isfinite(parameters.jerk_rate_limit):
             self._compiled = _CompiledQps(kernels, parameters, self._prediction)
+            self._solver.prepare(*self._compiled.shape)
 
     def plan(self, problem: MotionProblem) -> Motion:
         """See `MotionPlanner`."""
@@ -220,12 +221,17 @@ class FootstepTvmpc:
 
 
 class _CompiledQps:
-    """Arrays of the kernel that builds what `FootstepTvmpc.build` does."""
+    """Arrays of the kernel that builds what `FootstepTvmpc.build` does.
+
+    Attributes:
+        shape: rows and variables of each QP.
+    """
 
     def __init__(self, kernels: Library, parameters: PlannerParameters, prediction: Prediction) -> None:
         p, most = parameters, parameters.horizon + parameters.preview + 1
         m, rows = len(p.moves), 2 * p.horizon + 2
         size = m + _EXTRA
+        self.shape = rows, size
         self._state, (self._lower, self._upper) = np.empty((2, 3)), np.empty((2, 2, 2))
         self._omega, (self._gain, self._half_size) = np.empty(most), np.empty((2, most, 2))
         shapes = (size, size), (2, size), (rows, size), (2, rows), (2, size), (2, size), (most, 2)

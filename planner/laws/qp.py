@@ -100,6 +100,11 @@ class AxesSolver:
         self._given: tuple[Array, ...] = ()
         self._run: Callable[[int], int]
 
+    def prepare(self, rows: int, variables: int) -> None:
+        """Bind the kernel to QPs of a size, which else the first `solve` does."""
+        if self._kernels is not None:
+            self._bind(rows, variables)
+
     def solve(self, x: Qp, y: Qp) -> tuple[QpSolution, QpSolution]:
         """Their solutions, as those of `solve`."""
         if self._kernels is None:

@@ -39,6 +39,7 @@ class Command:
         swing_height: clearance of the steps to come [m].
         time: when the walk hears of it [s].
         followed: of what a walk does, the velocity that is followed in place of `twist`, whose steps are in reach.
+        march: whether the walk steps in place where `twist` is zero, in place of standing.
 
     Raises:
         ParameterError: a value is not finite, a duration or the height is not positive, or the time is negative.
@@ -51,6 +52,7 @@ class Command:
     swing_height: float | None = None
     time: float = 0.0
     followed: Twist | None = None
+    march: bool = False
 
     def __post_init__(self) -> None:
         numbers = [("time", self.time), *(self.twist or STANDING).velocity.items()]

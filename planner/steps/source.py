@@ -77,6 +77,7 @@ class CommandSource:
         twist: the velocity to follow where there are no places to go to; an attribute.
         places: where to go, in order; likewise.
         size: of the robot.
+        march: whether it steps in place where the velocity is zero; likewise.
     """
 
     def __init__(
@@ -86,7 +87,9 @@ class CommandSource:
         twist: Twist = STANDING,
         places: tuple[Twist, ...] = (),
         size: Similarity = REFERENCE_SIZE,
+        march: bool = False,
     ) -> None:
+        self.march = march and not places
         self._width, self._rest, self._region = gait.step_width, gait.initial_stand, region
         side = 0.5 * (region.width[1] - region.nearest(0.0))
         self._change = np.array([_SOFTLY * region.length, side, _SHARE * region.turn])
@@ -110,7 +113,7 @@ class CommandSource:
         backward = np.where(last > 0.0, 0.0, last - self._change)
         forward = np.where(last < 0.0, 0.0, last + self._change)
         way = np.clip(wanted, backward, forward)
-        if not way.any() and not last.any():
+        if not way.any() and not last.any() and not self.march:
             return None
         return self._admitted(way), self._rest if step == 1 else 0.0
 

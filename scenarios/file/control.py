@@ -6,7 +6,7 @@ from pydantic import BeforeValidator, Field
 
 from surefoot.scenarios.file.group import WHOLE, Group, as_tuple, key
 from surefoot.scenarios.file.names import OneOf
-from surefoot.scenarios.file.units import Unit
+from surefoot.scenarios.file.units import RADIAN, Unit
 
 _Gain = Annotated[float, Field(ge=0, le=1e6)]
 _Gains = Annotated[tuple[_Gain, _Gain], BeforeValidator(as_tuple)]
@@ -42,3 +42,15 @@ class ControlSettings(Group):
     feed_forward: bool | None = key(
         None, "targets come with a torque and a velocity, false: both are in the position, null: true"
     )
+    driven_joints: dict[str, _Gains] | None = key(
+        None,
+        "joints that somebody else drives, by regular expressions of their names; in a simulation drives with these "
+        "stiffnesses and dampings hold them where they stand at the start, null: none [N·m/rad, N·m·s/rad]",
+    )
+    driven_motion: Annotated[float, Field(ge=0, le=1), RADIAN] | None = key(
+        None, "half range by which the targets of these joints change every 0.02 s, drawn from the seed, null: 0"
+    )
+    driven_told: bool | None = key(
+        None, "the controller is told the targets of these joints, false: it sees them move, null: true"
+    )
+    give_way: bool | None = key(None, "joints give way once a fall is sure, false: they are driven on, null: true")

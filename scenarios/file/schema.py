@@ -127,6 +127,7 @@ class CommandSettings(Group):
     v_x: Velocity | None = key(None, "forward velocity from then on, null: 0, or as it was if no velocity is given")
     v_y: Velocity | None = key(None, "velocity to the left, likewise")
     yaw_rate: YawRate | None = key(None, "rate of the heading, likewise")
+    march: bool | None = key(None, "steps in place where that velocity is zero, null: it stands")
     place: PlaceSettings | None = key(None, "where to go, in the world frame, in place of a velocity")
     single_support: Support | None = key(None, "duration from then on, null: as it was")
     double_support: Support | None = key(None, "duration from then on, null: as it was")
@@ -140,7 +141,7 @@ class CommandSettings(Group):
         return leads | given & others - _LEADING - {"time", "live"}
 
 
-_LEADING = {"v_x", "v_y", "yaw_rate", "place"}
+_LEADING = {"v_x", "v_y", "yaw_rate", "march", "place"}
 """Keys of a command that say where to walk, each of which replaces all."""
 
 

@@ -101,7 +101,7 @@ def _idle(name: str, command: CommandSettings, later: Sequence[CommandSettings],
 
 def _asked(command: CommandSettings) -> Iterator[str]:
     """Keys of what a command wants changed; of a velocity one that is not zero, none when it asks to stand."""
-    leading = ("v_x", "v_y", "yaw_rate")
+    leading = ("v_x", "v_y", "yaw_rate", "march")
     yield from [name for name in leading if getattr(command, name)][:1]
     for name in ("place", "single_support", "double_support", "swing_height"):
         if getattr(command, name) is not None:

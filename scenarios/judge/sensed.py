@@ -9,7 +9,7 @@ import numpy as np
 from surefoot.planner.types import GRAVITY
 from surefoot.scenarios.judge.balance import rms
 from surefoot.scenarios.judge.digest import Array, RunView
-from surefoot.scenarios.judge.metric import DEG, MM, OF_THE_TIME, metric
+from surefoot.scenarios.judge.metric import DEG, MM, OF_THE_TIME, SHARE, metric
 
 SETTLED = 0.5
 """Time after which an estimate is judged: what it starts with is told by the encoders alone [s]."""
@@ -85,6 +85,24 @@ def contact_estimation_error(run: RunView) -> float:
 
 CARRYING = 0.05
 """Share of the weight that a foot carries without doubt [-]."""
+
+
+PUSH_LASTS = 0.5
+"""Time after a push in which a force that is still counted with may be of it [s]."""
+
+_GHOST_READS = {"/estimate": ("external_force",), "/measurement": ("external_force",)}
+
+
+@metric(unit="N", reads=_GHOST_READS, body=True, least=0.0, tolerance=(1.0, SHARE))
+def ghost_force_max(run: RunView) -> float:
+    """Largest external force that the controller counts with where nothing pushes [N]."""
+    ticks = round(PUSH_LASTS * run.constants.similarity.time * run.constants.control_rate)
+    pushed = np.flatnonzero(run.field("/measurement", "external_force").any(axis=1))
+    quiet = np.ones(run.ticks, dtype=bool)
+    for tick in pushed:
+        quiet[tick : tick + ticks] = False
+    force = np.linalg.norm(run.field("/estimate", "external_force")[quiet], axis=1)
+    return float(np.max(force, initial=0.0))
 
 
 def _settled(run: RunView, name: str) -> Array:

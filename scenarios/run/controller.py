@@ -2,81 +2,40 @@
 
 import math
 import time
-from collections.abc import Callable, Iterator, Mapping
-from dataclasses import fields, replace
-from operator import index
+from collections.abc import Mapping
 from typing import TYPE_CHECKING, Any
 
 import numpy as np
-from pydantic import ValidationError
 
-from surefoot.errors import ParameterError
 from surefoot.forces import NO_LOAD, ExternalLoad
-from surefoot.guard import Guard, MisfitError, shown
 from surefoot.joints import JointCommand
-from surefoot.models.pinocchio import limb_shapes
 from surefoot.models.types import RobotDescription
 from surefoot.planner.steps.commands import Command
 from surefoot.planner.types import CentroidalState, FeetState
 from surefoot.readings import Reading, Readings
-from surefoot.scenarios.file.control import ControlSettings
 from surefoot.scenarios.file.schema import Scenario
 from surefoot.scenarios.record.channels import Sizes
+from surefoot.scenarios.run.assembly import Parts, senses_of, walk_of, whole_body_of
 from surefoot.scenarios.run.landing import Landing
 from surefoot.scenarios.run.output import Output
 from surefoot.scenarios.run.planning import FaultSchedule, Measured, Planning, RunFault
 from surefoot.scenarios.run.reference import ReferenceMaker
-from surefoot.scenarios.run.sensed import Senses, foot_sensing, unsure
-from surefoot.scenarios.run.sensing import ESTIMATORS, Estimator, SensorEstimator
+from surefoot.scenarios.run.sensed import foot_sensing, unsure
 from surefoot.scenarios.run.tick import Spent
 from surefoot.scenarios.setup.feasible import made_ready
-from surefoot.scenarios.setup.load import load
-from surefoot.scenarios.setup.parts import TASK, guarded
 from surefoot.scenarios.setup.stance import body_of, feet_at
-from surefoot.scenarios.setup.walk import Walk, resolve
+from surefoot.scenarios.setup.walk import Walk
 from surefoot.similarity import GRAVITY
-from surefoot.values import dataclass
-from surefoot.wbc.controller import Sole, WholeBodyController
+from surefoot.wbc.driven import DrivenRows
+from surefoot.wbc.estimation.parameters import SensorNoise
 from surefoot.wbc.estimation.torques import TorqueWrench
 from surefoot.wbc.falling import GivingWay
 from surefoot.wbc.model import RobotTerms
-from surefoot.wbc.tasks import TASKS, Task, TaskFactory
 from surefoot.wbc.types import Array, RobotState, WbcReport
 from surefoot.wbc.zmp import measured_zmp
 
 if TYPE_CHECKING:
-    from surefoot.scenarios.run.plant import PlantMaker
     from surefoot.sim.measurement import Measurement
-
-
-@dataclass(frozen=True, slots=True)
-class Parts:
-    """Parts of the loop that a user may replace.
-
-    Attributes:
-        controller: makes the whole-body controller; takes the arguments of `WholeBodyController` by name.
-        estimator: makes the state estimator of a walk; None for the one that the scenario names.
-        tasks: make tasks of the whole-body QP, which go after the default ones and those that the scenario names.
-        plant: makes what moves the robot, a `surefoot.Plant`, of a walk; None for the one that the scenario names. A
-            `Controller` has none.
-    """
-
-    controller: Callable[..., WholeBodyController] = WholeBodyController
-    estimator: Callable[[Walk], Estimator | SensorEstimator] | None = None
-    tasks: tuple[TaskFactory, ...] = ()
-    plant: "PlantMaker | None" = None
-
-    @classmethod
-    def of(cls, **chosen: Any) -> "Parts":
-        """Parts of which None stands for surefoot's own."""
-        return cls(**{name: part for name, part in chosen.items() if part is not None})
-
-    def given(self) -> dict[str, object]:
-        """Those that are not surefoot's own, by name."""
-        own = Parts()
-        return {
-            e.name: getattr(self, e.name) for e in fields(self) if getattr(self, e.name) is not getattr(own, e.name)
-        }
 
 
 class Controller:
@@ -120,12 +79,12 @@ class Controller:
         control: Mapping[str, Any] | None = None,
         parts: Parts | None = None,
     ) -> None:
-        self.walk = walk = _walk(robot, gait, control)
+        self.walk = walk = walk_of(robot, gait, control)
         self._parts = parts = parts or Parts()
         self.body = body = body_of(walk.robot)
         self.posture, self._leg = made_ready(walk, body)
-        self.whole_body = _whole_body(self, parts)
-        self.senses = _senses(walk, parts)
+        self.whole_body = whole_body_of(walk, body, self.posture, parts)
+        self.senses = senses_of(walk, parts)
         self._references = ReferenceMaker()
         self._faults = FaultSchedule(walk.faults, walk.rates.control) if walk.faults else None
         self._period = 1.0 / walk.rates.control
@@ -133,6 +92,7 @@ class Controller:
         self._next = -math.inf
         self._estimates = walk.sensing.force_estimate
         self._toe = 0.5 * walk.robot.sole_length if walk.gait.heel_off else 0.0
+        self._gives_way = walk.control.give_way is not False
         self._giving_way = GivingWay(body.limits, walk.size)
         self._landed, self._load = (True, True), NO_LOAD
         self._landing: Landing | None = None
@@ -156,7 +116,10 @@ class Controller:
             ParameterError: the gait cannot be planned from there.
         """
         if self._now >= 0.0:
-            self.whole_body, self.senses = _whole_body(self, self._parts), _senses(self.walk, self._parts)
+            self.whole_body, self.senses = (
+                whole_body_of(self.walk, self.body, self.posture, self._parts),
+                senses_of(self.walk, self._parts),
+            )
             self._landed, self._load, self._torques = (True, True), NO_LOAD, None
         self._begin, self._now, self._next = math.nan, -math.inf, -math.inf
         self._landing = Landing(self.body, self.posture, self.walk.size) if q is None else None
@@ -187,12 +150,19 @@ class Controller:
         horizon, tasks = self.planning.planner.parameters.horizon, self.whole_body.task_layout
         return Sizes(nj=layout.joints, nq=len(self.posture), nv=layout.nv, horizon=horizon, tasks=tasks)
 
-    def step(self, readings: "Readings | Measurement", command: Command | None = None) -> JointCommand:
+    def step(
+        self,
+        readings: "Readings | Measurement",
+        command: Command | None = None,
+        driven_joints: JointCommand | None = None,
+    ) -> JointCommand:
         """What the joints shall do from now on.
 
         Args:
             readings: what sensors say; of an estimator that is given the truth, that.
             command: what the walk is to do from its next plan on; None goes on.
+            driven_joints: what those joints are given that somebody else drives, by the key ``control.driven_joints``;
+                other joints in it mean nothing. None where nobody tells.
 
         Raises:
             RunFault: the state is not finite, or nothing was measured for too long.
@@ -205,7 +175,7 @@ class Controller:
             if held is not None:
                 return held
             self._stand(self.senses(readings).state.q)
-            self.senses, self._landing = _senses(self.walk, self._parts), None
+            self.senses, self._landing = senses_of(self.walk, self._parts), None
         if self._now < 0.0:
             self._begin = readings.time
         now = readings.time - self._begin
@@ -223,12 +193,14 @@ class Controller:
         reference = self._references.reference(self.planning.plan, until)
         sensing = foot_sensing(self.estimate, self.wrench, self._estimates)
         fails = self._faults is not None and self._faults.active("qp_failure", self.planning.tick(now))
+        if self.whole_body.driven is not None:
+            self._tell(self.whole_body.driven, driven_joints)
         self.report = report = self.whole_body.update(reference, sensing, fails)
         self.senses.told(reference, report)
         self._landed, self._load = report.active, report.load
         self.spent = Spent(state_time, plan_time, report.build_time, report.solve_time)
         # What falls gives way; the controller goes on, unheard, since estimator and planner take its contacts.
-        falling, state = self.planning.plan.status.falling, self.state
+        falling, state = self._gives_way and self.planning.plan.status.falling, self.state
         torque = self._giving_way.torque(state.q[7:], state.v[6:]) if falling else report.torque
         self._command = JointCommand(torque)
         if self._output.servo:
@@ -250,10 +222,19 @@ class Controller:
         self.state = state
         self.terms: RobotTerms = self.whole_body.observe(state)
 
+    def _tell(self, driven: DrivenRows, told: JointCommand | None) -> None:
+        """Tell the whole-body controller what drives the joints that are not its own."""
+        if told is None:
+            driven.tell(None)
+            return
+        q, v, servo = self.state.q[7:], self.state.v[6:], told.servo
+        torque = told.torque_at(q + self._output.period * v, v)
+        driven.tell(torque, *((servo.stiffness, servo.damping) if servo is not None else ()))
+
     def _inferred(self, readings: "Readings | Measurement", state: RobotState, passed: float) -> Array:
         """Wrenches of soles that feel none, by the torques of the joints, shape (2, 6) [N, N·m]."""
         if self._torques is None:
-            self._torques = TorqueWrench(self.body.model, self.body.frames.soles, self._period)
+            self._torques = TorqueWrench(self.body.model, self.body.frames.soles, self._period, SensorNoise())
             half = np.zeros((2, 6))
             half[:, 2] = 0.5 * GRAVITY * float(self.walk.robot.mass)
             return half
@@ -280,72 +261,3 @@ class Controller:
         """The load that the controller counted with a tick ago, per mass."""
         load = self._load
         return None if load is NO_LOAD else load.per_mass(load.mass_scale * self.whole_body.terms.model_mass)
-
-
-def _walk(robot: str | RobotDescription, gait: Scenario | Walk | str, control: Mapping[str, Any] | None) -> Walk:
-    """The walk of a robot."""
-    if isinstance(gait, Walk):
-        return gait
-    scenario = load(gait) if isinstance(gait, str) else gait
-    if isinstance(robot, str) and robot != scenario.robot:
-        if not isinstance(gait, str):
-            what = f"a scenario of {scenario.robot} for {robot}"
-            right = "give the scenario of this robot, or the name of one to be scaled to it"
-            raise ParameterError(("robot",), what, right)
-        scenario = load(gait, {"robot": robot, "sized_for": scenario.sized_for or scenario.robot})
-    if control is not None:
-        try:
-            keys = ControlSettings.model_validate(dict(control))
-        except ValidationError as error:
-            fault = error.errors(include_url=False)[0]
-            key = ("control", *fault["loc"])
-            raise ParameterError(key, f"{'.'.join(map(str, key))} {fault['input']!r}", fault["msg"]) from None
-        scenario = scenario.model_copy(update={"control": keys})
-    return resolve(scenario, None if isinstance(robot, str) else robot)
-
-
-def _senses(walk: Walk, parts: Parts) -> Senses:
-    """The estimator that a program hands over, else that which the scenario names."""
-    source = walk.sensing.source
-    make = parts.estimator or ESTIMATORS[source]
-    guard = ESTIMATORS.guard(source) if parts.estimator is None else Guard.of_program("estimator", make)
-    with guard.making:
-        return Senses(make(walk, **(walk.sensing.options or {})), guard)
-
-
-def _tasks(controller: Controller, parts: Parts) -> Iterator[Task]:
-    """The tasks that the scenario names, then those that a program hands over."""
-    body = controller.body
-    named = ((TASKS[name], TASKS.guard(name)) for name in controller.walk.tasks)
-    for make, guard in (*named, *((make, Guard.of_program("task", make)) for make in parts.tasks)):
-        with guard.making:
-            task = guarded(make(body.model, body.frames), guard, TASK)
-            if not isinstance(task.name, str):
-                raise MisfitError(f"has the name {shown(task.name)}, which is no text")
-            index(task.size)
-            np.asarray(task.weight, dtype=np.float64)
-        yield task
-
-
-def _whole_body(controller: Controller, parts: Parts) -> WholeBodyController:
-    walk, body, robot = controller.walk, controller.body, controller.walk.robot
-    rate, parameters = walk.control.output_rate or walk.rates.control, walk.controller
-    if rate != walk.rates.control:
-        # A foot feels for a time, not for a number of commands.
-        ticks = max(1, round(parameters.schedule.felt_ticks * rate / walk.rates.control))
-        parameters = replace(parameters, schedule=replace(parameters.schedule, felt_ticks=ticks))
-    shoulders = robot.joint_indices(robot.roles.arm_swing or ())
-    return parts.controller(
-        model=body.model,
-        frames=body.frames,
-        sole=Sole(0.5 * robot.sole_length, 0.5 * robot.sole_width, walk.friction),
-        limits=body.limits,
-        posture=controller.posture[7:],
-        leg_joints=body.leg_joints,
-        control_period=1.0 / rate,
-        parameters=parameters,
-        limbs=limb_shapes(robot),
-        arm_joints=(shoulders[0], shoulders[1]) if shoulders else None,
-        arm_back=robot.roles.arm_back,
-        tasks=tuple(_tasks(controller, parts)),
-    )

@@ -23,7 +23,9 @@ from surefoot.scenarios.record.estimation import EstimationRecorder
 from surefoot.scenarios.record.foxglove.views import BodyView
 from surefoot.scenarios.record.provenance import WORLD_FILE
 from surefoot.scenarios.record.walk import WalkRecorder
-from surefoot.scenarios.run.controller import Controller, Parts
+from surefoot.scenarios.run.assembly import Parts
+from surefoot.scenarios.run.controller import Controller
+from surefoot.scenarios.run.driven import Somebody
 from surefoot.scenarios.run.planning import FaultSchedule, Planning, RunFault
 from surefoot.scenarios.run.plant import Plant, PlantMaker, Sensors, completed, made, push_plant
 from surefoot.scenarios.run.skeleton import ClosedLoop
@@ -146,6 +148,10 @@ class WholeBody:
         self._own_truth = None if known else RobotTerms(pinocchio_model(walk.true_robot), frames_of(walk.robot))
         self._faults = FaultSchedule(walk.faults, walk.rates.control) if walk.faults else None
         self._period = 1.0 / walk.rates.control
+        keys, self._somebody = walk.control, None
+        if keys.driven_joints and not self._foreign:
+            self._somebody = Somebody(keys, walk.robot, mind.posture[7:], walk.seed)
+        self._told = keys.driven_told is not False
         self._nominal_height = walk.true_com_height
         self._no_torque = JointCommand(np.zeros(mind.whole_body.layout.joints))
         self.measurement: Measurement
@@ -170,7 +176,13 @@ class WholeBody:
     def control(self, tick: int, now: float) -> tuple[PlanSample, Spent]:
         """See `Walker`."""
         mind = self.mind
-        command = mind.step(self._readings)
+        somebody = self._somebody
+        if somebody is None:
+            command = mind.step(self._readings)
+        else:
+            theirs = somebody.command(now)
+            command = mind.step(self._readings, driven_joints=theirs if self._told else None)
+            command = command.with_joints(somebody.joints, theirs)
         self._truth = self._own_truth or mind.terms
         lost = self._faults is not None and self._faults.active("torque_loss", tick)
         self._command = self._no_torque if lost else command

@@ -41,7 +41,7 @@ from surefoot.values import dataclass
 
 if TYPE_CHECKING:
     from surefoot.models.types import RobotDescription
-    from surefoot.scenarios.run.controller import Parts
+    from surefoot.scenarios.run.assembly import Parts
 
 
 @dataclass(frozen=True, slots=True)

@@ -86,6 +86,7 @@ def sensor_noise(errors: SensorErrors, period: float) -> SensorNoise:
         accelerometer_walk=errors.accelerometer_walk,
         encoder=math.hypot(errors.encoder_noise, rounding),
         encoder_offset=errors.encoder_offset,
+        joint_torque=errors.joint_torque_noise,
         wrench_force=errors.wrench_noise,
         wrench_moment=errors.moment_noise,
         wrench_bias=errors.wrench_bias,

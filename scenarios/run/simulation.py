@@ -21,7 +21,7 @@ from surefoot.scenarios.errors import LogError, nearest
 from surefoot.scenarios.file.schema import CommandSettings, Scenario
 from surefoot.scenarios.log import LogWriter, NoLog
 from surefoot.scenarios.record.provenance import COMMAND_RECORD, PUSH_RECORD, STOPPED
-from surefoot.scenarios.run.controller import Parts
+from surefoot.scenarios.run.assembly import Parts
 from surefoot.scenarios.run.planning import RunFault
 from surefoot.scenarios.run.run import closed_loop, note_parts, one_thread, open_log, write_end
 from surefoot.scenarios.run.skeleton import ClosedLoop, End, refusing
@@ -208,6 +208,7 @@ class Simulation:
         v_y: float | None = None,
         yaw_rate: float | None = None,
         *,
+        march: bool | None = None,
         single_support: float | None = None,
         double_support: float | None = None,
         swing_height: float | None = None,
@@ -221,6 +222,7 @@ class Simulation:
             v_x: forward velocity of the path, held until the next one; 0 if another of the three is given [m/s].
             v_y: to the left, likewise [m/s].
             yaw_rate: rate of the heading, likewise, positive to the left [rad/s].
+            march: whether it steps in place where the velocity is zero, in place of standing.
             single_support: duration; what is left of the present phase changes in proportion [s].
             double_support: likewise [s].
             swing_height: clearance of the steps to come [m].
@@ -229,7 +231,7 @@ class Simulation:
             RunFault: the run is over.
             ParameterError: a number is out of bounds, the ground has edges, or the planner takes no commands.
         """
-        velocity = {"v_x": v_x, "v_y": v_y, "yaw_rate": yaw_rate}
+        velocity = {"v_x": v_x, "v_y": v_y, "yaw_rate": yaw_rate, "march": march}
         gait = {"single_support": single_support, "double_support": double_support, "swing_height": swing_height}
         self._tell({name: value for name, value in {**velocity, **gait}.items() if value is not None})
 

@@ -275,7 +275,7 @@ def _told_problems(walk: Walk, key: Key, command: CommandSettings) -> Iterator[P
     name = f"commands.{key[1]}"
     if not given:
         yield Problem(key, f"{name} says nothing", "give a velocity, a place, or what of the gait is to change")
-    if "place" in given and given & {"v_x", "v_y", "yaw_rate"}:
+    if "place" in given and given & {"v_x", "v_y", "yaw_rate", "march"}:
         yield Problem(key, f"{name} has both a place and a velocity", "give one of them")
     yield from _unheard(walk, key)
     durations = {entry: getattr(command, entry) for entry in ("single_support", "double_support")}
@@ -314,10 +314,10 @@ def plan_of(command: CommandSettings, rate: int) -> int:
 
 def _leads(command: CommandSettings) -> bool:
     """Whether it says where to walk."""
-    return any(getattr(command, name) is not None for name in ("v_x", "v_y", "yaw_rate", "place"))
+    return any(getattr(command, name) is not None for name in ("v_x", "v_y", "yaw_rate", "march", "place"))
 
 
 def _stops(command: CommandSettings) -> bool:
     """Whether it asks to stand."""
     twist = command_of(command).twist
-    return twist is not None and twist.is_zero
+    return twist is not None and twist.is_zero and not command.march

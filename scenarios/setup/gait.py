@@ -93,11 +93,13 @@ def footsteps_of(footsteps: Sequence[schema.FootstepSettings]) -> list[Footstep]
 def command_of(settings: schema.CommandSettings) -> Command:
     """A command in the planner's terms; of a velocity that is given in part, the rest is zero."""
     velocity = (settings.v_x, settings.v_y, settings.yaw_rate)
-    twist = None if velocity == (None, None, None) else Twist(*(value or 0.0 for value in velocity))
+    twist = (
+        None if velocity == (None, None, None) and not settings.march else Twist(*(value or 0.0 for value in velocity))
+    )
     place = settings.place
     places = None if place is None else (Twist(place.x, place.y, place.yaw),)
     gait = (settings.single_support, settings.double_support, settings.swing_height)
-    return Command(twist, places, *gait, time=settings.time)
+    return Command(twist, places, *gait, time=settings.time, march=settings.march is True)
 
 
 def waypoints_of(keys: schema.Gait, start: schema.Start) -> tuple[Twist, ...]:

@@ -879,4 +879,30 @@ typedef struct {
 
 int64_t adjustment_solve(const Adjustment *program, double unsure);
 
+/* Counterpart of `wbc.estimation.invariant_filter.InvariantFilter` between two gains: state, readings, gain. */
+typedef struct {
+    int64_t size;
+    int64_t feet_count;
+    const int64_t *feet;
+    double gravity;
+    double *R;
+    double *columns;
+    double *Z;
+    double *gyro_bias;
+    double *force_bias;
+    double *offsets;
+    const double *rate;
+    const double *force;
+    double *acceleration;
+    const double *position;
+    const double *rotation;
+    const double *gain;
+    const double *weights;
+    double *residual;
+    double *moved;
+} Filter;
+
+void filter_propagate(const Filter *filter, double time);
+int64_t filter_correct(const Filter *filter, double gate);
+
 #endif

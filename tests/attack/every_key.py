@@ -12,7 +12,12 @@ from surefoot.scenarios.file.group import Group, controller_parameters
 from surefoot.scenarios.file.schema import PlannerSettings, Scenario
 from surefoot.scenarios.file.sensing import SENSOR_KEYS
 
-NOT_YET = {"sensing.options", "plant.options", "control.gains"}
+NOT_YET = {
+    "sensing.options",
+    "plant.options",
+    "control.gains",
+    *(f"control.driven_{of}" for of in ("joints", "motion", "told")),
+}
 """Keys whose values are what an estimator or a plant takes, or are by names of joints."""
 
 _SENSORS = {"preset": "cheap", "wrench": "feet", "encoder_velocity": True, "encoder_bits": 16, "latency": 0.002}
@@ -69,7 +74,8 @@ TEXTS = {
                  ground: [{x: 0.6, y: 0.05, length: 0.2, width: 1, height: 0.01, friction: 0.5}]}
         motors: {damping: 0.5, friction_loss: 0.2, delay: 0.002, noise: 0.1, torque_speed: 0.6}
         plant: {name: mujoco}
-        control: {output: position, output_rate: 100, stiffness: 1.2, damping: 0.012, feed_forward: false}
+        control: {output: position, output_rate: 100, stiffness: 1.2, damping: 0.012, feed_forward: false,
+                  give_way: false}
         pushes: [{time: 0.02, duration: 0.02, force: [10, 0, 0], body: pelvis, live: true}]
         faults: [{kind: qp_failure, time: 0.04, duration: 0.01}]
         """,
@@ -80,7 +86,8 @@ TEXTS = {
     "commands": """
         duration: 0.3
         commands:
-          - {time: 0.1, v_x: 0.1, v_y: 0.02, yaw_rate: 0.1, single_support: 1, double_support: 0.4, swing_height: 0.04}
+          - {time: 0.1, v_x: 0.1, v_y: 0.02, yaw_rate: 0.1, march: true,
+             single_support: 1, double_support: 0.4, swing_height: 0.04}
           - {time: 0.2, place: {x: 0.4, y: 0.1, yaw: 0.2}, live: true}
         gait: {initial_stand: 0.2}
         fidelity: pendulum

@@ -3,10 +3,12 @@
 import importlib.util
 import re
 import sys
+from importlib import import_module
 from pathlib import Path
 
 import pytest
 import typer
+from dotted import named
 
 from surefoot.scenarios.apps.cli import app
 from surefoot.scenarios.file.schema import Scenario
@@ -70,12 +72,15 @@ def test_every_command_is_there_with_its_options(texts):
             assert parameter.opts[0] in page or parameter.name.upper() in page
 
 
-def test_every_public_name_is_on_one_page(generated, texts):
+def test_every_public_name_has_a_heading_and_is_told_once(generated, texts):
+    told = [name for text in texts.values() for name in re.findall(r"\.\. auto\w+:: (\S+)", text)]
+    assert len(told) == len(set(told))
+    objects = [id(named(name)) for name in told if not name.endswith("PROFILES")]
+    assert len(objects) == len(set(objects))
     for face in generated.FACES:
-        for name in sys.modules[face].__all__:
-            if not name.startswith("__"):
-                found = [page for page, text in texts.items() if f":: {face}.{name}\n" in text]
-                assert len(found) == 1, f"{face}.{name}"
+        page = texts[f"reference/{face.rpartition('.')[2]}.md"] + texts["reference/errors.md"]
+        for name in import_module(face).__all__:
+            assert name.startswith("__") or f"\n## {name}\n" in page, f"{face}.{name}"
 
 
 def test_every_page_is_in_the_contents_once(build, texts):

@@ -60,6 +60,11 @@ def test_the_moving_picture_of_the_readme_is_smooth_and_small(make):
     assert (make.FOLDER / "front.webp").stat().st_size < 2_000_000
 
 
+def test_pictures_are_small_together(make):
+    sizes = [path.stat().st_size for path in make.FOLDER.iterdir() if path.suffix not in (".py", "")]
+    assert sum(sizes) < 6_000_000
+
+
 def test_every_picture_that_a_page_shows_can_be_made(make):
     pages = (ROOT / "README.md", *(ROOT / "docs").rglob("*.md"))
     shown = {name for page in pages for name in re.findall(r"!\[[^\]]*\]\(\S*images/(\S+)\)", page.read_text("utf-8"))}

@@ -123,7 +123,7 @@ def test_a_missing_extra_says_how_to_install_it(module, extra, monkeypatch):
 def installed(monkeypatch, tmp_path, origin):
     """Have Surefoot installed below `tmp_path`, as pip says it was."""
     monkeypatch.setattr(errors, "__file__", str(tmp_path / "surefoot" / "scenarios" / "errors.py"))
-    monkeypatch.setattr(errors, "distribution", lambda name: SimpleNamespace(read_text=lambda file: origin))
+    monkeypatch.setattr("importlib.metadata.distribution", lambda name: SimpleNamespace(read_text=lambda file: origin))
 
 
 @pytest.mark.parametrize(

@@ -61,6 +61,7 @@ UNNOTICED = {
     "references.com_height.BENT_KNEES",
     "references.com_height.CLIMB_SHARE",
     "references.com_height.DESCENT_SHARE",
+    "references.compiled._ROOM",
     "references.com_height._FALL_LIMIT",
     "references.com_height._IMPULSE_LIMIT",
     "references.com_height._LEAST_HEIGHT",

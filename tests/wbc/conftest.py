@@ -53,11 +53,12 @@ class Robot:
         limbs: pin.GeometryModel | None = None,
         tasks: Sequence[Task] = (),
         arm_back: tuple[float, float] = (1.0, 1.0),
+        driven: np.ndarray | None = None,
     ) -> WholeBodyController:
         return WholeBodyController(
             self.model, self.frames, Sole(HALF_SOLE, HALF_SOLE, 0.8), self.limits, self.standing[7:], self.leg_joints,
             PERIOD, parameters or WbcParameters(), limbs, self.shoulders, tasks,
-            arm_back=arm_back,
+            arm_back=arm_back, driven=driven,
         )  # fmt: skip
 
     def moved(self, rng: np.random.Generator, offset: float = 0.05, speed: float = 0.3) -> RobotState:

@@ -31,6 +31,7 @@ class SoleContact:
         weight: of the robot [N].
         half_size: half of the sole's length and width [m].
         period: control period [s].
+        deviation: of forces and of moments that are filtered already; None for those of sensors [N, N·m].
 
     Attributes:
         wrench: filtered and tared, shape (2, 6) [N, N·m].
@@ -48,14 +49,16 @@ class SoleContact:
         weight: float,
         half_size: tuple[float, float],
         period: float,
+        deviation: tuple[float, float] | None = None,
     ) -> None:
         self._parameters, self._period, self.weight, self._half = parameters, period, weight, half_size
-        noise = sensors.wrench_force
+        noise, turning = deviation or (sensors.wrench_force, sensors.wrench_moment)
         # Twice the noise takes a filter of about a third of the bandwidth to feel as soon and as surely.
         cut = CUT * min(QUIET / noise, 1.0) ** (2.0 / 3.0) if noise > 0.0 else math.inf
+        cut = math.inf if deviation else cut
         self._share, left = _low_pass(cut, period)
         self._slow_share, slowly = _low_pass(SLOW_CUT, period)
-        self.deviation = noise * left, sensors.wrench_moment * left
+        self.deviation = noise * left, turning * left
         self.threshold, self._lasting = (parameters.force + parameters.certain * noise * x for x in (left, slowly))
         self._slow = np.full(2, 0.5 * weight)
         self._bias = sensors.wrench_bias

@@ -76,9 +76,10 @@ class SensedState:
         self._body = SensedBody(model, soles, mount)
         self._weight = GRAVITY * self._body.mass
         self._joints = JointObserver(model.nv - 6, period, parameters.joint_bandwidth, sensors.encoder)
-        self._contact = SoleContact(parameters.contact, sensors, self._weight, footing.half_size, period)
+        self._contact: SoleContact
         self._every = max(1, round(1.0 / (parameters.covariance_rate * period)))
         self._torques: TorqueWrench | None = None
+        self._torques_at, self._encoders = 0, np.zeros(0)
         self._filter: InvariantFilter | None = None
         self._tick, self._imu_at, self._from = -1, 0, 0.0
         self._base_told: deque[Array] = deque(maxlen=KEPT)
@@ -108,16 +109,16 @@ class SensedState:
             self._from = readings.time
         self._tick = round((readings.time - self._from) / self._period)
         q, qd = self._joints.update(readings)
-        wrench = self._wrench(readings)
         if self._filter is None:
             self._filter = self._start(readings.joint_position.values)
-            self._contact.update(wrench, self._still, self._above)
+            self._contact = self._feeling(readings)
+            self._contact.update(self._wrench(readings), self._still, self._above)
             self._state = self._now(readings, q, qd)
             self._deviation = self._uncertainty(self._body.offset_jacobians())
         elif not self._lost:
             kept = self._state
             with np.errstate(all="ignore"):
-                self._step(readings, wrench)
+                self._step(readings)
                 self._state = self._now(readings, q, qd)
             if not self._sound(self._state):
                 self._lost, self._state = True, kept
@@ -132,19 +133,50 @@ class SensedState:
 
     def _channels(self) -> dict[str, Array]:
         s = self.filter.stand
-        return {"gyro_bias": s.gyro_bias, "force_bias": s.force_bias, "offsets": s.offsets}
+        return {"gyro_bias": s.gyro_bias.copy(), "force_bias": s.force_bias.copy(), "offsets": s.offsets.copy()}
+
+    def _feeling(self, readings: Readings) -> SoleContact:
+        """Contact by sensors in the feet, or by the torques of the joints."""
+        parameters, deviation = self._parameters, None
+        if readings.wrench is None:
+            self._torques = TorqueWrench(self._model, self._sole_names, self._period, parameters.sensors)
+            self._torques.update(self._measured(readings), readings.joint_torque.values)
+            deviation = self._torques.deviation
+        return SoleContact(
+            parameters.contact, parameters.sensors, self._weight, self._footing.half_size, self._period, deviation
+        )
 
     def _wrench(self, readings: Readings) -> Reading:
         """Of the feet, by their sensors or by the torques of the joints."""
         if readings.wrench is not None:
             return readings.wrench
-        if self._torques is None:
-            self._torques = TorqueWrench(self._model, self._sole_names, self._period)
-        if self._state is None:
-            half = np.zeros((2, 6))
-            half[:, 2] = 0.5 * self._weight
-            return Reading(half, 0.0, True)
-        return Reading(self._torques.update(self._state, readings.joint_torque.values), 0.0, True)
+        torques, torque = self._torques, readings.joint_torque
+        assert torques is not None
+        at = self._tick - round(torque.age / self._period)
+        if at > self._torques_at:
+            torques.update(self._measured(readings), torque.values, (at - self._torques_at) * self._period)
+            self._torques_at = at
+        return Reading(torques.wrench, torque.age, True)
+
+    def _measured(self, readings: Readings) -> RobotState:
+        """The state of the encoders' last way: its mean velocity, which is that of its middle.
+
+        What observes the joints follows an impact later than the IMU does, which would be a force that is none.
+        """
+        s, reading = self.filter.stand, readings.joint_position
+        joints, at = self._known(reading.values, s.offsets), self._tick - round(reading.age / self._period)
+        rate, v = readings.angular_velocity.values - s.gyro_bias, s.v
+        if readings.joint_velocity is not None:
+            speed = readings.joint_velocity.values
+        elif at > self._torques_at:
+            time = (at - self._torques_at) * self._period
+            speed = (reading.values - self._encoders) / time
+            v = v - (0.5 * time) * self.filter.acceleration
+        else:
+            speed = np.zeros(len(joints))
+        self._encoders = reading.values
+        base, p, velocity = self._body.base(s.R, s.p, v, rate, joints, speed)
+        return RobotState(np.concatenate((p, pin.Quaternion(base).coeffs(), joints)), np.concatenate((velocity, speed)))
 
     def _start(self, joints: Array) -> InvariantFilter:
         body, footing = self._body, self._footing
@@ -172,14 +204,14 @@ class SensedState:
         known[self._body.chain] -= offsets
         return known
 
-    def _step(self, readings: Readings, wrench: Reading) -> None:
+    def _step(self, readings: Readings) -> None:
         filter_, contact, body = self.filter, self._contact, self._body
         rate, force = readings.mean_angular_velocity, readings.specific_force
         at = self._tick - round(rate.age / self._period)
         if at > self._imu_at:
             filter_.propagate(rate.values, force.values, (at - self._imu_at) * self._period)
             self._imu_at = at
-        contact.update(wrench, self._still, self._above)
+        contact.update(self._wrench(readings), self._still, self._above)
         body.update(self._known(readings.joint_position.values, filter_.stand.offsets))
         changed = contact.firm != filter_.standing
         due = changed or self._tick % self._every == 0
@@ -235,10 +267,11 @@ class SensedState:
         if late and self._base_told:
             # What the controller has planned since; its velocity is that of the base in its own axes.
             told = self._base_told
-            gained = self._period * sum(told[-back] for back in range(1, min(late, len(told)) + 1))
+            gained = self._period * (told[-1] if late == 1 else sum(list(told)[-late:]))
             way = (late * self._period) * (velocity + 0.5 * gained)
-            half = base @ pin.exp3(0.5 * way[3:])
-            p, base, velocity = p + half @ way[:3], half @ pin.exp3(0.5 * way[3:]), velocity + gained
+            turn = pin.exp3(0.5 * way[3:])
+            half = base @ turn
+            p, base, velocity = p + half @ way[:3], half @ turn, velocity + gained
         return RobotState(np.concatenate((p, pin.Quaternion(base).coeffs(), q)), np.concatenate((velocity, qd)))
 
     def _sound(self, state: RobotState) -> bool:

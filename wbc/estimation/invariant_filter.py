@@ -22,7 +22,9 @@ from dataclasses import dataclass
 import numpy as np
 import pinocchio as pin
 
+from surefoot.native.library import library
 from surefoot.similarity import GRAVITY
+from surefoot.wbc.estimation.compiled import FilterKernels
 from surefoot.wbc.estimation.parameters import GroundNoise, SensorNoise
 from surefoot.wbc.types import Array
 
@@ -46,7 +48,7 @@ GATE = 50.0
 
 @dataclass(slots=True)
 class Stand:
-    """Where the filter believes that the IMU and the soles are.
+    """Where the filter believes that the IMU and the soles are, in arrays that stay where they are.
 
     Attributes:
         R: orientation of the IMU in the world, shape (3, 3).
@@ -84,12 +86,13 @@ class Stand:
     def move(self, x: Array) -> None:
         """Apply exp(x) from the left; of the group's V-matrix the identity is taken, for small x."""
         E = pin.exp3(x[TURN])
-        self.R = E @ self.R
-        self.columns = self.columns @ E.T + x[3:15].reshape(4, 3)
-        self.Z = np.stack((pin.exp3(x[SOLE[0]]) @ self.Z[0], pin.exp3(x[SOLE[1]]) @ self.Z[1]))
-        self.gyro_bias = self.gyro_bias + x[GYRO]
-        self.force_bias = self.force_bias + x[FORCE]
-        self.offsets = self.offsets + x[OFFSETS]
+        self.R[:] = E @ self.R
+        self.columns[:] = self.columns @ E.T + x[3:15].reshape(4, 3)
+        for k in (0, 1):
+            self.Z[k] = pin.exp3(x[SOLE[k]]) @ self.Z[k]
+        self.gyro_bias += x[GYRO]
+        self.force_bias += x[FORCE]
+        self.offsets += x[OFFSETS]
 
 
 class InvariantFilter:
@@ -119,6 +122,8 @@ class InvariantFilter:
         self._since, self._ticks = 0.0, 0
         self._gain: Array | None = None
         self._feet: list[int] = []
+        kernels = library()
+        self._kernels = FilterKernels(kernels, stand, n) if kernels else None
         spread = np.zeros(n)
         spread[VELOCITY], spread[GYRO], spread[FORCE] = 1e-3, sensors.gyro_bias, sensors.accelerometer_bias
         spread[OFFSETS] = sensors.encoder_offset
@@ -177,6 +182,11 @@ class InvariantFilter:
             force: mean specific force, shape (3,) [m/s^2].
             time: that both are of [s].
         """
+        self._since += time
+        self._ticks += 1
+        if self._kernels is not None:
+            self.acceleration = self._kernels.propagate(rate, force, time)
+            return
         s = self.stand
         # The mean force is of the frame half way through the turn.
         half = pin.exp3((rate - s.gyro_bias) * (0.5 * time))
@@ -185,9 +195,7 @@ class InvariantFilter:
         v, p = s.columns[:2]
         s.columns[1] = p + time * v + (0.5 * time * time) * a
         s.columns[0] = v + time * a
-        s.R = middle @ half
-        self._since += time
-        self._ticks += 1
+        s.R[:] = middle @ half
 
     def transition(self, time: float) -> tuple[Array, Array]:
         """What becomes of an error over a time [s], shape (n, n), and what turns about world axes do, shape (15, 3)."""
@@ -218,7 +226,7 @@ class InvariantFilter:
         for k in (0, 1):
             more = 1.0 + (ground.light - 1.0) * (1.0 - min(2.0 * loads[k], 1.0))
             if self.standing[k]:
-                D[FOOT[k]] += (more * ground.creep) ** 2 * dt
+                D[FOOT[k]] += np.square(more * np.array([ground.creep, ground.creep, ground.sinking])) * dt
                 D[SOLE[k]] += (more * ground.rocking) ** 2 * dt
         self.P = P
 
@@ -281,6 +289,8 @@ class InvariantFilter:
         self.P = 0.5 * (self.P + self.P.T)
         inverse = np.linalg.inv(S)
         self._gain, self._weights = PH @ inverse, inverse
+        if self._kernels is not None:
+            self._kernels.take(feet, self._gain, inverse)
 
     def residual(self, y: Array, Y: Array) -> Array:
         """How far the standing feet are from where the kinematics say, shape (6 feet,) [m, rad]."""
@@ -298,6 +308,9 @@ class InvariantFilter:
         """
         if self._gain is None:
             return None
+        if self._kernels is not None:
+            slipped = self._kernels.correct(y, Y, GATE)
+            return None if slipped is None else self._slipped(slipped)
         r = self.residual(y, Y)
         if len(self._feet) == 2 and float(r @ self._weights @ r) > GATE:
             return self._slipped(r)

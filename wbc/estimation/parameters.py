@@ -25,6 +25,7 @@ class SensorNoise:
     accelerometer_walk: float = number(1e-4, "m/s^2/√s", "of what that bias gains")
     encoder: float = number(1.1e-5, "rad", "of an encoder's reading, rounding included")
     encoder_offset: float = number(5e-4, "rad", "of an encoder's zero, constant in a run")
+    joint_torque: float = number(0.5, "N·m", "of a motor's measured torque")
     wrench_force: float = number(5.0, "N", "of a foot sensor's force")
     wrench_moment: float = number(0.2, "N·m", "of a foot sensor's moment")
     wrench_bias: float = number(5.0, "N", "of a force's bias before it was tared")
@@ -43,14 +44,15 @@ class GroundNoise:
 
     kinematics: float = number(1e-5, "m", "of a sole's position in a rigid robot's kinematics")
     turning: float = number(1e-5, "rad", "of a sole's orientation likewise")
-    creep: float = number(4.5e-4, "m", "of a second's way of a loaded sole, with the root of the time")
+    creep: float = number(2e-4, "m", "of a second's way of a loaded sole along the ground, with the root of the time")
+    sinking: float = number(8e-4, "m", "likewise into the ground and out of it, which bears as a spring does")
     rocking: float = number(1e-3, "rad", "of how a loaded sole turns in a second, likewise")
     landing: float = number(7e-4, "m", "of where a sole comes to rest after it is felt")
     landing_turn: float = number(2e-3, "rad", "of how it does so")
     light: float = number(10.0, "-", "creep and rocking of an unloaded sole over those of a loaded one")
     height: float = number(1.5e-3, "m", "of the ground's height where a foot lands")
-    level: float = number(5e-4, "rad", "of the soles' tilt to the ground at the start")
-    model: float = number(3e-3, "m/s", "of a second's change of velocity, by links that bend and by sampling")
+    level: float = number(2e-4, "rad", "of the soles' tilt to the ground at the start")
+    model: float = number(1.5e-3, "m/s", "of a second's change of velocity, by links that bend and by sampling")
 
     def __post_init__(self) -> None:
         check(self, "estimator", "ground")

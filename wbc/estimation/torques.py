@@ -1,18 +1,28 @@
 """Sole wrenches of a robot without sensors in its feet, from the torques of its joints."""
 
+import math
+
 import numpy as np
 import pinocchio as pin
+from numpy.typing import NDArray
 
+from surefoot.wbc.estimation.parameters import SensorNoise
 from surefoot.wbc.types import Array, RobotState
 
-BANDWIDTH = 30.0
-"""Of the observer: what it says follows the truth by 5 ms [Hz]."""
+BANDWIDTH = 60.0
+"""Of the observer for encoders of `FINE` [Hz]."""
 
-DAMPING = 1e-3
-"""Of the least squares, against legs that are nearly stretched, where a force along them takes no torque [-]."""
+FINE = 1.1e-5
+"""Encoder noise for which the bandwidth is told [rad]."""
+
+BASE = (1e-3, 2e-3)
+"""Of the base's velocities from tick to tick: what the IMU lacks of links that bend, and corrections [m/s, rad/s]."""
 
 LEVER = 0.1
 """At which moments count as forces [m]."""
+
+LARGEST = 1e4
+"""Deviation of a wrench before anything is measured: far more than any is, against legs that are stretched [N]."""
 
 
 class TorqueWrench:
@@ -21,31 +31,45 @@ class TorqueWrench:
     With p = M q' the momentum obeys p' = S τ + Cᵀ q' - g + Σ J_kᵀ w_k, of which no acceleration has to be known. The
     residual r = K (p - p(0) - ∫ S τ + Cᵀ q' - g + r) follows Σ J_kᵀ w_k as a low pass of bandwidth K does (De Luca and
     Mattone, "Actuator failure detection and isolation using generalized momenta", ICRA 2003; for the contacts of
-    humanoids Flacco et al., Humanoids 2016). The wrenches are those that explain the residual best, in the legs' rows
-    and the base's.
+    humanoids Flacco et al., Humanoids 2016).
+
+    The wrenches are those that explain the residual best by its covariance. What is noisy of it is the momentum, by
+    the velocities and with the whole mass matrix, and the torques. So a leg tells its own foot's wrench, and the body,
+    a heavy mass of a noisy velocity, tells little. Equal weights have five times the noise.
 
     Args:
         model: the robot, with a free-flyer base.
         soles: names of the sole frames, left first.
         period: control period [s].
+        sensors: noise of encoders and torques.
     """
 
-    def __init__(self, model: pin.Model, soles: tuple[str, str], period: float) -> None:
+    def __init__(self, model: pin.Model, soles: tuple[str, str], period: float, sensors: SensorNoise) -> None:
         self._model, self._data, self._period = model, model.createData(), period
         self._soles = tuple(model.getFrameId(name) for name in soles)
+        # As in an α-β filter the noise grows with the bandwidth faster than the lag falls.
+        quiet = min((FINE / sensors.encoder) ** 0.4, 1.0) if sensors.encoder > 0.0 else 1.0
+        self._gain = gain = 1.0 - math.exp(-math.tau * BANDWIDTH * quiet * period)
+        # White noise of a velocity, differenced and low-passed, and that of a torque.
+        differenced, passed = 2.0 * gain**2 / (2.0 - gain) / period**2, gain / (2.0 - gain)
+        rate = max(sensors.encoder, 1e-7) * math.sqrt(2.0) / period
+        self._velocity_noise = np.full(model.nv, rate**2 * differenced)
+        self._velocity_noise[:6] = np.repeat(np.square(BASE), 3) * differenced
+        self._torque_noise = (sensors.joint_torque**2 + 0.05**2) * passed
         self._residual: Array | None = None
         self._momentum, self._driven = np.zeros(model.nv), np.zeros(model.nv)
+        self._scale = np.tile([1.0, 1.0, 1.0, LEVER, LEVER, LEVER], 2)
+        self._rows: NDArray[np.intp] | None = None
+        self.wrench, self.deviation = np.zeros((2, 6)), (0.0, 0.0)
 
     def update(self, state: RobotState, torque: Array, passed: float | None = None) -> Array:
         """Wrenches in the sole frames, shape (2, 6) [N, N·m].
 
         Args:
-            state: of the robot now.
+            state: of the robot at the instant of the torque.
             torque: of the joints over the tick that ended, shape (nj,) [N·m].
-            passed: how long that was [s]; None for the control period.
+            passed: since the call before; None for a control period [s].
         """
-        period = passed or self._period
-        gain = 1.0 - np.exp(-2.0 * np.pi * BANDWIDTH * period)
         model, data, q, v = self._model, self._data, state.q, state.v
         pin.computeCoriolisMatrix(model, data, q, v)
         pin.crba(model, data, q)
@@ -58,21 +82,33 @@ class TorqueWrench:
             self._residual = -driven
         else:
             # The exact discrete low pass of what drives the momentum beside all that is known.
-            lacking = (momentum - self._momentum) / period - 0.5 * (driven + self._driven)
+            span = passed or self._period
+            lacking = (momentum - self._momentum) / span - 0.5 * (driven + self._driven)
+            gain = 1.0 - (1.0 - self._gain) ** (span / self._period)
             self._residual = self._residual + gain * (lacking - self._residual)
         self._momentum, self._driven = momentum, driven
-        return self._wrenches(q)
+        self.wrench = self._wrenches(q, M)
+        return self.wrench
 
-    def _wrenches(self, q: Array) -> Array:
+    def _wrenches(self, q: Array, M: Array) -> Array:
         model, data = self._model, self._data
         pin.computeJointJacobians(model, data, q)
         pin.updateFramePlacements(model, data)
         jacobians = [pin.getFrameJacobian(model, data, frame, pin.ReferenceFrame.LOCAL) for frame in self._soles]
-        scale = np.tile([1.0, 1.0, 1.0, LEVER, LEVER, LEVER], 2)
-        A = np.vstack(jacobians).T * scale
-        touched = np.abs(A).sum(axis=1) > 0.0
-        A, r = A[touched], self._residual[touched]  # type: ignore[index]
-        normal = A.T @ A
-        normal[np.diag_indices(12)] += DAMPING * np.trace(normal) / 12.0 * DAMPING
-        solution = np.linalg.solve(normal, A.T @ r)
-        return (scale * solution).reshape(2, 6)
+        A = np.vstack(jacobians).T * self._scale
+        if self._rows is None:
+            self._rows = np.flatnonzero(np.abs(A).sum(axis=1) > 0.0)
+        rows, residual = self._rows, self._residual
+        assert residual is not None
+        some = M[rows]
+        noise = (some * self._velocity_noise) @ some.T
+        noise[np.diag_indices_from(noise)] += np.where(rows < 6, 1e-4, self._torque_noise)
+        A = A[rows]
+        weighted = np.linalg.solve(noise, A)
+        normal = A.T @ weighted
+        normal[np.diag_indices(12)] += 1.0 / LARGEST**2
+        covariance = np.linalg.inv(normal)
+        spread = self._scale * np.sqrt(covariance.diagonal())
+        self.deviation = float(spread[[0, 1, 2, 6, 7, 8]].max()), float(spread[[3, 4, 5, 9, 10, 11]].max())
+        found: Array = (self._scale * (covariance @ (weighted.T @ residual[rows]))).reshape(2, 6)
+        return found

@@ -58,6 +58,7 @@ class Posture:
         posture: Array,
         leg_joints: NDArray[np.bool_],
         arms: ArmSwing | None = None,
+        driven: NDArray[np.bool_] | None = None,
     ) -> None:
         """Prepare what never changes.
 
@@ -67,8 +68,11 @@ class Posture:
             posture: joint positions to return to, shape (nj,) [rad].
             leg_joints: which joints are leg joints, bool, shape (nj,).
             arms: how the arms swing; None for arms that keep the posture.
+            driven: which joints somebody else drives, and keep none, bool, shape (nj,); None for none.
         """
         self._weight = np.where(leg_joints, weights.leg_posture, weights.upper_posture)
+        if driven is not None:
+            self._weight = np.where(driven, 0.0, self._weight)
         self._stiffness, self._damping = gains.posture[0] * self._weight, gains.posture[1] * self._weight
         self._pull = self._stiffness * posture
         self._arms = arms

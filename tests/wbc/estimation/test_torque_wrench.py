@@ -1,9 +1,12 @@
 """Sole wrenches from joint torques, where nothing else tells them."""
 
+import math
+
 import numpy as np
 import pinocchio as pin
 import pytest
 
+from surefoot.wbc.estimation.parameters import SensorNoise
 from surefoot.wbc.estimation.torques import TorqueWrench
 from surefoot.wbc.types import RobotState
 
@@ -29,7 +32,7 @@ def balanced(robot, q, share):
 def test_of_a_robot_at_rest_they_are_the_true_ones(robot, share):
     q = robot.standing
     wrench, torque = balanced(robot, q, share)
-    found = TorqueWrench(robot.model, robot.frames.soles, PERIOD)
+    found = TorqueWrench(robot.model, robot.frames.soles, PERIOD, SensorNoise())
     state = RobotState(q, np.zeros(robot.nv))
     for _ in range(5):
         seen = found.update(state, torque)
@@ -44,7 +47,7 @@ def test_in_free_fall_there_are_none_whatever_the_joints_do(robot):
     """Momentum changes by gravity and torques alone, which the observer knows."""
     model, data, rng = robot.model, robot.model.createData(), np.random.default_rng(2)
     q, v = robot.standing.copy(), np.zeros(robot.nv)
-    found, step = TorqueWrench(model, robot.frames.soles, PERIOD), PERIOD / 20
+    found, step = TorqueWrench(model, robot.frames.soles, PERIOD, SensorNoise()), PERIOD / 20
     torque = np.zeros(robot.nv - 6)
     found.update(RobotState(q, v), -np.ones(robot.nv - 6) * 0.0)
     largest = []
@@ -60,8 +63,44 @@ def test_in_free_fall_there_are_none_whatever_the_joints_do(robot):
 def test_a_force_that_sets_in_is_followed_within_its_bandwidth(robot):
     q = robot.standing
     (_, torque), (other, changed) = balanced(robot, q, 0.5), balanced(robot, q, 0.8)
-    found, state = TorqueWrench(robot.model, robot.frames.soles, PERIOD), RobotState(q, np.zeros(robot.nv))
+    found, state = (
+        TorqueWrench(robot.model, robot.frames.soles, PERIOD, SensorNoise()),
+        RobotState(q, np.zeros(robot.nv)),
+    )
     found.update(state, torque)
     for _ in range(20):
         seen = found.update(state, changed)
     np.testing.assert_allclose(seen[:, 2], other[:, 2], atol=5.0)
+
+
+@pytest.mark.parametrize("sensors", [SensorNoise(), SensorNoise(encoder=1.5e-4, joint_torque=2.0)])
+def test_noise_of_encoders_and_torques_is_as_large_as_it_says(robot, sensors):
+    q, rng = robot.standing, np.random.default_rng(4)
+    wrench, torque = balanced(robot, q, 0.5)
+    found = TorqueWrench(robot.model, robot.frames.soles, PERIOD, sensors)
+    before, seen = np.zeros(len(torque)), []
+    for _ in range(400):
+        encoder = sensors.encoder * rng.normal(size=len(torque))
+        v = np.concatenate((np.zeros(6), (encoder - before) / PERIOD))
+        before = encoder
+        found.update(RobotState(q, v), torque + sensors.joint_torque * rng.normal(size=len(torque)))
+        seen.append(found.wrench)
+    error = np.array(seen)[50:] - wrench
+    for numbers, said in zip((error[..., :3], error[..., 3:]), found.deviation, strict=True):
+        largest = np.sqrt((numbers**2).mean(axis=0)).max()
+        assert 0.2 * said < largest < 1.3 * said
+
+
+def test_a_velocity_of_the_body_that_jumps_is_no_force_on_a_foot(robot):
+    """The legs tell a foot's wrench: a noise of the heavy body's velocity passes little of its momentum on to it."""
+    q, rng = robot.standing, np.random.default_rng(5)
+    wrench, torque = balanced(robot, q, 0.5)
+    found, mass = TorqueWrench(robot.model, robot.frames.soles, PERIOD, SensorNoise()), 100.0
+    seen = []
+    for _ in range(200):
+        v = np.zeros(robot.nv)
+        v[2] = 1e-3 * rng.normal()
+        found.update(RobotState(q, v), torque)
+        seen.append(found.wrench[:, 2])
+    shaken = 1e-3 * math.sqrt(2.0) * mass / PERIOD
+    assert np.std(np.array(seen)[50:] - wrench[:, 2]) < 0.2 * shaken

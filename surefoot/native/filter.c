@@ -1,0 +1,89 @@
+/* The state of the invariant filter from tick to tick; see `wbc.estimation.invariant_filter`. */
+#include "algebra.h"
+#include "kernels.h"
+
+enum { POSE = 6, BIASES = 21, FIXED = 27 };
+
+/* Rotation by a rotation vector, as pinocchio.exp3 has it. */
+static void turned(const double *x, double *R) {
+    const double square = x[0] * x[0] + x[1] * x[1] + x[2] * x[2], angle = sqrt(square);
+    const int small = angle < 1e-4;
+    const double first = small ? 1.0 - square / 6.0 : sin(angle) / angle;
+    const double half = sin(0.5 * angle);
+    const double second = small ? 0.5 - square / 24.0 : 2.0 * half * half / square;
+    const double cosine = 1.0 - second * square;
+    for (int i = 0; i < 3; i++)
+        for (int j = 0; j < 3; j++) R[3 * i + j] = second * x[i] * x[j] + (i == j ? cosine : 0.0);
+    R[1] -= first * x[2];
+    R[2] += first * x[1];
+    R[3] += first * x[2];
+    R[5] -= first * x[0];
+    R[6] -= first * x[1];
+    R[7] += first * x[0];
+}
+
+/* Counterpart of `InvariantFilter.propagate`. */
+void filter_propagate(const Filter *filter, double time) {
+    double x[3], half[9], middle[9], specific[3], *v = filter->columns, *p = filter->columns + 3;
+    for (int i = 0; i < 3; i++) x[i] = 0.5 * time * (filter->rate[i] - filter->gyro_bias[i]);
+    for (int i = 0; i < 3; i++) specific[i] = filter->force[i] - filter->force_bias[i];
+    turned(x, half);
+    compose(filter->R, half, middle);
+    rotate(middle, specific, filter->acceleration);
+    filter->acceleration[2] -= filter->gravity;
+    for (int i = 0; i < 3; i++) {
+        p[i] += time * v[i] + 0.5 * time * time * filter->acceleration[i];
+        v[i] += time * filter->acceleration[i];
+    }
+    compose(middle, half, filter->R);
+}
+
+/* Counterpart of `Stand.move`. */
+static void move(const Filter *filter, const double *x) {
+    double E[9], seen[9];
+    turned(x, E);
+    compose(E, filter->R, seen);
+    memcpy(filter->R, seen, sizeof seen);
+    for (int column = 0; column < 4; column++) {
+        double *at = filter->columns + 3 * column;
+        rotate(E, at, seen);
+        for (int i = 0; i < 3; i++) at[i] = seen[i] + x[3 + 3 * column + i];
+    }
+    for (int k = 0; k < 2; k++) {
+        double *Z = filter->Z + 9 * k;
+        turned(x + 15 + 3 * k, E);
+        compose(E, Z, seen);
+        memcpy(Z, seen, sizeof seen);
+    }
+    for (int i = 0; i < 3; i++) {
+        filter->gyro_bias[i] += x[BIASES + i];
+        filter->force_bias[i] += x[BIASES + 3 + i];
+    }
+    for (int64_t i = FIXED; i < filter->size; i++) filter->offsets[i - FIXED] += x[i];
+}
+
+/* Counterpart of `InvariantFilter.correct`; returns whether one of two feet has slipped, of which nothing is taken. */
+int64_t filter_correct(const Filter *filter, double gate) {
+    const int64_t rows = POSE * filter->feet_count;
+    double seen[9], apart[9], *x = filter->moved;
+    for (int64_t i = 0; i < filter->feet_count; i++) {
+        const int64_t k = filter->feet[i];
+        double *found = filter->residual + POSE * i;
+        rotate(filter->R, filter->position + 3 * k, found);
+        for (int j = 0; j < 3; j++) found[j] += filter->columns[3 + j] - filter->columns[6 + 3 * k + j];
+        compose(filter->R, filter->rotation + 9 * k, seen);
+        for (int a = 0; a < 3; a++)
+            for (int b = 0; b < 3; b++)
+                apart[3 * a + b] = dot(seen + 3 * a, filter->Z + 9 * k + 3 * b, 3);
+        rotation_vector(apart, found + 3);
+    }
+    if (filter->feet_count == 2) {
+        double likely = 0.0;
+        for (int64_t i = 0; i < rows; i++)
+            likely += filter->residual[i] * dot(filter->weights + rows * i, filter->residual, rows);
+        if (likely > gate) return 1;
+    }
+    for (int64_t i = 0; i < filter->size; i++) x[i] = dot(filter->gain + rows * i, filter->residual, rows);
+    move(filter, x);
+    return 0;
+}

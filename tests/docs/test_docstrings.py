@@ -1,0 +1,93 @@
+"""Public names say what they are: every one has a docstring, every field a meaning, arrays a shape, errors a name."""
+
+import ast
+import inspect
+import re
+import textwrap
+from dataclasses import fields, is_dataclass
+from importlib import import_module
+
+import pytest
+
+pytestmark = pytest.mark.unit
+
+FACES = ("surefoot", "surefoot.planner", "surefoot.wbc", "surefoot.sim", "surefoot.models")
+
+
+def public():
+    """Classes and functions that the faces name, each once."""
+    found = {}
+    for face in FACES:
+        module = import_module(face)
+        for name in module.__all__:
+            thing = getattr(module, name)
+            if inspect.isclass(thing) or inspect.isfunction(thing):
+                found.setdefault(id(thing), (name, thing))
+    return sorted(found.values(), key=lambda one: one[0])
+
+
+PUBLIC = public()
+CLASSES = [(name, thing) for name, thing in PUBLIC if inspect.isclass(thing)]
+
+
+def callables(name, thing):
+    """The thing, or what is public of a class and of this package."""
+    if not inspect.isclass(thing):
+        return [(name, thing)]
+    own = [(f"{name}.{key}", value) for key, value in vars(thing).items() if not key.startswith("_")]
+    unwrapped = [(key, getattr(value, "__func__", getattr(value, "fget", value))) for key, value in own]
+    return [(key, value) for key, value in unwrapped if inspect.isfunction(value)]
+
+
+def entries(text):
+    """Names and meanings in the sections Attributes and Args of a docstring."""
+    found = re.findall(r"(?m)^    (\w+(?:, \w+)*)(?: \([^)]*\))?: (.*(?:\n {5,}.*)*)", text)
+    return {name: meaning for names, meaning in found for name in names.split(", ")}
+
+
+def raised(function):
+    """Names of the errors that a function raises by itself."""
+    tree = ast.parse(textwrap.dedent(inspect.getsource(function)))
+    calls = [node.exc for node in ast.walk(tree) if isinstance(node, ast.Raise) and isinstance(node.exc, ast.Call)]
+    return {call.func.id for call in calls if isinstance(call.func, ast.Name)} - {"NotImplementedError"}
+
+
+@pytest.mark.parametrize(("name", "thing"), PUBLIC, ids=[name for name, _ in PUBLIC])
+def test_it_says_what_it_is(name, thing):
+    assert inspect.getdoc(thing)
+    for part, function in callables(name, thing):
+        assert inspect.getdoc(function), part
+
+
+@pytest.mark.parametrize(("name", "thing"), PUBLIC, ids=[name for name, _ in PUBLIC])
+def test_it_says_what_it_raises(name, thing):
+    told = inspect.getdoc(thing) or ""
+    for part, function in callables(name, thing):
+        text = told + (inspect.getdoc(function) or "")
+        for error in raised(function):
+            assert error in text or "errors as of `" in text, f"{part} raises {error}"
+
+
+DATA = [(name, thing) for name, thing in CLASSES if is_dataclass(thing)]
+
+
+@pytest.mark.parametrize(("name", "thing"), DATA, ids=[name for name, _ in DATA])
+def test_every_field_has_a_meaning_and_every_array_a_shape(name, thing):
+    told = entries(inspect.getdoc(thing))
+    for field in fields(thing):
+        if field.name.startswith("_"):
+            continue
+        meaning = told.get(field.name) or field.metadata.get("doc")
+        assert meaning, f"{name}.{field.name}"
+        if re.search(r"\bArray\b|NDArray|ndarray", str(field.type)) and "tuple" not in str(field.type):
+            assert "shape" in meaning or "of `" in meaning, f"{name}.{field.name}: {meaning}"
+
+
+def test_what_says_nothing_is_found():
+    def silent(value):
+        raise ValueError(value)
+
+    assert raised(silent) == {"ValueError"}
+    assert entries("X.\n\nArgs:\n    value: what [m],\n        shape (3,).\n") == {
+        "value": "what [m],\n        shape (3,)."
+    }

@@ -21,7 +21,7 @@ WARM, COUNTED, EVERY = 700, 200, 10
 
 def counted() -> dict[str, float]:
     """Means over ticks with a plan and over those without."""
-    loop = closed_loop(resolve(load("diagonal-walk")), NoLog())
+    loop = closed_loop(resolve(load("diagonal-walk", ["sensing.source=truth"])), NoLog())
     for _ in range(WARM):
         loop.step()
     calls = np.array([_calls(loop) for _ in range(COUNTED)])

@@ -214,7 +214,9 @@ def _followed(name: str, robot: Mapping[str, str], out: Path) -> tuple[_Walked, 
 
 def _run(name: str, settings: Mapping[str, str], out: Path) -> _Walked:
     try:
-        result = run_scenario(load(name, [f"{key}={value}" for key, value in settings.items()]), out / "logs")
+        result = run_scenario(
+            load(name, ["sensing.source=truth", *(f"{key}={value}" for key, value in settings.items())]), out / "logs"
+        )
     except (ScenarioError, SetupError, LogError) as refusal:
         return _Walked(refused=tuple(str(refusal).splitlines()))
     metrics = result.verdict.metrics

@@ -81,7 +81,7 @@ def robots(quick: bool) -> Section:
     """A control tick of robots with more and more joints, on the same walk at their size."""
     rows: list[tuple[Value, ...]] = []
     for name in ROBOTS[:1] if quick else ROBOTS:
-        loop = closed_loop(resolve(load("walk", [f"robot={name}", "gait.steps=2"])), NoLog())
+        loop = closed_loop(resolve(load("walk", [f"robot={name}", "gait.steps=2", "sensing.source=truth"])), NoLog())
         spent = []
         with one_thread():
             while not loop.done and not (quick and len(spent) > 300):
@@ -135,7 +135,7 @@ from surefoot.scenarios.setup.load import load
 from surefoot.scenarios.setup.walk import resolve
 with one_thread():
     for line in sys.stdin:
-        loop = closed_loop(resolve(load("diagonal-walk", ["duration=30"])), NoLog())
+        loop = closed_loop(resolve(load("diagonal-walk", ["duration=30", "sensing.source=truth"])), NoLog())
         end, ticks = time.monotonic() + float(line), 0
         while time.monotonic() < end and not loop.done:
             loop.step()

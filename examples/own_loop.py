@@ -7,7 +7,7 @@ import surefoot
 from surefoot.models.convert import mujoco_to_pinocchio
 from surefoot.sim import World
 
-scenario = surefoot.load("walk", {"gait.steps": 2})
+scenario = surefoot.load("walk", {"sensing.source": "truth", "gait.steps": 2})
 controller = surefoot.Controller("humanoid100", scenario)
 robot, rates = controller.walk.robot, scenario.rates
 model = mujoco.MjModel.from_xml_string(World(robot, controller.walk.ground.terrain, rates.physics).mjcf())

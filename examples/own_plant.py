@@ -35,5 +35,6 @@ class Finer:
 
 
 if __name__ == "__main__":
-    scenario = surefoot.load("walk", {"gait.steps": 2, "criteria": {"speed_mean": {"max": 1.0}}})
+    keys = {"sensing.source": "truth", "gait.steps": 2, "criteria": {"speed_mean": {"max": 1.0}}}
+    scenario = surefoot.load("walk", keys)  # without a method read it has no sensors
     print(surefoot.run(scenario, parts=surefoot.Parts(plant=Finer)))

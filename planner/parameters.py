@@ -49,9 +49,9 @@ class GroundSearch:
     hurry_after: float = quantity(math.inf, "s")
     hurry_speed: float = quantity(0.5, "m/s")
     hurry_acceleration: float = quantity(16.0, "m/s^2")
-    unsure_speed: float = quantity(40.0, "1/s")
-    unsure_acceleration: float = quantity(1500.0, "1/s^2")
-    unsure_aim: float = quantity(1.5, "-")
+    unsure_speed: float = quantity(80.0, "1/s")
+    unsure_acceleration: float = quantity(4000.0, "1/s^2")
+    unsure_aim: float = quantity(0.5, "-")
     most_unsure: float = quantity(2e-3, "m")
 
     def __post_init__(self) -> None:
@@ -64,18 +64,19 @@ class GroundSearch:
             if not math.isfinite(value) and entry.name != "hurry_after":
                 raise ParameterError(key, what, "it must be finite")
 
-    def unsure(self, deviation: float) -> tuple["GroundSearch", float]:
+    def unsure(self, deviation: float, over: float = 0.0) -> tuple["GroundSearch", float]:
         """The search for ground of unsure height, and how far below it the footstep is to be aimed [m].
 
         A foot that is lower than it is believed waits for nothing; one that is higher waits the longer the more gently
         it goes on, while the DCM does not wait.
 
         Args:
-            deviation: standard deviation of the sole's height over the ground [m].
+            deviation: standard deviation of the sole's height over the stance foot [m].
+            over: how high the stance foot is believed over its footstep: as high the ground is believed too low [m].
         """
         if deviation == 0.0:
             return self, 0.0
-        least = min(deviation, self.most_unsure)
+        least, most = min(deviation, self.most_unsure), self.most_unsure
         speed = self.touchdown_speed + self.unsure_speed * least
         faster = replace(
             self,
@@ -83,7 +84,7 @@ class GroundSearch:
             speed=max(self.speed, speed),
             acceleration=self.acceleration + self.unsure_acceleration * least,
         )
-        return faster, self.unsure_aim * least
+        return faster, self.unsure_aim * least - min(max(over, -most), most)
 
     def motion(self, since: float) -> tuple[float, float, float]:
         """Way down [m], downward speed [m/s] and acceleration [m/s^2], `since` the touchdown [s]."""

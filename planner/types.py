@@ -150,13 +150,13 @@ class FeetState:
         position: sole centres in the world frame, shape (2, 3) [m], left first.
         yaw: sole headings, shape (2,) [rad].
         contact: which feet feel the ground, (left, right).
-        height_deviation: standard deviations of the soles' heights over the ground, zero for the truth [m].
+        height_deviation: standard deviation of the height of one sole over the other, zero for the truth [m].
     """
 
     position: Array
     yaw: Array
     contact: tuple[bool, bool]
-    height_deviation: tuple[float, float] = (0.0, 0.0)
+    height_deviation: float = 0.0
 
 
 class SolverStatus(IntEnum):

@@ -252,7 +252,8 @@ class Execution:
             yaw = leaving.yaw + wrap_angle(float(feet.yaw[foot]) - leaving.yaw)
             pose = sole_pose(feet.position[foot], yaw, leaving.normal)
             course = self.schedule.step(self.phase.step).course
-            unsure = feet.height_deviation[foot]
+            over = float(feet.position[stance.foot, 2] - stance.position[2])
+            unsure = feet.height_deviation, over
             self.swing = start_swing(foot, pose, target, time, self.left, course, self._parameters, unsure)
         else:
             target[2] -= self.swing.aim

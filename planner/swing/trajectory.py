@@ -268,7 +268,7 @@ def start_swing(
     samples: float,
     course: SwingCourse,
     parameters: PlannerParameters,
-    deviation: float = 0.0,
+    unsure: tuple[float, float] = (0.0, 0.0),
 ) -> SwingTrajectory:
     """Swing from rest, which ends some time before the single support does.
 
@@ -280,10 +280,11 @@ def start_swing(
         samples: how long that lasts [samples].
         course: of the swing; its instants are on a grid of samples.
         parameters: of the planner.
-        deviation: standard deviation of the sole's height over the ground [m].
+        unsure: standard deviation of its height over the stance foot, and how high that is believed over its footstep;
+            it stands, so that the ground is there. Of the truth, whose deviation is zero, neither counts [m].
     """
     t, rest = parameters.sample_time, np.zeros((3, 6))
-    search, aim = parameters.search.unsure(deviation)
+    search, aim = parameters.search.unsure(*unsure)
     target = np.array(footstep)
     target[2] -= aim
     rest[0] = pose

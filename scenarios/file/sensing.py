@@ -6,7 +6,7 @@ Null is what ``sensing.preset`` has, or an ideal motor; what each term means is 
 
 from typing import Annotated, Any, Literal
 
-from pydantic import Field
+from pydantic import Field, model_validator
 
 from surefoot.scenarios.file.group import WHOLE, Group, key
 from surefoot.scenarios.file.names import OneOf
@@ -25,11 +25,16 @@ _Late = Annotated[float, Field(ge=0, le=1), SECOND]
 _Noise = Annotated[float, Field(ge=0, le=1e3), METRE]
 
 
+OF_SENSORS = "ekf"
+"""The estimator that reads the sensors of a preset where no other is named."""
+
+
 class Sensing(Group):
     """What planner and controller know of the robot; noises, offsets and biases are standard deviations."""
 
     source: Annotated[str, OneOf("sensing", "source")] = key(
-        DEFAULTS["sensing"], "estimator of the state that controller and planner are given"
+        DEFAULTS["sensing"],
+        f"estimator of the state that controller and planner are given, {OF_SENSORS} where only preset is named",
     )
     options: dict[str, Any] | None = key(None, "given to that estimator by name, null: none")
     preset: Literal["perfect", "good", "cheap"] | None = key(
@@ -97,6 +102,14 @@ class Sensing(Group):
     force_estimate: bool = key(
         True, "a lasting external force and the true weight are estimated from what the feet feel, and counted with"
     )
+
+    @model_validator(mode="before")
+    @classmethod
+    def _sensors_are_read(cls, keys: Any) -> Any:
+        """Whose sensors are named walks from them, unless its source says otherwise."""
+        if isinstance(keys, dict) and keys.get("preset") is not None and "source" not in keys:
+            return {**keys, "source": OF_SENSORS}
+        return keys
 
 
 OF_THE_PLANNER = ("source", "options", "zmp_noise", "com_noise", "force_estimate")

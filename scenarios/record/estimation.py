@@ -18,7 +18,7 @@ from surefoot.wbc.model import RobotTerms
 from surefoot.wbc.types import Array
 
 _THREE, _TWO = np.full(3, math.nan), np.full(2, math.nan)
-_UNKNOWN = Deviation(_THREE, _THREE, _TWO, _TWO, math.nan, math.nan)
+_UNKNOWN = Deviation(_THREE, _THREE, _TWO, _TWO, math.nan, math.nan, math.nan)
 """Of an estimator that does not say how sure it is."""
 
 _POSES = ("base_pose", "left_sole", "right_sole")

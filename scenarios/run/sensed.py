@@ -175,6 +175,5 @@ def foot_sensing(estimate: Estimate, wrench: Array, wanted: bool) -> FootSensing
 
 def unsure(deviation: Deviation, state: CentroidalState, feet: FeetState) -> tuple[CentroidalState, FeetState]:
     """State and feet with how sure they are."""
-    left, right = deviation.sole_height.tolist()
     com, velocity = float(np.hypot(*deviation.com[:2])), float(np.hypot(*deviation.com_velocity[:2]))
-    return replace(state, deviation=(com, velocity)), replace(feet, height_deviation=(left, right))
+    return replace(state, deviation=(com, velocity)), replace(feet, height_deviation=deviation.step_height)

@@ -62,7 +62,7 @@ def sensor_errors(sensing: Sensing, size: Similarity) -> SensorErrors:
 
 
 def refuse_unread(sensing: Sensing) -> None:
-    """Refuse terms of sensors beside an estimator that is given the measurement and reads none.
+    """Refuse single terms of sensors beside an estimator that is given the measurement and reads none.
 
     Raises:
         ParameterError: there is one.
@@ -73,8 +73,11 @@ def refuse_unread(sensing: Sensing) -> None:
 
 
 def _given(sensing: Sensing) -> dict[str, Any]:
-    """Terms of sensors that a scenario has, but for zeros of earlier logs."""
-    values = ((name, getattr(sensing, name)) for name in SENSOR_KEYS)
+    """Single terms of sensors that a scenario has, but for zeros of earlier logs.
+
+    Its preset says what sensors the robot has, which may stand there whoever reads them.
+    """
+    values = ((name, getattr(sensing, name)) for name in SENSOR_KEYS if name != "preset")
     return {
         name: value
         for name, value in values

@@ -3,6 +3,7 @@
 from collections.abc import Iterable, Iterator
 
 from surefoot.plugins import PluginError
+from surefoot.scenarios.file.registries import DEFAULTS
 from surefoot.scenarios.file.schema import PendulumSettings, Rates, Scenario, TerrainSettings
 from surefoot.scenarios.file.units import meant
 from surefoot.scenarios.record.provenance import Agenda
@@ -89,6 +90,8 @@ def _not_felt(walk: Walk) -> Iterator[str]:
     yield from (f"{key} has no effect on pendulum.plant {pendulum.plant}" for key in _given(walk, "pendulum", unread))
     bodies = {f"pushes.{index}.body": push.body for index, push in enumerate(walk.keys.pushes)}
     bodies["errors.payload.body"] = None if load is None else load.body
+    if walk.keys.sensing.preset is None:  # else it follows from that, and is told with it
+        yield from (f"{key} has no effect on a pendulum" for key in _given(walk, "sensing", ("source", "options")))
     yield from (f"{name} has no effect on a pendulum" for name, body in bodies.items() if body is not None)
 
 
@@ -114,6 +117,8 @@ def _without_occasion(walk: Walk) -> Iterator[str]:
         yield "robot_options.payload_body has no effect without robot_options.payload_mass"
     if load is not None and load.mass == 0.0:
         yield "errors.payload has no effect without a mass"
+    if walk.walker.has_body and keys.sensing.preset is not None and keys.sensing.source == DEFAULTS["sensing"]:
+        yield f"sensing.preset has no effect beside sensing.source {keys.sensing.source}, which reads no sensor"
 
 
 def _unshaped(walk: Walk) -> Iterator[str]:

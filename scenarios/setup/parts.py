@@ -101,7 +101,7 @@ def _estimate(answer: Estimate, readings: "Readings") -> Estimate:
 _DEVIATED: dict[str, Shape] = {
     **dict.fromkeys(("com", "com_velocity"), (3,)),
     **dict.fromkeys(("tilt", "sole_height"), (2,)),
-    **dict.fromkeys(("force", "moment"), ()),
+    **dict.fromkeys(("step_height", "force", "moment"), ()),
 }
 """Fields of a deviation, and the shape of each."""
 

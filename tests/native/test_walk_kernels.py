@@ -24,6 +24,6 @@ WALKS = {
 @pytest.mark.parametrize("case", WALKS)
 def test_kernels_do_what_their_counterparts_do(twins, case):
     name, seconds, overrides, comes_by = WALKS[case]
-    pair = twins(name, seconds, **overrides)
+    pair = twins(name, seconds, **{"sensing.source": "truth", **overrides})
     assert {what for what, count in pair.seen.items() if count} >= comes_by, pair.seen
     assert pair.unlike == {}

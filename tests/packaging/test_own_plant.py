@@ -8,7 +8,7 @@ from surefoot.scenarios.log import read
 
 G1 = ("--set", "robot=g1", "--set", "sized_for=humanoid100")
 LOW = ("--set", "criteria={fell: false, steps_taken: {min: 2}}")
-FINER = ("--set", "plant.name=finer", "--set", "gait.steps=2")
+FINER = ("--set", "plant.name=finer", "--set", "gait.steps=2", "--set", "sensing.source=truth")
 
 
 @pytest.mark.unit

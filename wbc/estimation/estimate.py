@@ -16,6 +16,7 @@ class Deviation:
         com_velocity: world axes, shape (3,) [m/s].
         tilt: of the base's roll and pitch, shape (2,) [rad].
         sole_height: of each sole's height over the ground under it, left first, shape (2,) [m].
+        step_height: of the height of one sole over the other, which no height of the ground is in [m].
         force: of the horizontal external force that momentum and wrenches give over the span of the load observer [N].
         moment: of its moment about the CoM [N·m].
     """
@@ -24,6 +25,7 @@ class Deviation:
     com_velocity: Array
     tilt: Array
     sole_height: Array
+    step_height: float
     force: float
     moment: float
 

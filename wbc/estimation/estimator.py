@@ -97,7 +97,9 @@ class SensedState:
 
     def told(self, planned: Planned) -> None:
         """Hear what the controller does until the next tick."""
-        self._joints.told(planned.acceleration[6:])
+        # What is planned for a state that is lost is no motion of the robot.
+        bend = planned.acceleration[6:]
+        self._joints.told(np.zeros_like(bend) if self._lost else bend)
         self._base_told.append(planned.acceleration[:6].copy())
         self._still = [planned.contact[k] and k != planned.rolling_foot for k in (0, 1)]
 
@@ -284,13 +286,14 @@ class SensedState:
         force = self._contact.wrench[:, 2]
         lever, by_joints, moving = body.com_jacobians(int(force[1] > force[0]))
         by_joints = s.R @ by_joints
-        rows = np.zeros((5, len(P)))
+        rows = np.zeros((6, len(P)))
         rows[:3, TURN] = -pin.skew(s.R @ lever)
         rows[:3, OFFSETS] = -by_joints[:, body.chain]
         for k in (0, 1):
             rows[3 + k, TURN] = -pin.skew(s.R @ body.position[k] + s.p)[2]
             rows[3 + k, POSITION.stop - 1] = 1.0
             rows[3 + k, OFFSETS] = -s.R[2] @ J[k, :3]
+        rows[5] = rows[3] - rows[4]
         self._height = float(lever @ s.R[2])
         place = np.maximum(np.einsum("ij,jk,ik->i", rows, P, rows), 0.0)
         by_joints[:, body.chain] = 0.0
@@ -299,7 +302,7 @@ class SensedState:
         speed = spread[VELOCITY] + ((s.R @ moving) ** 2).sum(axis=1) * self._joints.rate_noise**2
         com, speed, tilt = np.sqrt(com), np.sqrt(speed), np.sqrt(spread[:2])
         load = self._of_load(speed, com, float(tilt.max()))
-        return Deviation(com, speed, tilt, np.sqrt(place[3:]), *load)
+        return Deviation(com, speed, tilt, np.sqrt(place[3:5]), math.sqrt(place[5]), *load)
 
     def _of_load(self, speed: Array, com: Array, tilt: float) -> tuple[float, float]:
         """Deviations of the force and the moment that the load observer sees within its span."""

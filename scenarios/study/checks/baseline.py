@@ -310,8 +310,9 @@ def _direction(bound: Bound | None, before: MetricValue, now: MetricValue) -> Tr
 
 
 def _flow(value: Any) -> str:
-    """A value on one line of YAML."""
-    return str(yaml.safe_dump(_rounded(value), default_flow_style=True, width=math.inf)).splitlines()[0]
+    """A value on one line of YAML, parts in their order."""
+    text = yaml.safe_dump(_rounded(value), default_flow_style=True, width=math.inf, sort_keys=False)
+    return str(text).splitlines()[0]
 
 
 def _rounded(value: Any) -> Any:

@@ -13,7 +13,7 @@ PaperWorld = Literal["cart-table", "pendulum", "full"]
 WORLD_SETTINGS: dict[PaperWorld, tuple[str, ...]] = {
     "cart-table": ("fidelity=pendulum", "pendulum.plant=cart_table"),
     "pendulum": ("fidelity=pendulum",),
-    "full": ("fidelity=full",),
+    "full": ("fidelity=full", "sensing.source=truth"),
 }
 
 

@@ -14,7 +14,14 @@ from surefoot.scenarios.show.differences import WALL_CLOCK
 
 pytestmark = pytest.mark.unit
 
-SHORT = ("fidelity=pendulum", "gait.steps=2", "gait.single_support=0.8", "gait.initial_stand=0.2", "rates.control=100")
+SHORT = (
+    "sensing={}",
+    "fidelity=pendulum",
+    "gait.steps=2",
+    "gait.single_support=0.8",
+    "gait.initial_stand=0.2",
+    "rates.control=100",
+)
 
 
 @pytest.fixture(scope="module")

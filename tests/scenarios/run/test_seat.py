@@ -22,7 +22,7 @@ class Bench:
     """A world and a controller in it, driven by hand."""
 
     def __init__(self, name, overrides, place=(0.0, 0.0, 0.0)):
-        scenario = surefoot.load(name, overrides)
+        scenario = surefoot.load(name, {"sensing.source": "truth", **overrides})
         self.controller = controller = surefoot.Controller(scenario.robot, scenario)
         self.walk = walk = controller.walk
         self.world = World(walk.robot, walk.ground.terrain, walk.rates.physics, (), walk.size)
@@ -52,7 +52,9 @@ class Bench:
 @pytest.mark.parametrize(("robot", "overrides"), ROBOTS)
 def test_a_loop_of_ones_own_is_the_simulation_to_the_bit(robot, overrides):
     bench = Bench("walk", {**overrides, "gait.steps": 1})
-    with surefoot.Simulation(surefoot.load("walk", {**overrides, "gait.steps": 1})) as simulation:
+    with surefoot.Simulation(
+        surefoot.load("walk", {"sensing.source": "truth", **overrides, "gait.steps": 1})
+    ) as simulation:
         every = bench.walk.rates.physics // bench.walk.rates.control
         for _ in range(400):
             tick = simulation.step()
@@ -157,7 +159,8 @@ def test_what_another_estimator_reads_is_refused():
 def test_no_simulator_is_loaded_by_a_controller_that_steps():
     code = (
         "import sys, surefoot\n"
-        "c = surefoot.Controller('humanoid100', 'stand'); c.reset(c.posture)\n"
+        "stand = surefoot.load('stand', {'sensing.source': 'truth'})\n"
+        "c = surefoot.Controller('humanoid100', stand); c.reset(c.posture)\n"
         "q = c.posture\n"
         "import numpy as np\n"
         "c.step(surefoot.Measurement.of_state(0.0, q, np.zeros(len(q) - 1)))\n"

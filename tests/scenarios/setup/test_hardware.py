@@ -3,6 +3,7 @@
 import pytest
 import yaml
 
+from surefoot.scenarios.catalogue import CONTROLS, OWN
 from surefoot.scenarios.errors import ScenarioError
 from surefoot.scenarios.file.sensing import SENSOR_KEYS, MotorSettings, Sensing
 from surefoot.scenarios.setup.hardware import Hardware, hardware_problems, sensor_errors
@@ -66,24 +67,63 @@ def test_presets_go_with_the_robot_and_what_is_set_is_meant_as_it_is():
 
 
 def test_no_sensor_key_acts_beside_the_truth():
-    for name in SENSOR_KEYS:
-        value = {"preset": "good", "wrench": "none", "encoder_velocity": False, "encoder_bits": 12}.get(name, 0.01)
+    for name in (name for name in SENSOR_KEYS if name != "preset"):
+        value = {"wrench": "none", "encoder_velocity": False, "encoder_bits": 12}.get(name, 0.01)
         with pytest.raises(ScenarioError) as refused:
-            load("walk", {f"sensing.{name}": value})
+            load("paper-push", {f"sensing.{name}": value})
         assert f"sensing.{name} {value} beside sensing.source truth, which reads no sensor" in str(refused.value)
+
+
+@pytest.mark.parametrize(
+    ("keys", "source"),
+    [
+        ("{}", "truth"),
+        ("{preset: good}", "ekf"),
+        ("{preset: null}", "truth"),
+        ("{preset: cheap, source: truth}", "truth"),
+        ("{source: ekf}", "ekf"),
+    ],
+)
+def test_a_preset_is_read_by_the_own_estimator_unless_a_source_is_named(keys, source):
+    scenario = read_scenario(f"sensing: {keys}\n{ALIVE.replace('=', ': ')}\n", "f.yaml", "f")
+    assert scenario.sensing.source == source
+    # As the log has it, it is said in full, and says the same again.
+    assert read_scenario(resolve(scenario).text, "log", "f").sensing == scenario.sensing
+
+
+def test_the_catalogue_walks_from_good_sensors_and_goes_back_to_the_truth_by_one_key():
+    from surefoot.scenarios.setup.notes import notes
+
+    sensed = {name: load(name).sensing for name in OWN}
+    # Those of the paper have noise and filter of its own.
+    assert {name for name, found in sensed.items() if found.source == "truth"} == {"paper-noise", "paper-push"}
+    assert {found.preset for found in sensed.values()} == {"good", None}
+    assert {load(name).sensing.source for name in CONTROLS} == {"truth"}
+    blind = resolve(load("walk", {"sensing.source": "truth"}))
+    assert "sensing.preset has no effect beside sensing.source truth, which reads no sensor" in notes(blind)
+    assert load("walk", {"sensing.preset": None}).sensing.source == "truth"
+
+
+def test_a_pendulum_has_no_sensors_and_one_note_tells_it():
+    from surefoot.scenarios.setup.notes import notes
+
+    told = [note for note in notes(resolve(load("walk", {"fidelity": "pendulum"}))) if "sensing" in note]
+    assert told == ["sensing.preset has no effect on a pendulum"]
+    alone = resolve(load("paper-walk", {"fidelity": "pendulum", "sensing": {"source": "ekf"}}))
+    assert "sensing.source has no effect on a pendulum" in notes(alone)
 
 
 def test_zeros_of_earlier_logs_are_taken():
     """Their scenarios have every key that was not null with its default."""
     kept = ("encoder_noise", "gyro_noise", "accelerometer_noise", "wrench_noise", "latency")
-    scenario = load("walk", {f"sensing.{name}": 0.0 for name in kept})
+    scenario = load("walk", {"sensing": dict.fromkeys(kept, 0.0)})
     assert resolve(scenario).hardware == Hardware(PERFECT, IDEAL)
     with pytest.raises(ScenarioError):
-        load("walk", {"sensing.gyro_bias": 0.0})
+        load("walk", {"sensing": {"gyro_bias": 0.0}})
 
 
 def test_scenarios_without_these_keys_say_nothing_of_them():
-    written = yaml.safe_load(resolve(load("walk")).text)
+    written = yaml.safe_load(resolve(load("walk", {"sensing": {}})).text)
     assert set(written["sensing"]) == {"source", "zmp_noise", "com_noise", "force_estimate"}
     assert "motors" not in written
     assert not {"torso_mass", "ground_pitch", "ground_roll"} & set(written["errors"])

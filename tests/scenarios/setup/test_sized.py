@@ -137,7 +137,14 @@ def test_for_its_own_robot_nothing_changes(name, monkeypatch):
 
 
 def test_a_log_of_another_robot_runs_again(tmp_path):
-    short = ("robot=small", "fidelity=pendulum", "gait.steps=1", "gait.initial_stand=0.05", "duration=0.3")
+    short = (
+        "sensing={}",
+        "robot=small",
+        "fidelity=pendulum",
+        "gait.steps=1",
+        "gait.initial_stand=0.05",
+        "duration=0.3",
+    )
     original = load("diagonal-walk", short)
     log = run_scenario(original, tmp_path).log
     assert load(str(log)) == original

@@ -75,7 +75,7 @@ def test_the_pendulum_has_the_true_mass(setting, mass, tmp_path):
 
 
 def test_what_a_pendulum_does_not_feel_is_told():
-    settings = ("errors.torso_com=[0.01, 0, 0]", "errors.link_mass_noise=0.1", "errors.payload={mass: 6}")
+    settings = ("sensing={}", "errors.torso_com=[0.01, 0, 0]", "errors.link_mass_noise=0.1", "errors.payload={mass: 6}")
     told = [note for note in notes(Walk(load("walk", [*settings, *POINT]))) if "no effect" in note]
     assert told == ["errors.torso_com has no effect on a pendulum"]
 

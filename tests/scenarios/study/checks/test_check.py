@@ -444,6 +444,14 @@ def test_a_baseline_is_read_as_it_was_written(kept):
         np.testing.assert_array_equal(again.trace.values[name], samples)
 
 
+def test_a_metric_of_parts_is_read_as_it_was_written(kept):
+    """Those of an estimator, which a walk from the truth has not got."""
+    case, baseline = kept
+    parts = {"com": 1.0, "com_velocity": 2.0, "tilt": 3.0, "sole_height": 4.0}
+    write_baseline(case.baseline, replace(baseline, metrics={**baseline.metrics, "estimation_nees": parts}))
+    assert list(read_baseline(case.baseline).metrics["estimation_nees"].items()) == list(parts.items())
+
+
 def test_every_baseline_of_the_catalogue_holds_all_that_is_compared():
     every = [case for case in cases([]) if case.baseline.exists()]
     assert len(every) > 20

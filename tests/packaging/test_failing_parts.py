@@ -206,7 +206,10 @@ RAISED = {
         *(("planner", how, POINT) for how in ("leaves", "none")),
         *(("task", how, SHORT) for how in ("leaves", "lazily", "short", "nan")),
         *(("estimator", how, SHORT) for how in ("leaves", "short", "nan")),
-        *(("plant", how, SHORT) for how in ("leaves", "root", "mute", "deep", "none", "short", "nan")),
+        *(
+            ("plant", how, (*SHORT, "sensing.source=truth"))
+            for how in ("leaves", "root", "mute", "deep", "none", "short", "nan")
+        ),
     ],
 )
 def test_in_a_run_it_is_the_reason_with_its_authors_line(hop, at_hand, tmp_path, part, how, keys):

@@ -30,7 +30,7 @@ def test_a_campaign_with_it_walks_in_other_processes(documented, tmp_path):
     spec = tmp_path / "spec.yaml"
     spec.write_text(
         "about: two plants\nscenario: walk\n"
-        "set: {plant.name: finer, gait.steps: 1, duration: 0.5, criteria: {fell: false}}\n"
+        "set: {plant.name: finer, sensing.source: truth, gait.steps: 1, duration: 0.5, criteria: {fell: false}}\n"
         "grid:\n  plant:\n    coarse: {plant.options.refined: 1}\n    fine: {plant.options.refined: 3}\n"
     )
     done = documented.run("sweep", str(spec), "--jobs", "2", "--out", str(tmp_path / "swept"))

@@ -28,7 +28,7 @@ def arms(robot, **keys):
 @pytest.mark.parametrize("told", [True, False])
 def test_it_walks_with_arms_that_are_moved_at_random(robot, told):
     keys = arms(robot, driven_motion=0.06, driven_told=told)
-    with surefoot.Simulation(load("walk", {**keys, "gait.steps": 2})) as simulation:
+    with surefoot.Simulation(load("walk", {**keys, "gait.steps": 2, "sensing.source": "truth"})) as simulation:
         q = [simulation.step().measurement.q[7:]]
         while not simulation.done:
             simulation.advance()
@@ -70,7 +70,8 @@ def test_what_cannot_be_is_refused(keys, told):
 
 def test_a_controller_is_told_what_drives_them():
     keys = ControlSettings.model_validate(arms("humanoid100")["control"])
-    controller = surefoot.Controller("humanoid100", "stand", control=keys.model_dump(exclude_none=True))
+    stand = load("stand", {"sensing.source": "truth"})
+    controller = surefoot.Controller("humanoid100", stand, control=keys.model_dump(exclude_none=True))
     q = controller.posture
     controller.reset(q)
     seen = surefoot.Measurement.of_state(0.0, q, np.zeros(len(q) - 1))

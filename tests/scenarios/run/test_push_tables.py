@@ -28,7 +28,11 @@ SURVIVED = {
     },
     "gait.initial_stand": 0.4,
     "start.position_noise": 0.0005,
+    "sensing.source": "truth",
 }
+SENSED = {"good": 0.95, "cheap": 0.85}
+"""What is survived from sensors of a preset, as a share of what is survived with the true state."""
+
 FEET = {"robot_options": {"foot_length": 0.22, "foot_width": 0.11}}
 GAIT = {"gait.single_support": 0.5, "gait.double_support": 0.12, "gait.com_height": 0.95}
 NATURAL = ("walk", {**GAIT, "gait.steps": 7, "gait.step_length": 0.36, "duration": 9.0})
@@ -101,6 +105,22 @@ def test_natural_gait(phase: str, direction: str, impulse: float, tmp_path: Path
 @pytest.mark.parametrize(("phase", "direction"), list(product(PHASES, DIRECTIONS)))
 def test_the_papers_gait(phase: str, direction: str, rung: int, tmp_path: Path) -> None:
     assert_survives(PAPER, tmp_path, push(3, phase, PAPER_IMPULSES[direction][rung], direction))
+
+
+@pytest.mark.parametrize("seed", range(3))
+@pytest.mark.parametrize("preset", SENSED)
+@pytest.mark.parametrize("name", ["natural", "paper"])
+@pytest.mark.parametrize(("phase", "direction"), list(product(PHASES, DIRECTIONS)))
+def test_from_sensors(name: str, phase: str, direction: str, preset: str, seed: int, tmp_path: Path) -> None:
+    walk, keys = NATURAL if name == "natural" else PAPER
+    most = dict(zip(DIRECTIONS, NATURAL_GOALS[phase], strict=True)) if name == "natural" else _most_of_paper()
+    sensing = {"sensing.source": "ekf", "sensing.preset": preset, "seed": seed}
+    impulse = round(SENSED[preset] * most[direction], 4)
+    assert_survives((walk, {**keys, **sensing}), tmp_path, push(3, phase, impulse, direction))
+
+
+def _most_of_paper() -> dict[str, float]:
+    return {direction: rungs[-1] for direction, rungs in PAPER_IMPULSES.items()}
 
 
 @pytest.mark.parametrize("eighth", range(8))

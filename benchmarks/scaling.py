@@ -88,7 +88,7 @@ def robots(quick: bool) -> Section:
                 start = time.perf_counter()
                 loop.step()
                 spent.append(time.perf_counter() - start)
-        joints = loop.walker.world.model.nv - 6
+        joints = loop.walker.plant.model.nv - 6
         rows.append((name, joints, *microseconds(spent, 50, 99), 1e6 * float(np.mean(spent))))
     ratios = {f"{row[0]} over {ROBOTS[0]}": float(row[-1] or 0) / float(rows[0][-1] or 1) for row in rows[1:]}
     columns = ("robot", "joints", "median us", "p99 us", "mean us")

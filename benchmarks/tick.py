@@ -37,9 +37,9 @@ def parts(quick: bool) -> Section:
         for number, spent in enumerate(walk.ticks(Path(folder, "parts.mcap"))):
             ticks.append(spent)
             if number % 25 == 0:
-                data = walk.loop.walker.world.data
+                data = walk.loop.walker.plant.data
                 states.append((data.qpos.copy(), data.qvel.copy(), data.ctrl.copy()))
-    model = walk.loop.walker.world.model
+    model = walk.loop.walker.plant.model
     steps = round(1.0 / (walk.rate * model.opt.timestep))
     floor = _floor(model, states, steps)
     mean = 1e6 * float(np.mean(ticks))

@@ -23,7 +23,9 @@ def checked(tmp_path_factory, distributions):
     with zipfile.ZipFile(distributions[0]) as archive:
         archive.extractall(site)
     (site / "others.pth").write_text(f"{sysconfig.get_path('purelib')}\n")
-    (home / "mypy.ini").write_text("[mypy]\nstrict = true\n[mypy-pinocchio.*]\nignore_missing_imports = true\n")
+    (home / "mypy.ini").write_text(
+        "[mypy]\nstrict = true\n[mypy-mujoco.*,pinocchio.*]\nignore_missing_imports = true\n"
+    )
     settings = ["--config-file", str(home / "mypy.ini"), "--cache-dir", str(home / "cache")]
     command = [sys.executable, "-m", "mypy", *settings, "--python-executable", str(home / "env" / "bin" / "python")]
 

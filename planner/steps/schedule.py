@@ -33,7 +33,6 @@ _MORE_STEPS = 3
 _STOP_AHEAD = 4
 """Phases, with the present one, within which a stand is the end of the step that is being made [-]."""
 
-
 _LAID_OUT = 120.0
 """Time of a walk on bare ground whose steps are laid before it begins; a minute of them takes some milliseconds [s]."""
 

@@ -1,10 +1,15 @@
 """YAML that a program has written, as the scenario in a log; libyaml, where it is there, reads it ten times as fast."""
 
-from functools import cache
+import json
+from functools import cache, lru_cache
+from typing import TYPE_CHECKING
 
 import yaml
 
 from surefoot.scenarios.file.source import MAX_VALUES, Composer, Reader, Source, parse
+
+if TYPE_CHECKING:
+    from surefoot.scenarios.file.schema import Scenario
 
 
 def parse_dumped(text: str, name: str) -> Source:
@@ -35,3 +40,15 @@ def _composer() -> type[Composer]:
             self.most = most_values
 
     return Quick
+
+
+def scenario_yaml(scenario: "Scenario") -> str:
+    """The scenario as run: every key with its value, but for those left null."""
+    groups = scenario.model_dump(mode="json", exclude_none=True)
+    return "".join(_group_yaml(name, json.dumps(group)) for name, group in groups.items())
+
+
+@lru_cache(maxsize=256)
+def _group_yaml(name: str, group: str) -> str:
+    """A key with its group, given as JSON: most are the same from run to run of a campaign."""
+    return yaml.safe_dump({name: json.loads(group)}, sort_keys=False)

@@ -1,14 +1,11 @@
 """What a scenario means, each part derived once, in the terms of the layers below; nobody there sees a scenario."""
 
-import json
 import math
 from collections.abc import Mapping
 from dataclasses import field, replace
-from functools import cached_property, lru_cache
+from functools import cached_property
 from operator import index
 from typing import TYPE_CHECKING, Any
-
-import yaml
 
 from surefoot.forces import Push
 from surefoot.models.facts import RobotFacts, facts_of, size_of, stance_widening
@@ -23,6 +20,7 @@ from surefoot.planner.swing.leg_reach import LegReach
 from surefoot.planner.swing.step_region import StepRegion
 from surefoot.planner.types import FeetState, Twist
 from surefoot.scenarios.file.control import ControlSettings
+from surefoot.scenarios.file.dumped import scenario_yaml
 from surefoot.scenarios.file.group import controller_parameters
 from surefoot.scenarios.file.schema import Fault, PendulumSettings, PushSettings, Rates, Scenario, Start
 from surefoot.scenarios.file.sensing import Sensing
@@ -340,15 +338,3 @@ def resolve(scenario: Scenario, robot: "RobotDescription | None" = None, profile
             if isinstance(part, cached_property):
                 getattr(room, name)
     return walk
-
-
-def scenario_yaml(scenario: Scenario) -> str:
-    """The scenario as run: every key with its value, but for those left null."""
-    groups = scenario.model_dump(mode="json", exclude_none=True)
-    return "".join(_group_yaml(name, json.dumps(group)) for name, group in groups.items())
-
-
-@lru_cache(maxsize=256)
-def _group_yaml(name: str, group: str) -> str:
-    """A key with its group, given as JSON: most are the same from run to run of a campaign."""
-    return yaml.safe_dump({name: json.loads(group)}, sort_keys=False)

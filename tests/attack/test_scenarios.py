@@ -10,10 +10,11 @@ import pytest
 from mutations import TEXTS, text_of, trial
 
 from surefoot.scenarios.errors import LONGEST_SENTENCE, ScenarioError
+from surefoot.scenarios.file.dumped import scenario_yaml
 from surefoot.scenarios.file.schema import Scenario
 from surefoot.scenarios.setup.load import load, read_scenario
 from surefoot.scenarios.setup.robot import Robots
-from surefoot.scenarios.setup.walk import Walk, scenario_yaml
+from surefoot.scenarios.setup.walk import Walk
 
 MOST_LINES = 25
 

@@ -7,10 +7,10 @@ import yaml
 
 from surefoot.scenarios import catalogue
 from surefoot.scenarios.errors import ScenarioError
+from surefoot.scenarios.file.dumped import scenario_yaml
 from surefoot.scenarios.file.schema import Scenario
 from surefoot.scenarios.setup.load import load as load_scenario
 from surefoot.scenarios.setup.load import read_scenario
-from surefoot.scenarios.setup.walk import scenario_yaml
 
 pytestmark = pytest.mark.unit
 

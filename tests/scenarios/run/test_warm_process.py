@@ -12,14 +12,14 @@ from surefoot.models.registry import describe
 from surefoot.models.types import RobotOptions
 from surefoot.planner.ground.terrain import flat
 from surefoot.scenarios import catalogue
-from surefoot.scenarios.file.dumped import parse_dumped
+from surefoot.scenarios.file.dumped import parse_dumped, scenario_yaml
 from surefoot.scenarios.file.source import apply_overrides, parse
 from surefoot.scenarios.run.run import one_thread
 from surefoot.scenarios.setup import feasible
 from surefoot.scenarios.setup.feasible import made_ready
 from surefoot.scenarios.setup.load import load
 from surefoot.scenarios.setup.stance import body_of
-from surefoot.scenarios.setup.walk import resolve, scenario_yaml
+from surefoot.scenarios.setup.walk import resolve
 from surefoot.sim.world import World
 
 pytestmark = pytest.mark.unit

@@ -11,9 +11,10 @@ from surefoot.planner.parameters import LegInertia
 from surefoot.planner.steps.footsteps import plan_footsteps
 from surefoot.planner.types import Foot
 from surefoot.scenarios.errors import ScenarioError
+from surefoot.scenarios.file.dumped import scenario_yaml
 from surefoot.scenarios.setup.load import read_scenario
 from surefoot.scenarios.setup.notes import notes
-from surefoot.scenarios.setup.walk import Walk, resolve, scenario_yaml
+from surefoot.scenarios.setup.walk import Walk, resolve
 
 pytestmark = pytest.mark.unit
 

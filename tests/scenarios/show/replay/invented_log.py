@@ -8,12 +8,13 @@ from scipy.spatial.transform import Rotation
 from surefoot.models.registry import describe
 from surefoot.models.types import RobotOptions
 from surefoot.planner.ground.terrain import flat
+from surefoot.scenarios.file.dumped import scenario_yaml
 from surefoot.scenarios.file.schema import Scenario
 from surefoot.scenarios.log import AttachedFile, LogWriter
 from surefoot.scenarios.record import channels
 from surefoot.scenarios.record.provenance import RECORD, SCENARIO_FILE, WORLD_FILE
 from surefoot.scenarios.run.run import run_constants
-from surefoot.scenarios.setup.walk import resolve, scenario_yaml
+from surefoot.scenarios.setup.walk import resolve
 from surefoot.sim.world import World
 
 RATE = 500

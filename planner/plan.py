@@ -24,7 +24,7 @@ from surefoot.planner.types import (
     PhaseKind,
     PlanStatus,
 )
-from surefoot.values import dataclass
+from surefoot.values import dataclass, opened
 
 
 @dataclass(frozen=True, slots=True)
@@ -166,12 +166,10 @@ class PlanSample:
     @classmethod
     def of_point(cls, time: float, point: Array, contacts: tuple[bool, bool], swing_foot: Foot | None) -> "PlanSample":
         """A sample out of the numbers of the kernel, shape (POINT,), which become fields when they are first read."""
-        sample = cls.__new__(cls)
-        _put(sample, "time", time)
-        _put(sample, "contacts", contacts)
-        _put(sample, "swing_foot", swing_foot)
-        _put(sample, "point", point)
-        return sample
+        sample = _OpenSample()
+        sample.time, sample.contacts, sample.swing_foot, sample.point = time, contacts, swing_foot, point
+        sample.__class__ = cls
+        return sample  # type: ignore[no-any-return]
 
     if not TYPE_CHECKING:
 
@@ -191,6 +189,9 @@ class PlanSample:
         return replace(
             middle, com=self.com, com_velocity=self.com_velocity, swing=self.swing, swing_velocity=self.swing_velocity
         )
+
+
+_OpenSample = opened(PlanSample)
 
 
 class PlanSampler:

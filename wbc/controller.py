@@ -47,6 +47,9 @@ FADE, FADE_DAMPING = 0.05, 0.02
 [s/rad]."""
 
 
+_SOLVED = SolveStatus.SOLVED  # a member is looked up by its name at each access
+
+
 @dataclass(frozen=True, slots=True)
 class Sole:
     """The sole's contact.
@@ -220,20 +223,24 @@ class WholeBodyController:
         status, solution = self.solve(qp, fail_solvers)
         answer = self.interpret(self.terms, solution)
         solved = time.perf_counter()
+        iterations, violation, dual = 0, math.inf, math.nan
+        if solution is not None:
+            iterations, violation, dual = solution.iterations, solution.violation, solution.dual_residual
+        # By position: to match words with parameters takes as long as all else of it.
         return WbcReport(
-            torque=answer.torque,
-            status=status,
-            iterations=solution.iterations if solution else 0,
-            primal_residual=solution.violation if solution else math.inf,
-            dual_residual=solution.dual_residual if solution else math.nan,
-            acceleration=answer.acceleration,
-            wrench=answer.wrench,
-            active=contacts.active,
-            felt=contacts.felt,
-            task_error=answer.task_error,
-            build_time=built - start,
-            solve_time=solved - built,
-            load=self.terms.load,
+            answer.torque,
+            status,
+            iterations,
+            violation,
+            dual,
+            answer.acceleration,
+            answer.wrench,
+            contacts.active,
+            contacts.felt,
+            answer.task_error,
+            built - start,
+            solved - built,
+            self.terms.load,
         )
 
     def build(self, terms: RobotTerms, reference: WbcReference, contacts: ContactState) -> QpData:
@@ -264,10 +271,13 @@ class WholeBodyController:
     def solve(self, qp: QpData, fail_solvers: bool = False) -> tuple[SolveStatus, QpSolution | None]:
         """A solution by the first solver whose answer holds, else by the equalities alone; None if there is none."""
         if not fail_solvers:
-            for status, solver in zip((SolveStatus.SOLVED, SolveStatus.SECOND_SOLVER), self._solvers, strict=True):
-                solution = solver.solve(qp)
-                if solution is not None and solution.violation <= ACCEPTED_VIOLATION:
-                    return status, solution
+            first, second = self._solvers
+            solution = first.solve(qp)
+            if solution is not None and solution.violation <= ACCEPTED_VIOLATION:
+                return _SOLVED, solution
+            solution = second.solve(qp)
+            if solution is not None and solution.violation <= ACCEPTED_VIOLATION:
+                return SolveStatus.SECOND_SOLVER, solution
         solution = equalities_only(qp)
         return (SolveStatus.HELD if solution is None else SolveStatus.EQUALITIES_ONLY), solution
 
@@ -283,7 +293,7 @@ class WholeBodyController:
         if self._tick is None or terms is not self.terms:
             self._read(terms, solution.x)
         else:
-            np.copyto(self._x, solution.x)
+            self._x[...] = solution.x
             self._read_compiled()
         for foot, to_sole in self._seen:
             answer.wrench[foot] = to_sole @ answer.wrench[foot]

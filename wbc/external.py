@@ -166,7 +166,7 @@ class LoadObserver:
         if self._count == 0:
             self._begin()
             return self.load
-        np.copyto(self._wrench, wrench)
+        self._wrench[...] = wrench
         add()
         if self._count == self._ticks:
             self._count = 0

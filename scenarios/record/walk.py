@@ -4,6 +4,7 @@ import math
 import os
 from collections.abc import Callable
 from operator import attrgetter
+from typing import NamedTuple
 
 import numpy as np
 from numpy.typing import NDArray
@@ -51,8 +52,7 @@ _FOOTSTEPS = ("current_left", "current_right", "next", "next_foot", "touchdown_t
 _NO_FOOTSTEP = (math.nan,) * 4
 
 
-@dataclass(frozen=True, slots=True)
-class TickTiming:
+class TickTiming(NamedTuple):
     """Wall-clock time of the parts of one control tick, and the controller's processor time [s]."""
 
     state: float
@@ -99,9 +99,7 @@ class WalkRecorder:
         self._footstep = writer.channel(channels.footstep(sizes))
         self._command = writer.channel(channels.command(sizes))
         timing = writer.channel(channels.timing(sizes))
-        parts = [field.name for field in timing.spec.fields]
-        self._timing = writer.rows(RowLayout((), ((timing, parts),)))
-        self._parts: Callable[[TickTiming], tuple[float, ...]] = attrgetter(*parts)
+        self._timing = writer.rows(RowLayout((), ((timing, TickTiming._fields),)))
         self._process = writer.channel(channels.process(sizes))
         self._looked = -1
         self._support = np.zeros((SUPPORT_VERTICES, 2))
@@ -184,7 +182,11 @@ class WalkRecorder:
 
     def timing(self, time_ns: int, timing: TickTiming) -> None:
         """Wall-clock times of the tick, and once a simulated second the state of the process."""
-        self._timing.append(time_ns, tuple([1e6 * part for part in self._parts(timing)]))
+        state, build, solve, plan, physics, log, tick, busy = timing
+        self._timing.append(
+            time_ns,
+            (1e6 * state, 1e6 * build, 1e6 * solve, 1e6 * plan, 1e6 * physics, 1e6 * log, 1e6 * tick, 1e6 * busy),
+        )
         second = time_ns // 1_000_000_000
         if second != self._looked:
             self._looked = second

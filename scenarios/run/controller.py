@@ -217,7 +217,7 @@ class Controller:
             self.wrench = self._inferred(readings, state, passed)
         if self._faults is not None and self._faults.active("state_nan", self.planning.tick(now)):
             state = RobotState(np.full_like(state.q, np.nan), state.v)
-        if not math.isfinite(np.dot(state.q, state.q) + np.dot(state.v, state.v)):
+        if not math.isfinite(state.q.dot(state.q) + state.v.dot(state.v)):
             raise RunFault(f"the measured state is not finite at {now:.3f} s")
         self.state = state
         self.terms: RobotTerms = self.whole_body.observe(state)

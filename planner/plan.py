@@ -191,7 +191,7 @@ class PlanSample:
         )
 
 
-_OpenSample = opened(PlanSample)
+_OpenSample, _of_point = opened(PlanSample), PlanSample.of_point
 
 
 class PlanSampler:
@@ -218,6 +218,7 @@ class PlanSampler:
         self._touchdown = np.inf if plan.swing is None else plan.swing.touchdown_time - TOUCHING
         single = plan.phase.kind is PhaseKind.SINGLE
         self._lands = plan.time + plan.phase.left - TOUCHING if single else np.inf
+        self._begin, self._length = plan.time, plan.sample_time
         self._start = plan.time
         self._table = np.zeros((6, COLUMNS))
         self._contacts = (True, True)
@@ -267,18 +268,21 @@ class PlanSampler:
             return sample, sample.until(self.sample(middle))
         if now != self._entered:
             self._enter(*now)
-        at, over = self._kernel.sample(self._local(time), self._local(middle))
-        foot = self._swing_foot
+        points, foot, of_point = (
+            self._kernel.sample(self._local(time), self._local(middle)),
+            self._swing_foot,
+            _of_point,
+        )
         return (
-            PlanSample.of_point(time, at, self._contacts_at(time), foot),
-            PlanSample.of_point(middle, over, self._contacts_at(middle), foot),
+            of_point(time, points[0], self._contacts_at(time), foot),
+            of_point(middle, points[1], self._contacts_at(middle), foot),
         )
 
     def _place(self, time: float) -> tuple[int, bool]:
         """The interval of an instant, and whether the swing foot has landed by then."""
-        plan = self.plan
-        interval = int((time - plan.time) / plan.sample_time + 1e-6)
-        return 0 if interval < 0 else min(interval, self._last), time >= self._touchdown
+        interval = int((time - self._begin) / self._length + 1e-6)
+        last = self._last
+        return 0 if interval < 0 else last if interval > last else interval, time >= self._touchdown
 
     def _go_to(self, time: float) -> None:
         place = self._place(time)
@@ -287,7 +291,8 @@ class PlanSampler:
 
     def _local(self, time: float) -> float:
         """Time since the begin of the interval [s]."""
-        return min(max(time - self._start, 0.0), self.plan.sample_time)
+        passed, length = time - self._start, self._length
+        return 0.0 if passed < 0.0 else length if passed > length else passed
 
     def _contacts_at(self, time: float) -> tuple[bool, bool]:
         return self._contacts if time < self._lands or self._entered[0] else (True, True)

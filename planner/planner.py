@@ -207,6 +207,8 @@ class WalkingPlanner:
     def _unsure(state: CentroidalState, window: Window) -> float:
         """Two standard deviations of the DCM [m]."""
         com, velocity = state.deviation
+        if not com and not velocity:
+            return 0.0
         return 2.0 * math.hypot(com, velocity / float(window.omega[0]))
 
     def _sight(self, state: CentroidalState) -> tuple[Support, Array, Window]:

@@ -64,7 +64,8 @@ class CompiledPreview:
         shapes |= dict.fromkeys(("ground", "load_left", "stiffness", "softened"), (reach,))
         whole = ("which", "kind", "index", "contacts")
         self._layout = np.dtype([(k, np.int64 if k in whole else np.float64, shape) for k, shape in shapes.items()])
-        self._made, self._course = np.zeros(1, self._layout), np.zeros(9)
+        self._memory, self._course = np.zeros(self._layout.itemsize, np.uint8), np.zeros(9)
+        self._made = np.ndarray((), self._layout, self._memory)
         # A subclass may have a height of its own.
         own = getattr(type(profile), "height", None) is SmoothHeight.height
         self._smooth = cast(SmoothHeight, profile) if own else None
@@ -85,7 +86,7 @@ class CompiledPreview:
             softening=softening,
             looked_at=len(LOOKED_AT),
             course=self._course,
-            **{name: self._made[name][0] for name in self._layout.names or ()},
+            **{name: self._made[name] for name in self._layout.names or ()},
         )
         self._look, self._weigh, self.soonest_calm = (
             kernels.bind(name, self._bound) for name in ("preview_look", "preview_weigh", "preview_transition")
@@ -102,7 +103,7 @@ class CompiledPreview:
         if not steady:
             self._course[:] = clock.begun, clock.elapsed, clock.length, *clock.coefficients
         self._look(steady, clock.now, self._smooth is not None)
-        height = self._made["height"][0]
+        height = self._made["height"]
         if self._smooth is None:
             samples = self._samples(execution, self._copy())
             np.copyto(height, self._profile.height(self._gait, samples, support.heights)[:, 1:-1])
@@ -142,7 +143,7 @@ class CompiledPreview:
 
     def _copy(self) -> Any:
         """What the kernels have made, by name, in memory of its own."""
-        return self._made.view(np.uint8).copy().view(self._layout).reshape(())
+        return np.ndarray((), self._layout, self._memory.copy())
 
     def _samples(self, execution: Execution, made: Any) -> PhaseSamples:
         return PhaseSamples(

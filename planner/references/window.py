@@ -10,6 +10,7 @@ from numpy.typing import NDArray
 
 from surefoot.forces import ExternalLoad
 from surefoot.native.library import library
+from surefoot.planner.geometry import greatest
 from surefoot.planner.model.dcm import natural_frequency
 from surefoot.planner.model.time_scaling import Course, TimeScaling
 from surefoot.planner.parameters import PlannerParameters
@@ -64,7 +65,7 @@ class OffsetTable:
             return False
         if aim is None or self.aim is None:
             return aim is self.aim
-        return bool(np.abs(aim - self.aim).max() <= apart)
+        return bool(greatest(np.abs(aim - self.aim)) <= apart)
 
     def guess(self, ticks: int, key: SupportKey, count: int) -> Array | None:
         """About what the next one will be, shape (count, 2) [m]; None where the last one tells nothing of it."""

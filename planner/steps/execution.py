@@ -5,7 +5,7 @@ from dataclasses import replace
 
 import numpy as np
 
-from surefoot.planner.geometry import sole_pose, wrap_angle
+from surefoot.planner.geometry import greatest, sole_pose, wrap_angle
 from surefoot.planner.model.time_scaling import CLOCK_ROUNDING, TimeScaling
 from surefoot.planner.steps.adaptation import aligned, with_heel_lifted
 from surefoot.planner.steps.gait import GaitParameters
@@ -87,10 +87,15 @@ class Execution:
     def info(self) -> PhaseInfo:
         """The phase now, in seconds."""
         phase, t = self.phase, self._parameters.sample_time
-        follows = phase if phase.stance is not None else self.schedule.phase(phase.end)
-        leads_to = follows.step if follows.stance is not None else 0
         elapsed, duration = (self.clock.now - phase.start) * t, phase.samples * t
-        return PhaseInfo(phase.kind, phase.stance, phase.step, elapsed, duration, leads_to, self.time_left)
+        return PhaseInfo(phase.kind, phase.stance, phase.step, elapsed, duration, self.leads_to, self.time_left)
+
+    @property
+    def leads_to(self) -> int:
+        """As of `PhaseInfo`."""
+        phase = self.phase
+        follows = phase if phase.stance is not None else self.schedule.phase(phase.end)
+        return follows.step if follows.stance is not None else 0
 
     @property
     def left(self) -> float:
@@ -257,7 +262,7 @@ class Execution:
             self.swing = start_swing(foot, pose, target, time, self.left, course, self._parameters, unsure)
         else:
             target[2] -= self.swing.aim
-            if not (self.fixed or held) and (np.abs(target - self.swing.target) / self._pose).max() > _SAME_TARGET:
+            if not (self.fixed or held) and greatest(np.abs(target - self.swing.target) / self._pose) > _SAME_TARGET:
                 # Over edges the foot keeps to the times in which its course clears them.
                 gliding = self.adapted and self._wide
                 self.swing = self.swing.retargeted(time, target, gliding, LEAST_GLIDE * self._size.time)

@@ -84,6 +84,8 @@ class ChannelWriter(Waiting):
         self._names = tuple(field.name for field in spec.fields)
         self._records = blank_records(spec.fields, channel_id, capacity)
         self._views: tuple[NDArray[np.generic], ...] = tuple(self._records[name] for name in self._names)
+        self._stamps = tuple(self._records[name] for name in ("_log_time", "_stamp", "_publish_time"))
+        self._sequence = self._records["_sequence"]
         self._bytes = self._records.view(np.uint8).reshape(capacity, -1)
         self._offsets = np.arange(capacity, dtype=np.uint64) * np.uint64(self._records.dtype.itemsize)
 
@@ -180,12 +182,12 @@ class ChannelWriter(Waiting):
 
     def take(self, offset: int) -> tuple[memoryview, bytes]:
         """See `Waiting`."""
-        n, records = self.count, self._records
-        stamps = records["_log_time"][:n] if self._stamped else np.array(self.times, np.uint64)
+        n, stamps = self.count, self._stamps[0][: self.count]
         if not self._stamped:
-            for name in ("_stamp", "_log_time", "_publish_time"):
-                records[name][:n] = stamps
-            records["_sequence"][:n] = np.arange(self.total, self.total + n)
+            times = np.array(self.times, np.uint64)
+            for view in self._stamps:
+                view[:n] = times
+            self._sequence[:n] = np.arange(self.total, self.total + n)
         self._stamped = False
         self.total += n
         self.drop()

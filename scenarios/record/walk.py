@@ -10,7 +10,7 @@ import numpy as np
 from numpy.typing import NDArray
 
 from surefoot.native.library import library
-from surefoot.planner.geometry import frame_rotation
+from surefoot.planner.geometry import frame_rotation, greatest
 from surefoot.planner.plan import PlanSample, WalkPlan
 from surefoot.planner.plan_kernel import POINT
 from surefoot.planner.steps.commands import Command
@@ -120,7 +120,7 @@ class WalkRecorder:
     def plan(self, time_ns: int, plan: WalkPlan) -> None:
         """A new plan with its horizon and footsteps."""
         status, balance = plan.status, plan.balance
-        slack, held = (status.zmp_slack.max(), status.terminal_slack.max()), status.solver is SolverStatus.HELD
+        slack, held = (greatest(status.zmp_slack), greatest(status.terminal_slack)), status.solver is SolverStatus.HELD
         self._plan(time_ns, plan, slack, held, (balance.planned, balance.movable))
         ahead = [*plan.footsteps, *[None] * (3 - len(plan.footsteps))]
         self._footsteps(

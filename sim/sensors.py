@@ -55,7 +55,7 @@ class SensorReader:
         self._wrench, self._push = np.zeros((2, 6)), np.zeros(3)
         q, v = _read_only(self._q), _read_only(self._v)
         torque, *rest = map(_read_only, (self._torque, self._accelerometer, self._wrench))
-        self._views: tuple[Any, ...] = q[7:], v[6:], torque, v[3:6], *rest, q, v, _read_only(self._push)
+        self._views: Any = q[7:], v[6:], torque, v[3:6], *rest, q, v, _read_only(self._push)
         """Of a measurement, from the joints' positions to the push."""
 
     def read(self, time: float, pushes: PushSchedule) -> Measurement:

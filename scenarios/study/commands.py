@@ -2,7 +2,7 @@
 
 import json
 from pathlib import Path
-from typing import Annotated, Literal
+from typing import Annotated
 
 import typer
 
@@ -126,6 +126,15 @@ def check(told: CheckOptions) -> None:
     raise typer.Exit(checking.exit_code(found))
 
 
+BENCHES = ("g1-tour",)
+"""Benchmarks, by name."""
+
+
+def _benches_from(incomplete: str) -> list[str]:
+    """Benchmarks that begin so."""
+    return [name for name in BENCHES if name.startswith(incomplete)]
+
+
 def _rows_from(incomplete: str) -> list[str]:
     """Rows of the tour that begin so."""
     from surefoot.scenarios.study.tour.rows import ROWS
@@ -137,7 +146,7 @@ def _rows_from(incomplete: str) -> list[str]:
 class BenchOptions:
     """What `surefoot bench` is told."""
 
-    name: Annotated[Literal["g1-tour"], typer.Argument(help="Of the benchmark.")]
+    name: Annotated[str, typer.Argument(help="Of the benchmark: g1-tour.", autocompletion=_benches_from)]
     row: Annotated[
         list[str] | None, typer.Option(help="This row alone; repeatable, all by default.", autocompletion=_rows_from)
     ] = None
@@ -161,6 +170,8 @@ def bench(told: BenchOptions) -> None:
         from surefoot.scenarios.study.tour.bench import Bench, lines
         from surefoot.scenarios.study.tour.rows import ROWS
 
+    if told.name not in BENCHES:
+        raise ScenarioError([f"there is no benchmark '{told.name}'; {nearest(told.name, BENCHES)}"])
     for name in told.row or ():
         if name not in ROWS:
             raise ScenarioError([f"{told.name}: no row '{name}'; {nearest(name, ROWS)}"])

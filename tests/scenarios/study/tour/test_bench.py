@@ -3,7 +3,9 @@
 import json
 
 import pytest
+from typer.testing import CliRunner
 
+from surefoot.scenarios.apps.cli import app
 from surefoot.scenarios.errors import ScenarioError
 from surefoot.scenarios.study.tour import bench as module
 from surefoot.scenarios.study.tour.bench import Bench, lines
@@ -59,14 +61,17 @@ def test_the_result_is_whole_and_tells_what_it_is(ran, tmp_path):
     assert "11.5" in text and "gr00t_wbc" in text and told["note"] in text
 
 
-def test_a_row_that_is_not_there_is_refused(cli_error=ScenarioError):
-    from typer.testing import CliRunner
-
-    from surefoot.scenarios.apps.cli import app
-
-    done = CliRunner().invoke(app, ["bench", "g1-tour", "--row", "torqe"])
-    assert isinstance(done.exception, cli_error)
-    assert "no row 'torqe'; did you mean 'torque'?" in str(done.exception)
+@pytest.mark.parametrize(
+    ("words", "told"),
+    [
+        (["g1-tour", "--row", "torqe"], "g1-tour: no row 'torqe'; did you mean 'torque'?"),
+        (["g1-tours"], "there is no benchmark 'g1-tours'; did you mean 'g1-tour'?"),
+    ],
+)
+def test_what_is_not_there_is_refused(words, told):
+    done = CliRunner().invoke(app, ["bench", *words])
+    assert isinstance(done.exception, ScenarioError)
+    assert str(done.exception) == told
 
 
 def test_the_velocity_to_a_place_is_bounded_and_never_stands():

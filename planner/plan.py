@@ -103,6 +103,7 @@ class Planner(Protocol):
 
 _put = object.__setattr__
 
+_OMEGA = 4
 _IN_POINT: Mapping[str, slice | int] = {
     "com": slice(7, 10),
     "com_velocity": slice(16, 19),
@@ -111,7 +112,7 @@ _IN_POINT: Mapping[str, slice | int] = {
     "pendulum_zmp": slice(34, 36),
     "zmp_reference": slice(0, 2),
     "dcm": slice(38, 40),
-    "omega": 4,
+    "omega": _OMEGA,
     "stiffness": 5,
     "load_left": 6,
     "swing": slice(10, 16),
@@ -168,6 +169,7 @@ class PlanSample:
         """A sample out of the numbers of the kernel, shape (POINT,), which become fields when they are first read."""
         sample = _OpenSample()
         sample.time, sample.contacts, sample.swing_foot, sample.point = time, contacts, swing_foot, point
+        sample.omega = point.item(_OMEGA)  # which is read at every tick
         sample.__class__ = cls
         return sample  # type: ignore[no-any-return]
 
@@ -316,8 +318,7 @@ class PlanSampler:
                 plan.com, plan.com_velocity, plan.com_acceleration,
                 plan.zmp_reference, plan.zmp_offset, plan.omega, plan.stiffness, plan.load_left,
             )  # fmt: skip
-            ends = [quantity[i : i + 2] for quantity in quantities]
-            self._kernel.enter(ends, plan.jerk[i], swing, plan.sample_time)
+            self._kernel.enter(i, quantities, plan.jerk[i], swing, plan.sample_time)
 
     def _tabulated(self, i: int, swing: Array | None) -> Array:
         """An interval: 7 linear functions, 9 polynomials and their two derivatives as columns."""

@@ -197,7 +197,7 @@ class WalkingPlanner:
         shifts = motion.shifts @ support.rotation.T
         footsteps = execution.upcoming(time, shifts)
         if execution.free[0]:
-            balance = replace(balance, shift=shifts[0])
+            balance = Balance(balance.planned, balance.movable, shifts[0], balance.delay, balance.outside)
         if execution.phase.swing_foot is not None:
             execution.swing_to(footsteps[0], time, feet, motion.solver is SolverStatus.HELD)
         self._plan = self._world_plan(time, support, window, local, motion, footsteps, balance)

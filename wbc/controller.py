@@ -328,6 +328,8 @@ class WholeBodyController:
     def _shift(self, terms: RobotTerms, reference: WbcReference, contacts: ContactState) -> None:
         """See a rolling foot from its toe edge, a leaning one from its line, others from their soles."""
         rolling, self._seen = reference.rolling_foot, []
+        if rolling < 0 and terms.leaning is None and not terms.is_shifted:
+            return
         for foot in (0, 1):
             if foot == rolling and (rolling == contacts.rolling or not contacts.active[rolling]):
                 self._seen.append((foot, terms.shift_foot(foot, self._toe, reference.roll[0])))

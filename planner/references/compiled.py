@@ -106,10 +106,10 @@ class CompiledPreview:
         height = self._made["height"]
         if self._smooth is None:
             samples = self._samples(execution, self._copy())
-            np.copyto(height, self._profile.height(self._gait, samples, support.heights)[:, 1:-1])
+            height[...] = self._profile.height(self._gait, samples, support.heights)[:, 1:-1]
         found = moved(execution, height)
         if found is not height:
-            np.copyto(height, found)
+            height[...] = found
         self._weigh()
         made = self._copy()
         reference = ZmpReference(made["point"], made["gain"], made["half_size"], made["ground"])

@@ -2,7 +2,6 @@
 
 import math
 from collections.abc import Callable
-from dataclasses import replace
 from functools import partial
 
 import numpy as np
@@ -204,7 +203,7 @@ class ReferencePreview:
             offset = offset + leant[:count]
         return Window(
             reference=seen,
-            driving=replace(seen, point=seen.point - offset),
+            driving=ZmpReference(seen.point - offset, seen.gain, seen.half_size, seen.height),
             offset=offset,
             height=height.part(count),
             stiffness=stiffness[:count],

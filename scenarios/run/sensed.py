@@ -136,6 +136,7 @@ class Senses:
             self._sense = part.sense
         else:
             self._estimate = part.estimate
+        self._last: Estimate | None = None
         self._told: Callable[[Planned], None] | None = part.told if self.reads and told else None
 
     def __call__(self, readings: Readings | Measurement) -> Estimate:
@@ -148,7 +149,11 @@ class Senses:
             wanted = "what sensors say, as surefoot.Readings" if self.reads else "the state, as surefoot.Measurement"
             raise ParameterError(("readings",), f"a {type(readings).__name__} for this estimator", f"give {wanted}")
         if isinstance(readings, Measurement):
-            return Estimate(self._estimate(readings), readings.wrench)
+            state, wrench, last = self._estimate(readings), readings.wrench, self._last
+            # A world that measures into the same arrays, and a state of these, make the same estimate.
+            if last is None or last.state is not state or last.wrench is not wrench:
+                self._last = last = Estimate(state, wrench)
+            return last
         estimate: Estimate = self._sense(readings)
         felt = readings.wrench
         return estimate if estimate.wrench is not None or felt is None else replace(estimate, wrench=felt.values)

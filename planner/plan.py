@@ -222,7 +222,7 @@ class PlanSampler:
         self._lands = plan.time + plan.phase.left - TOUCHING if single else np.inf
         self._begin, self._length = plan.time, plan.sample_time
         self._start = plan.time
-        self._table = np.zeros((6, COLUMNS))
+        self._table: Array
         self._contacts = (True, True)
         self._swing_foot: Foot | None = None
 
@@ -270,15 +270,11 @@ class PlanSampler:
             return sample, sample.until(self.sample(middle))
         if now != self._entered:
             self._enter(*now)
-        points, foot, of_point = (
-            self._kernel.sample(self._local(time), self._local(middle)),
-            self._swing_foot,
-            _of_point,
-        )
-        return (
-            of_point(time, points[0], self._contacts_at(time), foot),
-            of_point(middle, points[1], self._contacts_at(middle), foot),
-        )
+        points, foot = self._kernel.sample(self._local(time), self._local(middle)), self._swing_foot
+        contacts = late = self._contacts
+        if middle >= self._lands:
+            contacts, late = self._contacts_at(time), self._contacts_at(middle)
+        return _of_point(time, points[0], contacts, foot), _of_point(middle, points[1], late, foot)
 
     def _place(self, time: float) -> tuple[int, bool]:
         """The interval of an instant, and whether the swing foot has landed by then."""

@@ -9,6 +9,7 @@ import numpy as np
 import pinocchio as pin
 from numpy.typing import NDArray
 
+from surefoot.forces import NO_LOAD
 from surefoot.similarity import Similarity
 from surefoot.values import dataclass
 from surefoot.wbc.arm_swing import ArmSwing
@@ -215,7 +216,9 @@ class WholeBodyController:
         """
         start = time.perf_counter()
         if sensing.wrench is not None:
-            self.terms.bear(self._observer.update(self.terms, sensing.wrench, sensing.load_deviation))
+            load = self._observer.update(self.terms, sensing.wrench, sensing.load_deviation)
+            if load is not NO_LOAD:
+                self.terms.bear(load)
             self.schedule.weight = self.terms.mass * GRAVITY
         contacts = self.schedule.update(reference, sensing)
         qp = self.build(self.terms, reference, contacts)

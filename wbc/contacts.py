@@ -1,6 +1,6 @@
 """Which contacts the whole-body QP holds, and how much load each may take: plan and feeling combined."""
 
-from surefoot.values import dataclass
+from surefoot.values import dataclass, maker
 from surefoot.wbc.parameters import ContactParameters
 from surefoot.wbc.types import FootSensing, WbcReference
 
@@ -20,6 +20,9 @@ class ContactState:
     felt: tuple[bool, bool]
     force_cap: tuple[float, float]
     rolling: int = -1
+
+
+_a_state = maker(ContactState)
 
 
 class ContactSchedule:
@@ -63,7 +66,7 @@ class ContactSchedule:
                     held[k] = False
         active = (held[0], held[1])
         rolling = reference.rolling_foot if active[0] and active[1] else -1
-        return ContactState(active, felt, (self._cap(0, reference), self._cap(1, reference)), rolling)
+        return _a_state(active, felt, (self._cap(0, reference), self._cap(1, reference)), rolling)
 
     def _feel(self, k: int, normal_force: float) -> bool:
         touches = normal_force > self._parameters.felt_force

@@ -11,7 +11,7 @@ from numpy.typing import NDArray
 
 from surefoot.forces import NO_LOAD
 from surefoot.similarity import Similarity
-from surefoot.values import dataclass
+from surefoot.values import dataclass, maker
 from surefoot.wbc.arm_swing import ArmSwing
 from surefoot.wbc.balance import SupportRegion
 from surefoot.wbc.compiled import CompiledTick
@@ -47,6 +47,8 @@ FADE, FADE_DAMPING = 0.05, 0.02
 """Time in which the last torque fades out [s], and torque of a joint's damper at 1 rad/s meanwhile over its largest one
 [s/rad]."""
 
+
+_a_report = maker(WbcReport)
 
 _SOLVED = SolveStatus.SOLVED  # a member is looked up by its name at each access
 
@@ -229,8 +231,7 @@ class WholeBodyController:
         iterations, violation, dual = 0, math.inf, math.nan
         if solution is not None:
             iterations, violation, dual = solution.iterations, solution.violation, solution.dual_residual
-        # By position: to match words with parameters takes as long as all else of it.
-        return WbcReport(
+        return _a_report(
             answer.torque,
             status,
             iterations,

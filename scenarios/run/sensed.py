@@ -19,6 +19,7 @@ from surefoot.scenarios.setup.walk import Walk
 from surefoot.sim.measurement import Measurement
 from surefoot.sim.sensor_errors import SensorErrors
 from surefoot.similarity import GRAVITY
+from surefoot.values import maker
 from surefoot.wbc.estimation.estimate import Deviation, Estimate, Planned
 from surefoot.wbc.estimation.estimator import Footing, SensedState
 from surefoot.wbc.estimation.kinematics import ImuMount
@@ -26,6 +27,8 @@ from surefoot.wbc.estimation.parameters import ContactDetection, EstimatorParame
 from surefoot.wbc.types import Array, FootSensing, WbcReference, WbcReport
 
 _OPTIONS = ("sensing", "options")
+
+_a_sensing = maker(FootSensing)
 
 SWAY, SWAY_TIME = (0.3, 1.0), 0.1
 """Angular velocity and acceleration of a walking pelvis, RMS, and how long they keep their sign [rad/s, m/s^2, s]."""
@@ -174,7 +177,7 @@ def foot_sensing(estimate: Estimate, wrench: Array, wanted: bool) -> FootSensing
     """
     forces, sure = (wrench.item(2), wrench.item(8)), estimate.deviation
     if sure is None:
-        return FootSensing(forces, wrench if wanted else None, estimate.contact)
+        return _a_sensing(forces, wrench if wanted else None, estimate.contact)
     return FootSensing(forces, wrench if wanted else None, estimate.contact, (sure.force, sure.moment))
 
 

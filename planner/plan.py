@@ -103,6 +103,7 @@ class Planner(Protocol):
 
 _put = object.__setattr__
 
+_OMEGA = 4
 _IN_POINT: Mapping[str, slice | int] = {
     "com": slice(7, 10),
     "com_velocity": slice(16, 19),
@@ -111,7 +112,7 @@ _IN_POINT: Mapping[str, slice | int] = {
     "pendulum_zmp": slice(34, 36),
     "zmp_reference": slice(0, 2),
     "dcm": slice(38, 40),
-    "omega": 4,
+    "omega": _OMEGA,
     "stiffness": 5,
     "load_left": 6,
     "swing": slice(10, 16),
@@ -168,6 +169,7 @@ class PlanSample:
         """A sample out of the numbers of the kernel, shape (POINT,), which become fields when they are first read."""
         sample = _OpenSample()
         sample.time, sample.contacts, sample.swing_foot, sample.point = time, contacts, swing_foot, point
+        sample.omega = point.item(_OMEGA)  # which is read at every tick
         sample.__class__ = cls
         return sample  # type: ignore[no-any-return]
 
@@ -220,7 +222,7 @@ class PlanSampler:
         self._lands = plan.time + plan.phase.left - TOUCHING if single else np.inf
         self._begin, self._length = plan.time, plan.sample_time
         self._start = plan.time
-        self._table = np.zeros((6, COLUMNS))
+        self._table: Array
         self._contacts = (True, True)
         self._swing_foot: Foot | None = None
 
@@ -268,15 +270,11 @@ class PlanSampler:
             return sample, sample.until(self.sample(middle))
         if now != self._entered:
             self._enter(*now)
-        points, foot, of_point = (
-            self._kernel.sample(self._local(time), self._local(middle)),
-            self._swing_foot,
-            _of_point,
-        )
-        return (
-            of_point(time, points[0], self._contacts_at(time), foot),
-            of_point(middle, points[1], self._contacts_at(middle), foot),
-        )
+        points, foot = self._kernel.sample(self._local(time), self._local(middle)), self._swing_foot
+        contacts = late = self._contacts
+        if middle >= self._lands:
+            contacts, late = self._contacts_at(time), self._contacts_at(middle)
+        return _of_point(time, points[0], contacts, foot), _of_point(middle, points[1], late, foot)
 
     def _place(self, time: float) -> tuple[int, bool]:
         """The interval of an instant, and whether the swing foot has landed by then."""
@@ -316,8 +314,7 @@ class PlanSampler:
                 plan.com, plan.com_velocity, plan.com_acceleration,
                 plan.zmp_reference, plan.zmp_offset, plan.omega, plan.stiffness, plan.load_left,
             )  # fmt: skip
-            ends = [quantity[i : i + 2] for quantity in quantities]
-            self._kernel.enter(ends, plan.jerk[i], swing, plan.sample_time)
+            self._kernel.enter(i, quantities, plan.jerk[i], swing, plan.sample_time)
 
     def _tabulated(self, i: int, swing: Array | None) -> Array:
         """An interval: 7 linear functions, 9 polynomials and their two derivatives as columns."""

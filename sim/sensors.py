@@ -13,6 +13,9 @@ from surefoot.sim.contacts import ContactSense
 from surefoot.sim.errors import WorldError
 from surefoot.sim.measurement import Array, Measurement
 from surefoot.sim.pushes import PushSchedule
+from surefoot.values import maker
+
+_a_measurement = maker(Measurement)
 
 ROUND_OFF = 1e-9
 """Share of a push below which what remains of a body's external force is rounding."""
@@ -71,7 +74,7 @@ class SensorReader:
                 self._contact[...] = self._external
             self._read_compiled()
         nonfoot_contact, self_contact = self._touch.read()
-        return Measurement(time, *self._views, nonfoot_contact, self_contact)
+        return _a_measurement(time, *self._views, nonfoot_contact, self_contact)
 
     def _read(self, pushes: PushSchedule) -> None:
         """Fill the buffers but for the pushes."""

@@ -104,7 +104,7 @@ class World:
 
     def measure(self) -> Measurement:
         """What the sensors say now."""
-        return self._sensors.read(self.time, self._pushes)
+        return self._sensors.read(self.tick / self.physics_rate, self._pushes)
 
     def push(self, push: Push) -> None:
         """Add a push while the world runs; it acts beside the others, with its whole impulse, until the next reset.

@@ -9,7 +9,7 @@ import sys
 
 import pytest
 
-from surefoot.values import dataclass, opened
+from surefoot.values import dataclass, maker, opened
 
 pytestmark = pytest.mark.unit
 
@@ -240,3 +240,17 @@ def test_what_is_made_opened_becomes_the_value():
     assert made == Wide(1.0, 2.0, 3.0)
     with pytest.raises(dataclasses.FrozenInstanceError):
         made.a = 2.0
+
+
+@pytest.mark.parametrize(("args", "named"), [((1.0, 2.0, 3.0), {}), ((1.0,), {"b": 2.0, "c": 3.0, "d": 0.0})])
+def test_a_maker_makes_what_the_class_makes(args, named):
+    make = maker(Wide)
+    made, value = make(*args, **named), Wide(*args, **named)
+    assert made == value
+    assert type(made) is Wide
+    with pytest.raises(dataclasses.FrozenInstanceError):
+        made.a = 2.0
+    with pytest.raises(TypeError):
+        make(1.0)
+    ours, _ = both()
+    assert maker(ours)(1).b is not maker(ours)(1).b  # a default is made for each

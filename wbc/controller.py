@@ -9,8 +9,9 @@ import numpy as np
 import pinocchio as pin
 from numpy.typing import NDArray
 
+from surefoot.forces import NO_LOAD
 from surefoot.similarity import Similarity
-from surefoot.values import dataclass
+from surefoot.values import dataclass, maker
 from surefoot.wbc.arm_swing import ArmSwing
 from surefoot.wbc.balance import SupportRegion
 from surefoot.wbc.compiled import CompiledTick
@@ -46,6 +47,8 @@ FADE, FADE_DAMPING = 0.05, 0.02
 """Time in which the last torque fades out [s], and torque of a joint's damper at 1 rad/s meanwhile over its largest one
 [s/rad]."""
 
+
+_a_report = maker(WbcReport)
 
 _SOLVED = SolveStatus.SOLVED  # a member is looked up by its name at each access
 
@@ -215,7 +218,9 @@ class WholeBodyController:
         """
         start = time.perf_counter()
         if sensing.wrench is not None:
-            self.terms.bear(self._observer.update(self.terms, sensing.wrench, sensing.load_deviation))
+            load = self._observer.update(self.terms, sensing.wrench, sensing.load_deviation)
+            if load is not NO_LOAD:
+                self.terms.bear(load)
             self.schedule.weight = self.terms.mass * GRAVITY
         contacts = self.schedule.update(reference, sensing)
         qp = self.build(self.terms, reference, contacts)
@@ -226,8 +231,7 @@ class WholeBodyController:
         iterations, violation, dual = 0, math.inf, math.nan
         if solution is not None:
             iterations, violation, dual = solution.iterations, solution.violation, solution.dual_residual
-        # By position: to match words with parameters takes as long as all else of it.
-        return WbcReport(
+        return _a_report(
             answer.torque,
             status,
             iterations,
@@ -328,6 +332,8 @@ class WholeBodyController:
     def _shift(self, terms: RobotTerms, reference: WbcReference, contacts: ContactState) -> None:
         """See a rolling foot from its toe edge, a leaning one from its line, others from their soles."""
         rolling, self._seen = reference.rolling_foot, []
+        if rolling < 0 and terms.leaning is None and not terms.is_shifted:
+            return
         for foot in (0, 1):
             if foot == rolling and (rolling == contacts.rolling or not contacts.active[rolling]):
                 self._seen.append((foot, terms.shift_foot(foot, self._toe, reference.roll[0])))

@@ -240,7 +240,7 @@ class LoadObserver:
     def _tell(self) -> None:
         """The estimate as a load."""
         self.load = NO_LOAD
-        if self._estimate.any():
+        if any(self._estimate.tolist()):
             x, y, *moment, more = self._estimate.tolist()
             self.load = ExternalLoad(np.array([x, y, 0.0]), np.array(moment), 1.0 + more)
 

@@ -104,11 +104,11 @@ class CompiledOutlook:
         if window is self._window:
             return
         self._window, arrays, driving = window, self._arrays, window.driving
-        np.copyto(arrays["stiffness"], window.stiffness)
-        np.copyto(arrays["omega"], window.omega)
-        np.copyto(arrays["point"], driving.point)
-        np.copyto(arrays["gain"], driving.gain)
-        np.copyto(arrays["half_size"], driving.half_size)
+        arrays["stiffness"][...] = window.stiffness
+        arrays["omega"][...] = window.omega
+        arrays["point"][...] = driving.point
+        arrays["gain"][...] = driving.gain
+        arrays["half_size"][...] = driving.half_size
         self._decay()
 
 

@@ -24,10 +24,13 @@ from surefoot.planner.steps.gait import GaitParameters
 from surefoot.planner.steps.phases import PhaseSamples
 from surefoot.planner.steps.schedule import Schedule
 from surefoot.planner.types import GRAVITY, Array
+from surefoot.values import maker
 
 if TYPE_CHECKING:
     from surefoot.planner.references.window import Sight
 
+
+_some_samples, _a_reference, _a_height = maker(PhaseSamples), maker(ZmpReference), maker(HeightPreview)
 
 _ROOM = 64
 """Phases, steps and support points for which there is memory from the start; a walk that sees more takes more [-]."""
@@ -106,14 +109,14 @@ class CompiledPreview:
         height = self._made["height"]
         if self._smooth is None:
             samples = self._samples(execution, self._copy())
-            np.copyto(height, self._profile.height(self._gait, samples, support.heights)[:, 1:-1])
+            height[...] = self._profile.height(self._gait, samples, support.heights)[:, 1:-1]
         found = moved(execution, height)
         if found is not height:
-            np.copyto(height, found)
+            height[...] = found
         self._weigh()
         made = self._copy()
-        reference = ZmpReference(made["point"], made["gain"], made["half_size"], made["ground"])
-        preview = HeightPreview(made["height"], made["stiffness"])
+        reference = _a_reference(made["point"], made["gain"], made["half_size"], made["ground"])
+        preview = _a_height(made["height"], made["stiffness"])
         samples, stiffness, load = self._samples(execution, made), made["softened"], made["load_left"]
         return samples, reference, preview, stiffness, made["omega"], load[: self._count]
 
@@ -146,7 +149,7 @@ class CompiledPreview:
         return np.ndarray((), self._layout, self._memory.copy())
 
     def _samples(self, execution: Execution, made: Any) -> PhaseSamples:
-        return PhaseSamples(
+        return _some_samples(
             phases=execution.schedule.phases,
             which=made["which"],
             kind=made["kind"],

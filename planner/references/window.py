@@ -2,7 +2,6 @@
 
 import math
 from collections.abc import Callable
-from dataclasses import replace
 from functools import partial
 
 import numpy as np
@@ -31,7 +30,7 @@ from surefoot.planner.steps.execution import Execution
 from surefoot.planner.steps.gait import GaitParameters
 from surefoot.planner.steps.phases import PhaseSamples
 from surefoot.planner.types import GRAVITY, Array
-from surefoot.values import dataclass
+from surefoot.values import dataclass, maker
 
 
 @dataclass(frozen=True, slots=True)
@@ -104,6 +103,8 @@ class Window:
     load_left: Array
     contacts: NDArray[np.bool_]
 
+
+_a_window, _a_reference = maker(Window), maker(ZmpReference)
 
 Sight = tuple[PhaseSamples, ZmpReference, HeightPreview, Array, Array, Array]
 """What the walk ahead looks like.
@@ -202,9 +203,9 @@ class ReferencePreview:
         offset = self._offset(execution, samples, support, point, height, position, time)
         if leant is not None:
             offset = offset + leant[:count]
-        return Window(
+        return _a_window(
             reference=seen,
-            driving=replace(seen, point=seen.point - offset),
+            driving=_a_reference(seen.point - offset, seen.gain, seen.half_size, seen.height),
             offset=offset,
             height=height.part(count),
             stiffness=stiffness[:count],

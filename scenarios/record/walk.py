@@ -4,7 +4,6 @@ import math
 import os
 from collections.abc import Callable
 from operator import attrgetter
-from typing import NamedTuple
 
 import numpy as np
 from numpy.typing import NDArray
@@ -52,17 +51,8 @@ _FOOTSTEPS = ("current_left", "current_right", "next", "next_foot", "touchdown_t
 _NO_FOOTSTEP = (math.nan,) * 4
 
 
-class TickTiming(NamedTuple):
-    """Wall-clock time of the parts of one control tick, and the controller's processor time [s]."""
-
-    state: float
-    wbc_build: float
-    wbc_solve: float
-    planner: float
-    physics: float
-    log: float
-    tick: float
-    controller: float
+TickTiming = tuple[float, float, float, float, float, float, float, float]
+"""Wall-clock time of the parts of one control tick, and the controller's processor time, as the log has them [s]."""
 
 
 @dataclass(frozen=True, slots=True)
@@ -99,7 +89,7 @@ class WalkRecorder:
         self._footstep = writer.channel(channels.footstep(sizes))
         self._command = writer.channel(channels.command(sizes))
         timing = writer.channel(channels.timing(sizes))
-        self._timing = writer.rows(RowLayout((), ((timing, TickTiming._fields),)))
+        self._timing = writer.rows(RowLayout((), ((timing, [field.name for field in timing.spec.fields]),)))
         self._process = writer.channel(channels.process(sizes))
         self._looked = -1
         self._support = np.zeros((SUPPORT_VERTICES, 2))
@@ -108,6 +98,7 @@ class WalkRecorder:
         self._point = np.zeros(POINT)
         seen = PlanSample.of_point(0.0, self._point, (True, True), None)
         self._sampled = *_sampled(seen), seen.swing[:3], seen.swing_velocity[:3], self._support
+        self._last: tuple[Array, ...] | None = None
         self._roll: Callable[[float, float, float], None] | None = None
         if kernels := library():
             self._roll = kernels.bind("roll_centre", level=level, rates=rates, position=position, velocity=velocity)
@@ -168,7 +159,11 @@ class WalkRecorder:
             self._point[:] = sample.point
         if roll is not None and pitch and roll.foot is sample.swing_foot:
             vectors = *vectors[:6], *self._centre(roll, sample), self._support
-        self._reference.append(time_ns, numbers, *vectors)
+        if vectors is self._last:
+            self._reference.again(time_ns, numbers)
+        else:
+            self._reference.append(time_ns, numbers, *vectors)
+            self._last = vectors
 
     def _centre(self, roll: FootRoll, sample: PlanSample) -> tuple[Array, Array]:
         """See `FootRoll.centre`."""

@@ -98,7 +98,7 @@ class Controller:
         self._landing: Landing | None = None
         self._begin, self._now = math.nan, -math.inf
         self._torques: TorqueWrench | None = None
-        self._command: JointCommand
+        self._command = JointCommand(np.zeros(0))
         self.planning: Planning
         self.state: RobotState
         self.report: WbcReport
@@ -202,9 +202,10 @@ class Controller:
         # What falls gives way; the controller goes on, unheard, since estimator and planner take its contacts.
         falling, state = self._gives_way and self.planning.plan.status.falling, self.state
         torque = self._giving_way.torque(state.q[7:], state.v[6:]) if falling else report.torque
-        self._command = JointCommand(torque)
         if self._output.servo:
             self._command = self._output.command(torque, state.q[7:], state.v[6:], report.acceleration[6:])
+        elif self._command.torque is not torque:
+            self._command = JointCommand(torque)
         return self._command
 
     def _observe(self, readings: "Readings | Measurement", now: float) -> None:

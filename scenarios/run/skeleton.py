@@ -13,7 +13,7 @@ from surefoot.planner.plan import PlanSample, WalkPlan
 from surefoot.planner.types import PhaseInfo, PhaseKind
 from surefoot.scenarios.errors import SetupError
 from surefoot.scenarios.record.provenance import AFTER_FALL
-from surefoot.scenarios.record.walk import TickTiming, WalkRecorder
+from surefoot.scenarios.record.walk import WalkRecorder
 from surefoot.scenarios.run.planning import ROUNDING, Planning, RunFault
 from surefoot.scenarios.run.tick import Look, Spent
 from surefoot.scenarios.setup.gait import PushPoint
@@ -261,8 +261,9 @@ class ClosedLoop:
         walker.advance(now)
         end = clock()
         state, plan_time, build, solve = spent
-        parts = sensed - begin + state, build, solve, plan_time, end - logged, logged - decided, end - begin
-        recorder.timing(now_ns, TickTiming(*parts, 1e-9 * busy))
+        state += sensed - begin
+        log = logged - decided
+        recorder.timing(now_ns, (state, build, solve, plan_time, end - logged, log, end - begin, 1e-9 * busy))
         return sample, fallen
 
     def _push(self, now: float, plan: WalkPlan) -> None:

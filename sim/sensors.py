@@ -1,7 +1,6 @@
 """Reading the sensors out of MuJoCo's state, without a look at the forces of single contacts."""
 
 from collections.abc import Callable
-from typing import Any
 
 import numpy as np
 
@@ -58,7 +57,7 @@ class SensorReader:
         self._wrench, self._push = np.zeros((2, 6)), np.zeros(3)
         q, v = _read_only(self._q), _read_only(self._v)
         torque, *rest = map(_read_only, (self._torque, self._accelerometer, self._wrench))
-        self._views: Any = q[7:], v[6:], torque, v[3:6], *rest, q, v, _read_only(self._push)
+        self._views = q[7:], v[6:], torque, v[3:6], *rest, q, v, _read_only(self._push)
         """Of a measurement, from the joints' positions to the push."""
 
     def read(self, time: float, pushes: PushSchedule) -> Measurement:
@@ -74,7 +73,7 @@ class SensorReader:
                 self._contact[...] = self._external
             self._read_compiled()
         nonfoot_contact, self_contact = self._touch.read()
-        return _a_measurement(time, *self._views, nonfoot_contact, self_contact)
+        return _a_measurement(time, *self._views, nonfoot_contact, self_contact)  # type: ignore[arg-type]
 
     def _read(self, pushes: PushSchedule) -> None:
         """Fill the buffers but for the pushes."""

@@ -24,6 +24,7 @@ class Stream(IntEnum):
     WRENCH = 11
     MOTOR = 12
     DRIVEN = 13
+    TOUR = 14
 
 
 def generator(seed: int, stream: Stream | None = None, part: int | None = None) -> np.random.Generator:

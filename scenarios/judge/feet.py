@@ -136,11 +136,26 @@ def stances(run: RunView, until: int | None = None) -> list[Stance]:
 
 @dataclass(frozen=True, slots=True)
 class Slip:
-    """How far the farthest corner of a sole (0 left, 1 right) moved in a stance [m], and at which tick it was there."""
+    """How far the farthest corner of a sole (0 left, 1 right) is from where it came to the ground, in one stance.
+
+    Attributes:
+        foot: 0 left, 1 right.
+        ticks: of the stance, shape (k,).
+        way: at each of them, shape (k,) [m].
+    """
 
     foot: int
-    tick: int
-    distance: float
+    ticks: Rows
+    way: Array
+
+    @property
+    def distance(self) -> float:
+        """The greatest way of the stance [m]."""
+        return float(self.way.max())
+
+    def since(self, way: float) -> int:
+        """The first tick at which the foot has slipped farther than so many metres; that of the stance if never."""
+        return int(self.ticks[np.argmax(self.way > way)])
 
 
 def stance_slips(run: RunView, until: int | None = None) -> list[Slip]:
@@ -158,9 +173,8 @@ def stance_slips(run: RunView, until: int | None = None) -> list[Slip]:
         touching = np.column_stack((touching, ~touching.any(axis=1)))
         points = np.concatenate((points, poses[:, None, :3]), axis=1)[..., :2]
         begin = points[np.argmax(touching, axis=0), np.arange(5)]
-        distance = np.where(touching, np.linalg.norm(points - begin, axis=2), 0.0).max(axis=1)
-        farthest = int(np.argmax(distance))
-        slips.append(Slip(stance.foot, int(stance.ticks[farthest]), float(distance[farthest])))
+        way = np.where(touching, np.linalg.norm(points - begin, axis=2), 0.0).max(axis=1)
+        slips.append(Slip(stance.foot, stance.ticks, way))
     return slips
 
 

@@ -5,7 +5,8 @@ from typing import Any
 
 import numpy as np
 
-from surefoot.scenarios.judge.health import Finding, findings
+from surefoot.scenarios.judge.finding import Finding
+from surefoot.scenarios.judge.health import findings
 from surefoot.scenarios.judge.metrics import digest
 from surefoot.scenarios.judge.verdict import Verdict, judge, scenario_of
 from surefoot.scenarios.log import ChannelData, Log

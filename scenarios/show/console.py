@@ -18,7 +18,7 @@ from rich.table import Table
 from rich.text import Text
 
 from surefoot.scenarios.errors import LogError, require
-from surefoot.scenarios.judge.health import Finding
+from surefoot.scenarios.judge.finding import Finding
 from surefoot.scenarios.judge.inspection import Inspection
 from surefoot.scenarios.judge.verdict import FIRST_METRICS, Verdict, bound_text, shown_unit, value_text
 from surefoot.scenarios.log import ChannelData, Log
@@ -105,7 +105,7 @@ def _health_lines(health: Sequence[Finding]) -> list[str]:
     lines = []
     for finding in health:
         if finding.status != "ok":
-            when = "" if finding.time is None else f" at {finding.time:.3f} s"
+            when = "" if finding.time is None else f" from {finding.time:.3f} s on"
             value = "" if finding.value is None else f", value {finding.value:.4g}"
             lines.append(f"{finding.check}{when}{value}: {finding.cause}")
     return [*lines, f"{len(health) - len(lines)} of {len(health)} checks found nothing"]

@@ -1,4 +1,4 @@
-"""The commands that make many runs: sweep, check and paper."""
+"""The commands that make many runs: sweep, check, bench and paper."""
 
 import json
 from pathlib import Path
@@ -124,6 +124,68 @@ def check(told: CheckOptions) -> None:
         report.write(told.markdown, report.markdown(found).encode(), told.force)
     typer.echo(report.summary(found))
     raise typer.Exit(checking.exit_code(found))
+
+
+BENCHES = ("g1-tour",)
+"""Benchmarks, by name."""
+
+
+def _benches_from(incomplete: str) -> list[str]:
+    """Benchmarks that begin so."""
+    return [name for name in BENCHES if name.startswith(incomplete)]
+
+
+def _rows_from(incomplete: str) -> list[str]:
+    """Rows of the tour that begin so."""
+    from surefoot.scenarios.study.tour.rows import ROWS
+
+    return [name for name in ROWS if name.startswith(incomplete)]
+
+
+@dataclass(frozen=True, slots=True)
+class BenchOptions:
+    """What `surefoot bench` is told."""
+
+    name: Annotated[str, typer.Argument(help="Of the benchmark: g1-tour.", autocompletion=_benches_from)]
+    row: Annotated[
+        list[str] | None, typer.Option(help="This row alone; repeatable, all by default.", autocompletion=_rows_from)
+    ] = None
+    seeds: Annotated[int, typer.Option(min=1, max=100_000, help="Tours of each row.")] = 24
+    seconds: Annotated[float, typer.Option(min=1.0, max=90.0, help="After which a tour is over.")] = 90.0
+    workers: Jobs = None
+    out: Annotated[Path, typer.Option(help="Directory that keeps every tour.")] = Path("runs/g1-tour")
+    as_json: AsJson = False
+
+
+@app.command()
+@with_options(BenchOptions)
+def bench(told: BenchOptions) -> None:
+    """Send a walker through the tour of a public benchmark, many times.
+
+    Begun again, it goes on where it stopped.
+    """
+    with importing():
+        from surefoot.scenarios.errors import ScenarioError, nearest
+        from surefoot.scenarios.study.campaigns.sweep import CampaignBar, cores
+        from surefoot.scenarios.study.tour.bench import Bench, lines
+        from surefoot.scenarios.study.tour.rows import ROWS
+
+    if told.name not in BENCHES:
+        raise ScenarioError([f"there is no benchmark '{told.name}'; {nearest(told.name, BENCHES)}"])
+    for name in told.row or ():
+        if name not in ROWS:
+            raise ScenarioError([f"{told.name}: no row '{name}'; {nearest(name, ROWS)}"])
+    rows = [name for name in ROWS if name in (told.row or ROWS)]
+    tours = Bench(rows, told.seeds, told.out, told.seconds)
+    try:
+        with CampaignBar(len(tours.left()), "tours") as bar:
+            tours.run(told.workers or cores(), lambda _: bar.cell())
+    except KeyboardInterrupt:
+        raise _interrupted(told.out) from None
+    tours.write()
+    found = tours.to_json()
+    typer.echo(json.dumps(found, allow_nan=False) if told.as_json else "\n".join(lines(found)))
+    raise typer.Exit(MISSED if tours.left() else 0)
 
 
 @app.command()

@@ -22,9 +22,6 @@ from surefoot.wbc.types import GRAVITY, Array, RobotState
 Ground = Callable[[float, float], tuple[float, Array]]
 """Height of the ground at x and y, and its unit normal there, shape (3,) [m, -]."""
 
-TRUSTED = 0.06
-"""A ground that is farther from a sole that lands is not the one that it lands on [m]."""
-
 FASTEST, FARTHEST = 300.0, 1e5
 """Speed, of base and joints together, and place beyond which an estimate has diverged [m/s, rad/s, m]."""
 
@@ -247,8 +244,7 @@ class SensedState:
         s = filter_.stand
         foot = s.p + s.R @ body.position[k]
         height, _ = self._footing.ground(float(foot[0]), float(foot[1]))
-        near = abs(height - float(foot[2])) < TRUSTED and noise.height > 0.0
-        known = (height, noise.height) if near else None
+        known = (height, noise.height) if noise.height > 0.0 else None
         filter_.land(k, body.position[k], body.rotation[k], J[k], known, noise.landing, noise.landing_turn)
 
     def _over_ground(self, k: int) -> float:

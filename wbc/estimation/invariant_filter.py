@@ -42,6 +42,10 @@ _FALL = np.array([0.0, 0.0, -GRAVITY])
 _FALLING = pin.skew(_FALL)
 _UNIT = np.eye(3)
 
+LIKELY = 9.0
+"""Square of the normalised height of a landing over the ground that is believed, from which on it is another ground: by
+chance in one of 370 landings, which then tells no height [-]."""
+
 GATE = 50.0
 """Square of the normalised residual of two feet from which on one has slipped: by chance in one of 10^6 ticks [-]."""
 
@@ -240,7 +244,8 @@ class InvariantFilter:
             y: its sole's centre in the frame of the IMU, shape (3,) [m].
             Y: its orientation, shape (3, 3).
             J: Jacobian of both to the joints of the chain, shape (6, m).
-            height: of the ground there, and its deviation; None where that is not known [m].
+            height: of the ground there, as it is believed, and its deviation; None where that is not known. A foot
+                that cannot have landed on that by all that is known has found a step of the ground [m].
             place: deviation of where it comes to rest [m].
             turn: likewise of how it is turned [rad].
         """
@@ -257,10 +262,11 @@ class InvariantFilter:
         D[j] += turn**2
         self.standing[k] = True
         if height is not None:
-            row = np.zeros((1, n))
+            row, lacking = np.zeros((1, n)), height[0] - float(s.d[k, 2])
             row[0, i] = _UNIT[2]
             row[0, TURN] = -pin.skew(s.d[k])[2]
-            self._correct(row, np.array([height[0] - s.d[k, 2]]), np.array([height[1] ** 2]))
+            if lacking**2 < LIKELY * (float(row[0] @ P @ row[0]) + height[1] ** 2):
+                self._correct(row, np.array([lacking]), np.array([height[1] ** 2]))
 
     def lift(self, k: int) -> None:
         """A foot stands no longer."""

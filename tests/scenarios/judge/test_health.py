@@ -60,16 +60,19 @@ def test_a_sound_walk_has_no_warning(health):
 FAULTS = {
     "contact_forces": ({("/contact", 1): lambda t, f: weight(t, f) * (0.8 if t > 2 else 1)}, -0.2, "too little"),
     "foot_slip": (
-        {("/truth", 5): lambda t, p: np.array([0.02 * (t > 2.5), 0.1, 0, 0, 0, 0, 1])}, 0.02, "left foot slips 20 mm",
+        {("/truth", 5): lambda t, p: np.array([0.02 * (t > 2.5), 0.1, 0, 0, 0, 0, 1])}, 0.02,
+        "the left foot slips by up to 20 mm",
     ),
     "touchdowns": ({("/reference", 13): lambda t, d: 0.5 - 0.1 * (t >= 1)}, 0.1, "late, the worst by 100 ms"),
     "zmp_margin": ({("/contact", 0): lambda t, z: z + np.array([0.2 * (t > 3), 0, 0])}, 0.25, "the plan asks for it"),
     "torque_limits": ({("/torque", 0): lambda t, u: u + np.array([0, 0, 95.0 * (t == 2), 0])}, 1.0, "right_hip is at"),
     "joint_stops": (
-        {("/measurement", 0): lambda t, q: q - np.array([0, 0, 0, 0.2 * (t == 2)])}, -0.1, "right_knee is 5.7 deg past",
+        {("/measurement", 0): lambda t, q: q - np.array([0, 0, 0, 0.2 * (t == 2)])}, -0.1,
+        "right_knee is past its stop by up to 5.7 deg",
     ),
     "joint_speeds": (
-        {("/measurement", 1): lambda t, v: v + np.array([0, 12.0 * (t == 2), 0, 0])}, 1.25, "left_knee turns at 125 %",
+        {("/measurement", 1): lambda t, v: v + np.array([0, 12.0 * (t == 2), 0, 0])}, 1.25,
+        "left_knee turns faster than its no-load speed at up to 125 %",
     ),
     "estimator": ({("/estimate", 0): lambda t, c: c + np.array([0.02 * t, 0, 0])}, 0.08, "the base drifts"),
     "controller_solver": ({("/wbc", 3): lambda t, f: float(t in (2, 3))}, 2.0, "no solution in 2 ticks"),
@@ -77,6 +80,23 @@ FAULTS = {
     "overruns": ({("/timing", 6): lambda t, u: 3000.0, ("/timing", 3): lambda t, u: 2500.0}, 1.0, "part 'planner'"),
     "finite_values": ({("/estimate", 0): lambda t, c: c * (np.nan if t == 1 else 1)}, 1.0, "first in /estimate"),
 }  # fmt: skip
+
+
+BEGINS = {
+    "contact_forces": 2.128,  # just over a quarter of half a second, at a fifth of the weight
+    "foot_slip": 2.502,
+    "touchdowns": 1.43,
+    "zmp_margin": 3.002,
+    "torque_limits": 2.0,
+    "joint_stops": 2.0,
+    "joint_speeds": 2.0,
+    "estimator": 0.45,  # of a robot 0.9 as tall
+    "controller_solver": 2.0,
+    "planner_solver": 2.0,
+    "overruns": None,
+    "finite_values": 1.0,
+}
+"""When the first evidence of each fault is there [s]; no walk in simulation hangs on the time of a tick."""
 
 
 @pytest.mark.parametrize("name", FAULTS)
@@ -87,7 +107,27 @@ def test_a_fault_is_found_by_its_check_and_by_no_other(health, name):
     assert warned == {name}
     assert found[name].value == pytest.approx(value, rel=0.02)
     assert words in found[name].cause
-    assert found[name].time is not None
+    begins = BEGINS[name]
+    assert found[name].time == (None if begins is None else pytest.approx(begins, abs=0.0021))
+
+
+def test_the_time_is_that_of_the_first_evidence_and_the_value_the_strongest(health):
+    def past(time, q):
+        return np.where([0, time == 1, 0, time == 2], [0, -0.61, 0, -0.7], q)  # the stop is at -0.6
+
+    stops = health({**SOUND, ("/measurement", 0): past})["joint_stops"]
+    assert stops.time == 1.0
+    assert stops.value == pytest.approx(-0.1, rel=0.02)
+    assert "left_knee is past its stop, right_knee by up to 5.7 deg" in stops.cause
+
+
+def test_warnings_stand_in_the_order_of_their_first_evidence(health):
+    joints = {("/torque", 0): lambda t, u: u + np.array([0, 0, 95.0 * (t == 3), 0])}
+    late = FAULTS["controller_solver"][0] | FAULTS["overruns"][0]
+    slips = {("/truth", 5): lambda t, p: np.array([0.006 * (t > 0.5) + 0.02 * (t > 3.5), 0.1, 0, 0, 0, 0, 1])}
+    found = health({**SOUND, **late, **joints, **slips})
+    assert list(found)[:4] == ["foot_slip", "controller_solver", "torque_limits", "overruns"]
+    assert [finding.status for finding in found.values()] == ["warning"] * 4 + ["ok"] * (len(found) - 4)
 
 
 def test_a_push_is_named_as_the_cause(health):

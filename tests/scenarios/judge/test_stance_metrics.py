@@ -7,7 +7,7 @@ import pytest
 
 from surefoot.scenarios.judge import effort, feet
 from surefoot.scenarios.judge.digest import RunView
-from surefoot.scenarios.judge.health import foot_slip
+from surefoot.scenarios.judge.motion_checks import foot_slip
 from surefoot.similarity import REFERENCE_SIZE
 
 pytestmark = pytest.mark.unit

@@ -44,6 +44,14 @@ def test_treads_two_centimetres_off_are_found(tmp_path, name):
 
 
 @pytest.mark.physics
+@pytest.mark.parametrize(("name", "seed"), [("stairs-up", 3), ("stairs-down", 4)])
+def test_treads_two_centimetres_off_are_found_from_sensors(tmp_path, name, seed):
+    """A foot that lands on them has found a step of the ground, and not that the robot is lower or tilted."""
+    found = reasons(tmp_path, name, "terrain.height_noise=0.02", f"seed={seed}", "sensing.preset=good")
+    assert found == ()
+
+
+@pytest.mark.physics
 def test_the_rise_of_the_paper_is_out_of_reach_of_legs(tmp_path):
     """Negative control: risers that are climbed in single support are not in double support: the robot falls."""
     flight = ("terrain.riser=0.17", "terrain.count=2", "gait.steps=3")
@@ -78,5 +86,6 @@ def test_steps_as_high_as_the_fields_best(tmp_path, direction, single):
 
 @pytest.mark.long
 @pytest.mark.parametrize(("name", "seed"), tuple(product(("stairs-up", "stairs-down"), range(10))))
-def test_every_seed_of_treads_off_their_belief(tmp_path, name, seed):
-    assert reasons(tmp_path, name, "terrain.height_noise=0.02", f"seed={seed}") == ()
+@pytest.mark.parametrize("keys", [(), ("sensing.preset=good",)], ids=["truth", "good"])
+def test_every_seed_of_treads_off_their_belief(tmp_path, name, seed, keys):
+    assert reasons(tmp_path, name, "terrain.height_noise=0.02", f"seed={seed}", *keys) == ()

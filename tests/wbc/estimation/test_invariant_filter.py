@@ -231,3 +231,22 @@ def test_a_height_that_is_known_moves_the_robot_there():
     filter_.land(0, y, np.eye(3), np.zeros((6, JOINTS)), (height, 1e-4), 1e-5, 1e-5)
     assert filter_.stand.d[0, 2] == pytest.approx(height, abs=2e-4)
     assert filter_.P[VELOCITY, VELOCITY].max() > 0.0 and filter_.P[FORCE, FORCE].max() > 0.0
+
+
+@pytest.mark.parametrize("step", [0.02, -0.02, 0.1])
+def test_a_landing_that_is_not_on_the_ground_that_is_believed_moves_nothing(step):
+    """It is a step of the ground: the state is the one without a height, and what is believed counts again later."""
+    unknown, off, on = (InvariantFilter(somewhere(np.random.default_rng(6)), NOISE, GROUND, PERIOD) for _ in range(3))
+    y, J = np.array([0.1, 0.2, -0.9]), np.zeros((6, JOINTS))
+    height = float((on.stand.p + on.stand.R @ y)[2])
+    for landed, known in ((unknown, None), (off, (height + step, 1.5e-3)), (on, (height + 0.05 * step, 1.5e-3))):
+        landed.land(0, y, np.eye(3), J, known, 1e-3, 1e-3)
+    np.testing.assert_array_equal(off.stand.columns, unknown.stand.columns)
+    np.testing.assert_array_equal(off.P, unknown.P)
+    assert np.abs(on.stand.columns - unknown.stand.columns).max() > 1e-4 * abs(step)
+    assert on.P[FOOT[0], FOOT[0]][2, 2] < unknown.P[FOOT[0], FOOT[0]][2, 2]
+    # The same step is none where the height is as unsure as it is high.
+    off.P[POSITION, POSITION] += step**2 * np.eye(3)
+    before = off.stand.columns.copy()
+    off.land(0, y, np.eye(3), J, (height + step, 1.5e-3), 1e-3, 1e-3)
+    assert np.abs(off.stand.columns - before).max() > 0.2 * abs(step)

@@ -30,8 +30,7 @@ BOUNDS = {
     "steps_taken": "steps_planned",
     "standing_time_final": {"min": 1.0},
     "wbc_fallbacks": {"max": 0},
-    "self_contact_time": {"max": 0},
-    "torque_ratio_max": {"max": 0.9},
+    "torque_ratio_max": {"max": 1.0},
 }
 """Of a pushed walk, in either engine."""
 RIGID = {
@@ -42,7 +41,10 @@ RIGID = {
     "criteria.swing_clearance_min": {"min": 0.008},
 }
 """Bounds of undisturbed walks in DART that are not those of the catalogue: its contact gives single blows."""
-SHOWN = ("zmp_error_rms", "zmp_inside_fraction", "com_error_rms", "footstep_error_max", "unplanned_flight_time")
+SHOWN = (
+    *("zmp_error_rms", "zmp_inside_fraction", "com_error_rms"),
+    *("footstep_error_max", "unplanned_flight_time", "self_contact_time"),
+)
 
 
 def scenario(walk: str, robot: str, engine: str) -> surefoot.Scenario:

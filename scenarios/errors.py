@@ -86,6 +86,10 @@ class LogError(Exception):
     """A log that cannot be written or read; the message says what, where and what would be right."""
 
 
+class LinkError(Exception):
+    """A plant or a controller in another process that cannot be talked to; the message says what and what is right."""
+
+
 def _readable(problem: str) -> str:
     if len(problem) > LONGEST_SENTENCE:
         problem = f"{problem[: LONGEST_SENTENCE // 2]} ... {problem[-LONGEST_SENTENCE // 2 :]}"

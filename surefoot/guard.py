@@ -68,7 +68,9 @@ class Guard:
 
     @classmethod
     def of_program(cls, kind: str, part: object) -> "Guard":
-        """Around a part that the running program has handed over, a function or a class as a rule."""
+        """Around a part that the running program has handed over, a function or a class as a rule; none around ours."""
+        if str(getattr(part, "__module__", "")).partition(".")[0] == OWN_PACKAGE:
+            return OWN_GUARD
         return cls(f"{kind} '{getattr(part, '__qualname__', type(part).__qualname__)}' of this program")
 
     @property

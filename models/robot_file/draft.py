@@ -41,6 +41,10 @@ _OPTIONAL = (
     "source",
 )
 _COLUMN = 44
+GUESSED = (
+    "# The feet are guessed: the lowest ends of two long chains of joints, left by the greater y. Look whether they\n"
+    "# carry the soles; otherwise name other links here, feet: {left: LINK, right: LINK}.\n"
+)
 
 
 @dataclass(frozen=True, slots=True)
@@ -168,7 +172,7 @@ def _commented(lines: str, found: Explanation | None, centre: str = "0.0, 0.0, 0
         (
             "# `surefoot robot check FILE` says what is derived of this robot, and what it can walk.\n",
             lines,
-            "# Look whether these are the links that carry the soles, and whether left is left.\n",
+            GUESSED if "LINK" not in lines else "",
             *(f"# Note: {note}\n" for note in notes),
             "\n# All else follows from the model, unless it is given here:\n",
             *_others(found, centre),

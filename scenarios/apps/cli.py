@@ -18,10 +18,11 @@ import typer
 
 from surefoot.errors import PluginError
 from surefoot.lazy import importing
+from surefoot.scenarios.apps.bridge import command as bridge
 from surefoot.scenarios.apps.drive import command as drive
 from surefoot.scenarios.apps.robots import command as robots
 from surefoot.scenarios.apps.words import Commands
-from surefoot.scenarios.errors import LogError, ScenarioError, SetupError
+from surefoot.scenarios.errors import LinkError, LogError, ScenarioError, SetupError
 from surefoot.scenarios.output import reason
 from surefoot.scenarios.show import commands as shown
 from surefoot.scenarios.show.options import (
@@ -168,7 +169,7 @@ def run(told: RunOptions) -> None:
     raise typer.Exit(0 if result.verdict.passed else MISSED)
 
 
-for product in (drive, shown, studies):
+for product in (drive, bridge, shown, studies):
     app.add_typer(product.app)
 app.add_typer(robots.app, name="robot", cls=Commands)
 
@@ -208,7 +209,7 @@ def _code(arguments: Sequence[str] | None) -> int | str | None:
             return end.code
         traceback.print_exc()
         return DEFECT
-    except (ScenarioError, LogError, PluginError) as error:
+    except (ScenarioError, LinkError, LogError, PluginError) as error:
         typer.echo(str(error), err=True)
         return BAD_INPUT
     except KeyboardInterrupt:

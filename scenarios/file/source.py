@@ -15,6 +15,8 @@ from surefoot.scenarios.errors import Key, Problem, ScenarioError
 MAX_BYTES = 500_000
 MAX_DEPTH = 20
 MAX_VALUES = 20_000
+_NAMED = 4
+"""Settings from outside that a refusal names."""
 _INTEGER = re.compile(r"[-+]?(?:0|[1-9][0-9]{0,18})")
 _FLOAT = re.compile(r"[-+]?(?:\.[0-9]+|[0-9]+(?:\.[0-9]*)?)(?:[eE][-+]?[0-9]+)?")
 _WORDS: dict[str, Any] = {
@@ -60,12 +62,23 @@ class Source:
             (self.value_places[key[:n]] for n in range(len(key), -1, -1) if key[:n] in self.value_places), (1, 1)
         )
 
-    def describe(self, problem: Problem) -> str:
-        """Say what is wrong and where."""
+    def describe(self, problem: Problem, together: bool = False) -> str:
+        """Say what is wrong and where.
+
+        Args:
+            problem: what is wrong.
+            together: whether it may come of values that do not fit together, so that one which was set from outside
+                may be the cause although another stands in the text.
+        """
         line, column = self.spot(problem)
         override = self._override(problem.key)
         written = None if override else self.written.get(problem.key)
-        return f"{override or f'{self.name}:{line}:{column}'}: {problem}" + (f" ({written})" if written else "")
+        said = f"{override or f'{self.name}:{line}:{column}'}: {problem}" + (f" ({written})" if written else "")
+        if override or not together or not self.overridden:
+            return said
+        named = list(dict.fromkeys(self.overridden.values()))
+        more = f" and {len(named) - _NAMED} more" if len(named) > _NAMED else ""
+        return f"{said} [set over the file: {', '.join(named[:_NAMED])}{more}]"
 
     def _override(self, key: Key) -> str | None:
         """Place of the override that set a path, part of it, or a group that the text has not got."""

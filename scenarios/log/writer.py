@@ -272,6 +272,7 @@ class LogWriter:
         """Begin a chunk, or write the next part of the one that is being written."""
         clock = self._clock
         if time_ns >= self._next:
+            deque(self._writing, maxlen=0)  # of one that is under way still, after a gap in time
             self._next, self._late = time_ns + CHUNK_PERIOD_NS, time_ns + _WRITING_NS
             self._writing = self._chunk()
         elif time_ns >= self._late:

@@ -169,7 +169,7 @@ def load(reference: str | Path, overrides: Overrides = (), robots: Robots | None
 def locate(reference: str, overrides: Overrides, refusal: SetupError) -> ScenarioError:
     """Say where the cause of a refusal stands: at the key that it names, else at the begin; arguments of `load`."""
     source = _source(written(reference), overrides, Robots())
-    return ScenarioError([source.describe(refusal.problem)])
+    return ScenarioError([source.describe(refusal.problem, together=True)])
 
 
 def read_scenario(
@@ -183,9 +183,9 @@ def read_scenario(
     wrong = {problem.key for problem in problems}
     scenario, unfit = _checked(scenario, robots)
     semantic = [*criteria_problems(scenario.criteria, scenario.fidelity), *unfit]
-    problems += [problem for problem in semantic if not _touched(problem.key, wrong)]
-    if problems:
-        raise ScenarioError(_told(source, problems))
+    semantic = [problem for problem in semantic if not _touched(problem.key, wrong)]
+    if problems or semantic:
+        raise ScenarioError(_told(source, problems, semantic))
     if "fell" not in scenario.criteria:
         criteria = {"fell": Bound(equals=False), **scenario.criteria}
         scenario = scenario.model_copy(update={"criteria": criteria})
@@ -278,10 +278,17 @@ def _checked(scenario: Scenario, robots: Robots) -> tuple[Scenario, list[Problem
         return scenario, [Problem(("terrain", "kind"), fault.what, fault.right)]
 
 
-def _told(source: Source, problems: list[Problem]) -> list[str]:
-    """The first problems with their places, in the order of the file, and how many more there are."""
-    told = [source.describe(problem) for problem in sorted(problems, key=source.spot)[:MOST_TOLD]]
-    rest = len(problems) - len(told)
+def _told(source: Source, alone: list[Problem], together: list[Problem]) -> list[str]:
+    """The first problems with their places, in the order of the file, and how many more there are.
+
+    Args:
+        source: of the scenario.
+        alone: of single values.
+        together: of values that do not fit together.
+    """
+    found = sorted(((*alone, *together)), key=source.spot)
+    told = [source.describe(problem, problem in together) for problem in found[:MOST_TOLD]]
+    rest = len(found) - len(told)
     return [*told, f"{source.name}: {rest} problems more; mend these first"] if rest else told
 
 

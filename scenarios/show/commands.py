@@ -1,6 +1,7 @@
 """The commands that show a log: inspect, plot, compare, recover and replay."""
 
 import json
+import math
 from pathlib import Path
 from typing import TYPE_CHECKING, Annotated
 
@@ -55,10 +56,13 @@ def inspect(told: InspectOptions) -> None:
 
 
 def _show_topic(log: "Log", topic: str, told: InspectOptions) -> None:
-    """Summarise a topic, or export it and say where it is."""
+    """Summarise a topic, or export it and say where it is; what is said in words is printed."""
     from surefoot.scenarios.judge.inspection import topic_summary
     from surefoot.scenarios.show.console import export, print_topic, selected
 
+    if topic == EVENTS and topic in log:
+        _show_events(log, told)
+        return
     channel = selected(log, topic, told.start, told.end, told.field)
     for loss in log.damage:
         typer.echo(f"not read: {loss}", err=True)
@@ -70,6 +74,27 @@ def _show_topic(log: "Log", topic: str, told: InspectOptions) -> None:
         typer.echo(json.dumps(topic_summary(channel), allow_nan=False))
     else:
         print_topic(topic, topic_summary(channel))
+
+
+EVENTS = "/events"
+"""Topic whose messages are in words."""
+
+
+def _show_events(log: "Log", told: InspectOptions) -> None:
+    """Print what happens, in words."""
+    from surefoot.scenarios.record.foxglove.views import events
+    from surefoot.scenarios.show.console import plain_console, plain_table
+
+    if told.field is not None or told.export is not None:
+        option = "--field" if told.field is not None else "--export"
+        raise LogError(f"{option} is of topics with numbers; {EVENTS} has words, which --json gives for programs")
+    first, last = -math.inf if told.start is None else told.start, math.inf if told.end is None else told.end
+    found = list(events(log, first, last))
+    if told.as_json:
+        typer.echo(json.dumps([one._asdict() for one in found], allow_nan=False))
+        return
+    rows = ((f"{one.time:.3f}", one.kind, one.text) for one in found)
+    plain_console().print(plain_table("time [s]", "kind", "event", rows=rows))
 
 
 @app.command()

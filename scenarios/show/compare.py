@@ -9,6 +9,7 @@ from rich.table import Table
 
 from surefoot.scenarios.errors import LogError
 from surefoot.scenarios.judge.metrics import known, plain
+from surefoot.scenarios.judge.verdict import shown_unit, value_text
 from surefoot.scenarios.log import Log, read
 from surefoot.scenarios.output import shown
 from surefoot.scenarios.record.foxglove import DERIVED_TOPICS
@@ -203,7 +204,7 @@ def print_comparison(found: Comparison) -> None:
         console.print(f"attached files that differ: {', '.join(found.files)}")
     if found.records:
         console.print(f"metadata records that differ: {', '.join(found.records)}")
-    console.print(plain_table("metric", "A", "B", "B - A", rows=map(_metric, found.metrics)))
+    console.print(plain_table("metric", "A", "B", "B - A", "unit", rows=map(_metric, found.metrics)))
     console.print(_channels(found.channels, found.tolerance))
     for name, topics in (("A", found.only_a), ("B", found.only_b)):
         if topics:
@@ -213,8 +214,9 @@ def print_comparison(found: Comparison) -> None:
 def _metric(one: Difference) -> tuple[str, ...]:
     metric = known(one.name)
     clock = " (wall clock)" if metric is not None and not metric.repeatable else ""
-    delta = "" if one.delta in (None, 0.0) else f"{one.delta:+.3g}"
-    return one.name, number(one.a), number(one.b), f"{delta}{clock}"
+    scale = metric.scale if metric is not None else 1.0
+    delta = "" if one.delta in (None, 0.0) else f"{scale * one.delta:+.3g}"
+    return one.name, value_text(one.name, one.a), value_text(one.name, one.b), f"{delta}{clock}", shown_unit(one.name)
 
 
 def _channels(channels: tuple[ChannelDifference, ...], tolerance: float) -> Table:

@@ -1,10 +1,15 @@
 """What MCAP viewers draw of a run: bodies, forces, points and outlines, and its events in words."""
 
+import math
+from collections.abc import Iterator
+from typing import NamedTuple
+
 import numpy as np
 from foxglove_schemas_protobuf.FrameTransforms_pb2 import FrameTransforms
 from foxglove_schemas_protobuf.JointStates_pb2 import JointStates
 from foxglove_schemas_protobuf.Log_pb2 import Log
 from foxglove_schemas_protobuf.SceneUpdate_pb2 import SceneUpdate
+from google.protobuf.message import DecodeError
 from google.protobuf.message import Message as ProtobufMessage
 from google.protobuf.timestamp_pb2 import Timestamp
 from numpy.typing import ArrayLike, NDArray
@@ -12,6 +17,8 @@ from numpy.typing import ArrayLike, NDArray
 from surefoot.models.types import RobotDescription
 from surefoot.planner.plan import PlanSample, WalkPlan
 from surefoot.planner.types import SolverStatus
+from surefoot.scenarios.errors import LogError
+from surefoot.scenarios.log import Log as LogFile
 from surefoot.scenarios.log import LogWriter
 from surefoot.scenarios.log.spec import Template
 from surefoot.scenarios.record.foxglove import drawing as templates
@@ -154,6 +161,31 @@ class EventLog:
         seconds, nanos = divmod(time_ns, 10**9)
         message = Log(timestamp=Timestamp(seconds=seconds, nanos=nanos), level=level, message=text, name=kind)
         self._channel.append(time_ns, message.SerializeToString(deterministic=True))
+
+
+class Event(NamedTuple):
+    """An event of a run: when [s], what kind it is, and in words."""
+
+    time: float
+    kind: str
+    text: str
+
+
+def events(log: LogFile, start: float = -math.inf, end: float = math.inf) -> Iterator[Event]:
+    """The events of a log between two times [s], in order.
+
+    Raises:
+        LogError: the log has none, or one cannot be read.
+    """
+    for time_ns, data in log.messages(TOPIC):
+        time = time_ns / 1e9
+        if start <= time <= end:
+            try:
+                said = Log.FromString(data)
+            except DecodeError:
+                right = "`surefoot recover` keeps what is whole"
+                raise LogError(f"{log.path}: an event at {time:.3f} s cannot be read; {right}") from None
+            yield Event(time, said.name, said.message)
 
 
 SCENE_PERIOD = 10

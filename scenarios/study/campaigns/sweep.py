@@ -18,7 +18,14 @@ from surefoot.scenarios.study.campaigns.campaign import Campaign
 from surefoot.scenarios.study.campaigns.engine import Worker, cluster_workers, interrupts_ignored, local_workers
 from surefoot.scenarios.study.campaigns.journal import Journal, outcome_of
 from surefoot.scenarios.study.campaigns.points import Outcome, Point, Record, Runs, RunStatus, Searched, cells, facts
-from surefoot.scenarios.study.campaigns.table import has_parquet, runs_table, thresholds_table, wilson, write_table
+from surefoot.scenarios.study.campaigns.table import (
+    has_parquet,
+    runs_table,
+    thresholds_table,
+    thresholds_told,
+    wilson,
+    write_table,
+)
 from surefoot.values import dataclass
 
 SPEC_FILE, PAGE, RUNS_TABLE, THRESHOLDS_TABLE = "campaign.yaml", "report.html", "table", "thresholds"
@@ -231,6 +238,7 @@ class Swept:
             judged = [record.status for _, record in self.facts if record.status in ("pass", "fail")]
             rate = wilson(judged.count("pass"), len(judged))
             yield f"success rate {100 * rate.rate:.1f} %, 95 % interval {rate.between} %"
+        yield from thresholds_told(self.outcomes)
         yield from map(str, reversed(self.files))
 
     def to_json(self) -> dict[str, Any]:

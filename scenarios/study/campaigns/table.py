@@ -16,7 +16,7 @@ from surefoot.scenarios.errors import require
 from surefoot.scenarios.judge.metrics import known
 from surefoot.scenarios.output import write_whole
 from surefoot.scenarios.study.campaigns.points import Cell, Outcome, facts
-from surefoot.scenarios.study.campaigns.spec import described
+from surefoot.scenarios.study.campaigns.spec import described, text
 from surefoot.values import dataclass
 
 TableValue = bool | int | float | str | None
@@ -130,6 +130,40 @@ def thresholds_table(outcomes: Sequence[Outcome]) -> Table:
         _column("log", [run and (run[1].log or None) for run in failed], "", "of that run"),
     ]
     return Table(tuple(columns))
+
+
+MOST_THRESHOLDS = 48
+"""Thresholds that are printed; the files have all."""
+
+
+def thresholds_told(outcomes: Sequence[Outcome]) -> Iterator[str]:
+    """Lines of a table for a person: what varies and the threshold of each search, with units, if it searches."""
+    table = thresholds_table(outcomes)
+    if not table.columns:
+        return
+    labels = [column for column in table.columns[: [one.name for one in table.columns].index("threshold")]]
+    shown = [_shown(outcome) for outcome in outcomes if outcome.threshold is not None]
+    sought = next(column for column in table.columns if column.name == "threshold")
+    heading = f"{sought.meaning.removeprefix('of ')} [{sought.unit or '-'}]"
+    rows = [(*(column.heading for column in labels), heading)]
+    cells = zip(*(column.values for column in labels), shown, strict=True)
+    rows += [tuple(text(cell) for cell in row) for row in cells][:MOST_THRESHOLDS]
+    widths = [max(map(len, column)) for column in zip(*rows, strict=True)]
+    yield from ("  ".join(f"{cell:<{width}}" for cell, width in zip(row, widths, strict=True)).rstrip() for row in rows)
+    if len(shown) > MOST_THRESHOLDS:
+        yield f"and {len(shown) - MOST_THRESHOLDS} thresholds more"
+
+
+def _shown(outcome: Outcome) -> str:
+    """A threshold, or the end of its range beyond which it lies."""
+    cell, found = outcome.cell, outcome.threshold
+    assert isinstance(cell, Cell)
+    assert found is not None
+    bisect = cell.campaign.bisect(cell.keys)
+    assert bisect is not None
+    if found.value is not None and found.side == "inside":
+        return text(float(found.value))
+    return f"below {text(float(bisect.low))}" if found.side == "below" else f"above {text(float(bisect.high))}"
 
 
 class SuccessRate(NamedTuple):

@@ -22,7 +22,8 @@ from surefoot.scenarios.apps.starter import starter
 from surefoot.scenarios.errors import SetupError
 from surefoot.scenarios.file.schema import Scenario
 from surefoot.scenarios.judge.metrics import OWN
-from surefoot.scenarios.log import read
+from surefoot.scenarios.log import LogWriter, read
+from surefoot.scenarios.record.foxglove.views import EventLog
 from surefoot.scenarios.run import interrupts, run
 from surefoot.scenarios.setup import walk
 from surefoot.scenarios.setup.keys import scenario_problem
@@ -332,6 +333,27 @@ def test_inspect_a_topic(surefoot, scenario, tmp_path):
     assert (com["shape"], com["messages"], com["not_finite"], com["min"], com["max"]) == ([3], 2000, 0, 0.0, 1.0)
     assert "com_velocity" in surefoot("inspect", log, "--topic", "/truth")[1]
     assert surefoot("inspect", log, "--topic", "/trut")[0] == 2
+
+
+def test_events_are_printed_as_words(surefoot, tmp_path):
+    with LogWriter(tmp_path / "said.mcap", {}) as writer:
+        said = EventLog(writer)
+        said.update(1_500_000_000, (True, False), False, False, False, False)
+        said.update(2_500_000_000, (True, True), False, False, False, True)
+    said = tmp_path / "said.mcap"
+    code, out, _ = surefoot("inspect", said, "--topic", "/events")
+    assert code == 0
+    assert out.splitlines()[0].split() == ["time", "[s]", "kind", "event"]
+    assert [line.split()[:2] for line in out.splitlines()[1:]] == [
+        ["1.500", "lift-off"], ["2.500", "touchdown"], ["2.500", "fall"],
+    ]  # fmt: skip
+    found = json.loads(surefoot("inspect", said, "--topic", "/events", "--from", "2", "--json")[1])
+    assert found[-1] == {"time": 2.5, "kind": "fall", "text": "the robot falls"}
+    assert len(found) == 2
+    code, _, err = surefoot("inspect", said, "--topic", "/events", "--field", "text")
+    assert code == 2
+    assert "has words" in err
+    assert surefoot("inspect", said, "--topic", "/event")[0] == 2
 
 
 def test_no_file_is_replaced_without_being_told(surefoot, scenario, tmp_path):

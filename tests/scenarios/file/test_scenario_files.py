@@ -164,6 +164,17 @@ def test_a_wrong_override_is_named(robots, override, message):
     assert message in problems(robots, "seed: 1\npushes: []", override)[0]
 
 
+def test_a_refusal_of_what_does_not_fit_together_names_what_was_set_over_the_file(robots):
+    text, wide = "gait: {step_width: 0.2}", "robot_options.foot_width=0.3"
+    (found,) = problems(robots, text, "seed=3", wide)
+    assert found.startswith("f.yaml:1:20: gait.step_width 0.2 m lets feet 0.3 m wide touch")
+    assert found.endswith("[set over the file: --set seed, --set robot_options.foot_width]")
+    (own,) = problems(robots, "gait: {step_width: 0.2}\nrobot_options: {foot_width: 0.3}")
+    assert "--set" not in own
+    (alone,) = problems(robots, "gait: {steps: many}", "seed=3")
+    assert "--set" not in alone
+
+
 def test_what_is_no_file(robots, tmp_path):
     (tmp_path / "latin.yaml").write_bytes(b"name: a\nrobot: \xe9")
     (tmp_path / "big.yaml").write_bytes(b"#" * 2_000_000)

@@ -124,6 +124,19 @@ def test_a_chunk_is_written_every_90_ms_of_simulated_time_within_8_ms(tmp_path, 
     assert len(read(path)["/x"]) == 2 * rate
 
 
+@pytest.mark.parametrize("gaps", [(100,), (1000,), (2, 2, 500), (95, 2, 2, 95)])
+def test_nothing_is_lost_in_gaps_of_time(tmp_path, gaps):
+    """Between two messages more time may pass than a chunk has, as on a machine that does not answer for a while."""
+    path, times = tmp_path / "log.mcap", [0]
+    while len(times) < 60:
+        times.append(times[-1] + gaps[len(times) % len(gaps)] * 1_000_000)
+    with LogWriter(path, {}) as writer:
+        channel = writer.channel(SPEC)
+        for tick, time in enumerate(times):
+            channel.append(time, 0.0, (1, 2, 3), tick)
+    assert read(path)["/x"].time_ns.tolist() == times
+
+
 def test_no_tick_does_all_of_a_chunk(tmp_path, monkeypatch):
     done = []
     monkeypatch.setattr(log_writer, "compress", lambda data, _: done.append("compressed") or data)

@@ -11,7 +11,9 @@ from surefoot.scenarios.errors import LogError
 from surefoot.scenarios.log import AttachedFile, ChannelSpec, LogWriter, read
 from surefoot.scenarios.run.run import run_scenario
 from surefoot.scenarios.setup.load import load as load_scenario
+from surefoot.scenarios.show.compare import _metric as compare_metric
 from surefoot.scenarios.show.compare import compare
+from surefoot.scenarios.show.differences import Difference
 from surefoot.scenarios.show.figures.page import plot
 
 pytestmark = pytest.mark.unit
@@ -165,6 +167,13 @@ def test_what_cannot_be_read_is_never_the_same(command, logs, tmp_path):
     cut.write_bytes(logs[0].read_bytes()[:-3000])
     code, out, _ = command("compare", cut, cut, "--exit-code")
     assert (code, out.splitlines()[0]) == (1, "identical as far as both logs reach")
+
+
+def test_metrics_are_shown_in_the_units_of_the_verdict(logs):
+    one = Difference("zmp_error_rms.x", 0.0015, 0.002)
+    assert compare_metric(one) == ("zmp_error_rms.x", "1.5", "2", "+0.5", "mm")
+    assert compare_metric(Difference("speed_mean", 0.5, None)) == ("speed_mean", "0.5", "-", "", "m/s")
+    assert compare_metric(Difference("of_a_package", 1.5, 2.0)) == ("of_a_package", "1.5", "2", "+0.5", "")
 
 
 def test_json_is_one_object(command, logs):

@@ -350,6 +350,22 @@ def test_thresholds_of_the_page_are_those_of_the_table(push_map):
     assert [float(value) for value in re.findall(r'data-value="([^"]*)"', text)] == wanted
 
 
+def test_thresholds_are_printed_with_their_units_as_the_table_has_them(push_map):
+    _, head, *rows = [line for line in push_map.lines() if ".csv" not in line and ".html" not in line][:5]
+    assert head.split("  ") == ["pushes.0.direction [rad]", "pushes.0.impulse [N·s/kg]"]
+    table = list(csv.DictReader(io.StringIO((push_map.folder / "thresholds.csv").read_text())))
+    wanted = [[f"{float(row['pushes.0.direction [rad]']):.4g}", row["threshold [N·s/kg]"]] for row in table]
+    assert [row.split() for row in rows] == [[angle, f"{float(value):.4g}"] for angle, value in wanted]
+
+
+@pytest.mark.parametrize(("side", "told"), [("below", "below 0.9"), ("above", "above 0.95")])
+def test_a_threshold_beyond_its_range_is_told_as_such(tmp_path, side, told):
+    text = "scenario: walk\nset: {fidelity: pendulum}\n"
+    text += "bisect: {key: gait.com_height, low: 0.9, high: 0.95, tolerance: 0.05}\n"
+    whole = swept(tmp_path, text, lambda one: Record(one.id, "fail" if side == "below" else "pass"))
+    assert [*whole.lines()][1:3] == ["gait.com_height [m]", told]
+
+
 def test_no_threshold_of_the_pendulum_is_beyond_the_limit(push_map):
     text = (push_map.folder / PAGE).read_text()
     thresholds = [float(value) for value in re.findall(r'data-value="([^"]*)"', text)]

@@ -1,0 +1,145 @@
+"""``surefoot serve`` and ``surefoot walk``: a simulated robot and its controller in processes of their own."""
+
+import json
+from pathlib import Path
+from typing import TYPE_CHECKING, Annotated
+
+import typer
+
+from surefoot.lazy import importing
+from surefoot.scenarios.errors import ScenarioError, SetupError
+from surefoot.scenarios.show.options import (
+    INTERRUPTED,
+    MISSED,
+    AsJson,
+    Seed,
+    Settings,
+    overrides,
+    scenarios_from,
+    with_options,
+)
+from surefoot.values import dataclass
+
+if TYPE_CHECKING:
+    from surefoot.scenarios.file.schema import Scenario
+
+DEFAULT_SCENARIO = "walk"
+
+app = typer.Typer()
+
+_Scenario = typer.Argument(help="Catalogue name, scenario file or log.", autocompletion=scenarios_from)
+
+
+@dataclass(frozen=True, slots=True)
+class ServeOptions:
+    """What `surefoot serve` is told."""
+
+    scenario: Annotated[str | None, _Scenario] = None
+    robot: Annotated[str | None, typer.Option(help="Robot, for which the scenario is scaled.")] = None
+    set_: Settings = None
+    seed: Seed = None
+    port: Annotated[int, typer.Option(min=0, max=65535, help="That is listened at; 0: any free one.")] = 7447
+    bind: Annotated[
+        str, typer.Option(metavar="HOST", help="Address of this machine; all but the default lets others in.")
+    ] = "127.0.0.1"
+
+
+@app.command()
+@with_options(ServeOptions)
+def serve(told: ServeOptions) -> None:
+    """Serve the simulated robot to a controller in another process."""
+    with importing():
+        from surefoot.scenarios.apps.bridge.serve import Server
+        from surefoot.scenarios.run.interrupts import held_back
+        from surefoot.scenarios.run.run import one_thread
+        from surefoot.scenarios.run.skeleton import refusing
+        from surefoot.scenarios.setup.load import load, locate
+        from surefoot.scenarios.setup.walk import resolve
+
+    reference = told.scenario or DEFAULT_SCENARIO
+    asked = overrides(told.set_, told.seed)
+    if told.robot is not None:
+        written = load(reference)
+        asked = [f"sized_for={written.sized_for or written.robot}", f"robot={told.robot}", *asked]
+    loaded = load(reference, asked)
+    try:
+        with refusing():
+            server = Server(resolve(loaded), told.bind, told.port, _say)
+    except SetupError as refusal:
+        raise locate(reference, asked, refusal) from None
+    typer.echo(
+        f"{server.address} serves {loaded.name} on {loaded.robot}; walk it with: surefoot walk --on {server.address}"
+    )
+    with held_back() as interrupts, one_thread():
+        served = server.run(lambda: interrupts.count > 0)
+    _say(f"ended at {served.time:.3f} s, {served.said}")
+    if interrupts.count:
+        raise typer.Exit(INTERRUPTED)
+    raise typer.Exit(0 if served.in_order else MISSED)
+
+
+def _say(sentence: str) -> None:
+    typer.echo(sentence, err=True)
+
+
+@dataclass(frozen=True, slots=True)
+class WalkOptions:
+    """What `surefoot walk` is told."""
+
+    scenario: Annotated[str | None, _Scenario] = None
+    on: Annotated[str, typer.Option(metavar="ADDRESS", help="Of the plant, as surefoot serve says it.")] = "127.0.0.1"
+    set_: Settings = None
+    seed: Seed = None
+    out: Annotated[Path, typer.Option(help="Directory that gets the run's own folder.")] = Path("runs")
+    as_json: AsJson = False
+
+
+@app.command()
+@with_options(WalkOptions)
+def walk(told: WalkOptions) -> None:
+    """Walk a robot that another process serves; log it and judge it."""
+    with importing():
+        from surefoot.scenarios.apps.bridge.remote import Remote
+        from surefoot.scenarios.apps.bridge.walk import walk_on
+        from surefoot.scenarios.setup.load import locate
+        from surefoot.scenarios.show.console import ProgressLine, print_result
+
+    asked = overrides(told.set_, told.seed)
+    loaded = None if told.scenario is None else _own(told.scenario, asked)
+    hello = {} if loaded is None else {"robot": loaded.robot, "rate": loaded.rates.control}
+    remote = Remote(told.on, hello)
+    ended = "refused"
+    try:
+        scenario = loaded or _served(remote.welcome.name, remote.welcome.scenario, asked)
+        progress = ProgressLine(scenario.name)
+        with progress:
+            result = walk_on(remote, scenario, told.out, progress)
+        ended = "interrupted" if result.interrupted else "the walk is over"
+    except SetupError as refusal:
+        raise (
+            ScenarioError([str(refusal)]) if told.scenario is None else locate(told.scenario, asked, refusal)
+        ) from None
+    finally:
+        remote.close(ended)
+    if told.as_json:
+        typer.echo(json.dumps({**result.verdict.to_json(), "log": str(result.log)}, allow_nan=False))
+    else:
+        print_result(scenario.name, result.verdict, result.log)
+    if result.interrupted:
+        typer.echo(f"interrupted; the log up to here is whole: {result.log}", err=True)
+        raise typer.Exit(INTERRUPTED)
+    raise typer.Exit(0 if result.verdict.passed else MISSED)
+
+
+def _own(reference: str, asked: list[str]) -> "Scenario":
+    """The scenario that the user names."""
+    from surefoot.scenarios.setup.load import load
+
+    return load(reference, asked)
+
+
+def _served(name: str, text: str, asked: list[str]) -> "Scenario":
+    """The scenario of the plant."""
+    from surefoot.scenarios.setup.load import read_scenario
+
+    return read_scenario(text, f"scenario served as {name}", name, asked)

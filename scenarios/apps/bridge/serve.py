@@ -1,0 +1,153 @@
+"""Serves a simulated robot to a controller in another process, until that has ended or was lost."""
+
+import contextlib
+import time
+from collections.abc import Callable, Mapping
+from queue import Empty
+from typing import Any
+
+from surefoot.scenarios.apps.bridge.door import Door
+from surefoot.scenarios.apps.bridge.frames import Frame, Kind, Link
+from surefoot.scenarios.apps.bridge.host import Host
+from surefoot.scenarios.apps.bridge.messages import command_of, end_bytes, push_of, start_of, state_bytes, why_of
+from surefoot.scenarios.errors import LinkError
+from surefoot.scenarios.setup.walk import Walk
+from surefoot.values import dataclass
+
+PATIENCE, GETTING_READY = 10.0, 300.0
+"""How long a controller may take for an answer, and to get ready [s]."""
+
+LET_DOWN = 1.0
+"""How long a robot that is damped is simulated on [s]."""
+
+_LOOK = 0.1
+
+
+@dataclass(frozen=True, slots=True)
+class Served:
+    """How serving has ended.
+
+    Attributes:
+        time: simulated [s].
+        said: why, in words.
+        in_order: whether the controller has said that it ends, and was not damped before.
+    """
+
+    time: float
+    said: str
+    in_order: bool
+
+
+class Server:
+    """A plant that is served.
+
+    Args:
+        walk: its robot and world.
+        host: address to be bound to.
+        port: likewise; 0 for any free one.
+        say: is told what happens, in sentences.
+
+    Attributes:
+        plant: the robot.
+        address: that is listened at.
+
+    Raises:
+        ParameterError: the walk cannot be served.
+        LinkError: the address cannot be had.
+    """
+
+    def __init__(self, walk: Walk, host: str, port: int, say: Callable[[str], None]) -> None:
+        self.plant, self._walk, self._say = Host(walk), walk, say
+        robot = walk.robot
+        welcome = {
+            "robot": robot.name,
+            "joints": list(robot.joint_names),
+            "rate": walk.rates.control,
+            "name": walk.name,
+            "scenario": walk.text,
+        }
+        self._door = Door(host, port, self._examine, welcome, say)
+        self.address = self._door.address
+
+    def _examine(self, hello: Mapping[str, Any]) -> str:
+        """Why a controller cannot walk this robot."""
+        robot = self._walk.robot
+        wanted = {"robot": robot.name, "joints": list(robot.joint_names), "rate": self._walk.rates.control}
+        for name, what in (("robot", "robot"), ("joints", "joints in this order"), ("rate", "control rate")):
+            asked = hello.get(name)
+            if asked is not None and asked != wanted[name]:
+                return f"a controller of {str(asked)[:60]}, where the {what} served is {str(wanted[name])[:60]}"
+        return ""
+
+    def run(self, stopped: Callable[[], bool]) -> Served:
+        """Wait for a controller and serve it; ``stopped`` says when nobody wants that any more."""
+        link = None
+        try:
+            link = self._guest(stopped)
+            if link is None:
+                return Served(0.0, "stopped before a controller came", in_order=True)
+            self._say(f"{link.peer} walks the robot")
+            return self._serve(link, stopped)
+        finally:
+            self._door.close()
+            if link is not None:
+                link.close()
+
+    def _guest(self, stopped: Callable[[], bool]) -> Link | None:
+        while not stopped():
+            try:
+                return self._door.guests.get(timeout=_LOOK)
+            except Empty:
+                continue
+        return None
+
+    def _serve(self, link: Link, stopped: Callable[[], bool]) -> Served:
+        plant = self.plant
+        try:
+            frame = self._next(link, GETTING_READY, stopped)
+            if frame.kind is Kind.END:
+                return Served(0.0, why_of(frame.payload), in_order=True)
+            if frame.kind is not Kind.RESET:
+                raise LinkError(f"a message {frame.kind.name} before a start")
+            plant.begin(start_of(frame.payload, plant.joints))
+            while True:
+                link.send(Kind.STATE, state_bytes(plant.state()), PATIENCE)
+                end = self._answer(link, stopped)
+                if end is not None:
+                    return Served(plant.time, why_of(end.payload), in_order=True)
+                plant.advance()
+        except LinkError as fault:
+            return self._let_down(link, str(fault))
+
+    def _answer(self, link: Link, stopped: Callable[[], bool]) -> Frame | None:
+        """Take what answers a state; the end, if that is the answer."""
+        plant = self.plant
+        while (frame := self._next(link, PATIENCE, stopped)).kind is Kind.PUSH:
+            plant.push(push_of(frame.payload))
+        if frame.kind is Kind.END:
+            return frame
+        if frame.kind is not Kind.COMMAND:
+            raise LinkError(f"a message {frame.kind.name} where a command is due")
+        plant.take(*command_of(frame.payload, plant.joints))
+        return None
+
+    def _next(self, link: Link, patience: float, stopped: Callable[[], bool]) -> Frame:
+        deadline = time.monotonic() + patience
+        while time.monotonic() < deadline:
+            if stopped():
+                raise LinkError("stopped by a signal")
+            frame = link.receive(_LOOK)
+            if frame is not None:
+                return frame
+        raise LinkError(f"{link.peer} has sent nothing for {patience:g} s")
+
+    def _let_down(self, link: Link, why: str) -> Served:
+        """Damp the joints, tell the controller if it is there, and simulate the robot until it has come down."""
+        plant = self.plant
+        plant.damp(why)
+        when = plant.time
+        with contextlib.suppress(LinkError):
+            link.send(Kind.END, end_bytes(f"the plant was damped at {when:.3f} s: {why}"), _LOOK)
+        for _ in range(round(LET_DOWN * plant.rate) if plant.tick else 0):
+            plant.advance()
+        return Served(plant.time, f"damped at {when:.3f} s: {why}", in_order=False)

@@ -56,8 +56,8 @@ class SensorReader:
         self._specific_force, self._accelerometer = np.zeros(3), np.zeros(3)
         self._wrench, self._push = np.zeros((2, 6)), np.zeros(3)
         q, v = _read_only(self._q), _read_only(self._v)
-        torque, *rest = map(_read_only, (self._torque, self._accelerometer, self._wrench))
-        self._views = q[7:], v[6:], torque, v[3:6], *rest, q, v, _read_only(self._push)
+        torque, felt, wrench = _read_only(self._torque), _read_only(self._accelerometer), _read_only(self._wrench)
+        self._views = q[7:], v[6:], torque, v[3:6], felt, wrench, q, v, _read_only(self._push)
         """Of a measurement, from the joints' positions to the push."""
 
     def read(self, time: float, pushes: PushSchedule) -> Measurement:
@@ -73,7 +73,7 @@ class SensorReader:
                 self._contact[...] = self._external
             self._read_compiled()
         nonfoot_contact, self_contact = self._touch.read()
-        return _a_measurement(time, *self._views, nonfoot_contact, self_contact)  # type: ignore[arg-type]
+        return _a_measurement(time, *self._views, nonfoot_contact, self_contact)
 
     def _read(self, pushes: PushSchedule) -> None:
         """Fill the buffers but for the pushes."""

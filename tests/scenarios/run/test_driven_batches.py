@@ -78,7 +78,7 @@ def test_five_kilograms_in_a_hand_that_are_told(robot, name):
     assert end_of(name, keys) == "completed"
 
 
-TOO_MUCH = pytest.mark.xfail(strict=True, reason="of a seventh of its mass at arm's length it learns too late in a turn")
+TOO_MUCH = pytest.mark.xfail(strict=True, reason="a seventh of its mass at arm's length is learnt too late in a turn")
 
 
 @pytest.mark.physics

@@ -67,6 +67,7 @@ CHANNELS = (
         channels.torque,
     ),
     channels.command,
+    channels.link,
     channels.timing,
     channels.process,
 )

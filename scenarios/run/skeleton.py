@@ -106,8 +106,8 @@ class Walker(Protocol):
         """Its whole-body controller; None without one."""
         ...
 
-    def sense(self, tick: int, now: float) -> None:
-        """Measure.
+    def sense(self, tick: int, now: float) -> int:
+        """Measure; gives the number of the control tick that was measured, which may be later where some are lost.
 
         Raises:
             RunFault: what is measured is not finite.
@@ -240,6 +240,7 @@ class ClosedLoop:
         tick, rate = self.tick, self.rate
         try:
             sample, fallen = self._step(tick)
+            tick = self.tick
         except (RunFault, PartError) as fault:
             self.end, self.done, self.fault = fault_end(fault, tick / rate), True, fault
             return None
@@ -267,8 +268,8 @@ class ClosedLoop:
         watch, busy = Watch.start(), time.thread_time_ns()
         begin = watch.last
         walker, rate = self.walker, self.rate
+        self.tick = tick = walker.sense(tick, tick / rate)
         now, now_ns = tick / rate, tick * 1_000_000_000 // rate
-        walker.sense(tick, now)
         sense_time = watch.lap()
         sample, spent = walker.control(tick, now)
         busy = time.thread_time_ns() - busy

@@ -1,6 +1,7 @@
 """``surefoot serve`` and ``surefoot walk``: a simulated robot and its controller in processes of their own."""
 
 import json
+import math
 from pathlib import Path
 from typing import TYPE_CHECKING, Annotated
 
@@ -25,6 +26,9 @@ if TYPE_CHECKING:
 
 DEFAULT_SCENARIO = "walk"
 
+SOFT_START = 0.3
+"""Time in which joints go over from being held to what they are told, in real time [s]."""
+
 app = typer.Typer()
 
 _Scenario = typer.Argument(help="Catalogue name, scenario file or log.", autocompletion=scenarios_from)
@@ -42,6 +46,18 @@ class ServeOptions:
     bind: Annotated[
         str, typer.Option(metavar="HOST", help="Address of this machine; all but the default lets others in.")
     ] = "127.0.0.1"
+    real_time: Annotated[
+        bool, typer.Option("--real-time", help="Go by the wall clock and wait for nobody; else in lockstep.")
+    ] = False
+    delay: Annotated[float, typer.Option(help="By which every command comes later [s].")] = 0.0
+    jitter: Annotated[float, typer.Option(help="Most of what is added to that, by chance [s].")] = 0.0
+    drop: Annotated[float, typer.Option(help="Share of states, and of commands, that get lost.")] = 0.0
+    pause: Annotated[float, typer.Option(help="How long the controller hears nothing, once a second [s].")] = 0.0
+    watchdog: Annotated[float, typer.Option(help="Without a new command for so long joints are damped [s].")] = 0.1
+    soft_start: Annotated[
+        float | None,
+        typer.Option(help="Of joints that were held [s]; by default 0.3 in real time, else 0."),
+    ] = None
 
 
 @app.command()
@@ -49,6 +65,9 @@ class ServeOptions:
 def serve(told: ServeOptions) -> None:
     """Serve the simulated robot to a controller in another process."""
     with importing():
+        from surefoot.scenarios.apps.bridge.host import Care
+        from surefoot.scenarios.apps.bridge.limits import TORQUE_RATE
+        from surefoot.scenarios.apps.bridge.line import Disturbance
         from surefoot.scenarios.apps.bridge.serve import Server
         from surefoot.scenarios.run.interrupts import held_back
         from surefoot.scenarios.run.run import one_thread
@@ -64,7 +83,12 @@ def serve(told: ServeOptions) -> None:
     loaded = load(reference, asked)
     try:
         with refusing():
-            server = Server(resolve(loaded), told.bind, told.port, _say)
+            found = resolve(loaded)
+            disturbance = Disturbance(told.delay, told.jitter, told.drop, told.pause, found.seed)
+            apart = told.real_time or not disturbance.none
+            soft = (SOFT_START if told.real_time else 0.0) if told.soft_start is None else told.soft_start
+            care = Care(disturbance, told.watchdog, soft, TORQUE_RATE if apart else math.inf)
+            server = Server(found, told.bind, told.port, _say, care, told.real_time)
     except SetupError as refusal:
         raise locate(reference, asked, refusal) from None
     typer.echo(

@@ -42,8 +42,8 @@ SUDDEN = (10.0, 20.0)
 """Likewise of what acts now; walking at 1 m/s leaves 8 N and 6 N·m."""
 
 LASTING, ACTING = (1.0, 2.0), (4.0, 7.0)
-"""Deviations of one span by which the limits of what lasts and of what acts now are wider where the state is estimated;
-a median of 13 spans has a third of that deviation, one of three two thirds [-]."""
+"""Deviations of one span by which the limits of what lasts and of what acts now are wider, by the root of the sum
+of squares, where the state is estimated; a median of 13 spans has a third of it, one of three two thirds [-]."""
 
 BOUND = (40.0, 12.0)
 """No more force and moment counts of what acts now and has not lasted: it may be a push, soon over [N, N·m]."""
@@ -246,8 +246,8 @@ class LoadObserver:
 
 
 def _wider(limits: tuple[Any, ...], deviation: Any, times: tuple[float, float]) -> tuple[Any, ...]:
-    """Limits that are wider by so many deviations."""
-    return limits[0] + times[0] * deviation, limits[1] + times[1] * deviation
+    """Limits that are wider by so many deviations: what disturbs and what is not known are independent."""
+    return np.hypot(limits[0], times[0] * deviation), np.hypot(limits[1], times[1] * deviation)
 
 
 def _ramp(values: Array, limits: tuple[Any, ...]) -> Array:

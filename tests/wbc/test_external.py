@@ -117,7 +117,10 @@ def test_limits_widen_with_how_unsure_state_and_wrenches_are():
         return loads[-1].force[0]
 
     assert lasting(15.0, None) == lasting(15.0, (0.0, 0.0)) == pytest.approx(15.0, abs=0.1)
-    assert lasting(15.0, (12.0, 1.0)) == 0.0
+    # As the root of the sum of squares: of 12 N and 4 N nothing counts below 12.65 N, of 24 N and 8 N all above 25.3 N.
+    assert lasting(12.0, None) == pytest.approx(12.0, abs=0.1) and lasting(12.0, (12.0, 1.0)) == 0.0
+    assert 0.0 < lasting(14.0, (12.0, 1.0)) < lasting(22.0, (12.0, 1.0)) < 22.0
+    assert lasting(26.0, (12.0, 1.0)) == pytest.approx(26.0, abs=0.1)
     assert 0.0 < lasting(22.0, (12.0, 1.0)) < 22.0
     assert lasting(40.0, (12.0, 1.0)) == pytest.approx(40.0, abs=0.1)
 

@@ -7,6 +7,7 @@ import numpy as np
 
 from surefoot.readings import Reading
 from surefoot.wbc.estimation.parameters import ContactDetection, SensorNoise
+from surefoot.wbc.external import SPAN
 from surefoot.wbc.types import Array
 
 CUT, QUIET = 100.0, 5.0
@@ -38,7 +39,7 @@ class SoleContact:
         felt: which soles the ground carries.
         firm: which of these stand still: loaded, with the CoP well inside the sole.
         tared: how long each sensor was tared [s].
-        deviation: of a filtered force and of a filtered moment [N, N·m].
+        deviation: of a force and of a moment, both soles together, in the mean of a span of the load observer [N, N·m].
         threshold: normal force from which on a contact is felt [N].
     """
 
@@ -58,7 +59,10 @@ class SoleContact:
         cut = math.inf if deviation else cut
         self._share, left = _low_pass(cut, period)
         self._slow_share, slowly = _low_pass(SLOW_CUT, period)
-        self.deviation = noise * left, turning * left
+        # What is filtered already is no white noise, of which a mean has less.
+        mean = math.sqrt(2.0) if deviation else math.sqrt(2.0 * min(period / SPAN, 1.0))
+        self.deviation = noise * mean, turning * mean
+        self._settled = noise * math.sqrt(0.5 * period / parameters.tare_time)
         self.threshold, self._lasting = (parameters.force + parameters.certain * noise * x for x in (left, slowly))
         self._slow = np.full(2, 0.5 * weight)
         self._bias = sensors.wrench_bias
@@ -69,9 +73,11 @@ class SoleContact:
         self.wrench = np.zeros((2, 6))
 
     @property
-    def known(self) -> bool:
-        """Whether the wrenches have no bias any more."""
-        return self._bias == 0.0 or min(self.tared) >= self._parameters.tared_after
+    def bias(self) -> float:
+        """Deviation of what a force is off for long: a sensor's bias until it was tared, then that of the tare [N]."""
+        if self._bias == 0.0:
+            return 0.0
+        return math.hypot(self._bias * math.exp(-min(self.tared) / self._parameters.tare_time), self._settled)
 
     def update(self, reading: Reading, still: Sequence[bool], above: Sequence[float]) -> None:
         """Take the wrenches of a tick.

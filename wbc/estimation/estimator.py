@@ -10,13 +10,14 @@ import pinocchio as pin
 from surefoot.readings import Reading, Readings
 from surefoot.values import dataclass
 from surefoot.wbc.estimation.contact import SoleContact
+from surefoot.wbc.estimation.doubt import Doubt
 from surefoot.wbc.estimation.estimate import Deviation, Estimate, Planned
-from surefoot.wbc.estimation.invariant_filter import OFFSETS, POSITION, TURN, VELOCITY, InvariantFilter, Stand
+from surefoot.wbc.estimation.invariant_filter import InvariantFilter, Stand
 from surefoot.wbc.estimation.joints import KEPT, JointObserver
 from surefoot.wbc.estimation.kinematics import ImuMount, SensedBody
 from surefoot.wbc.estimation.parameters import EstimatorParameters
+from surefoot.wbc.estimation.rates import RateFilter
 from surefoot.wbc.estimation.torques import TorqueWrench
-from surefoot.wbc.external import SPAN
 from surefoot.wbc.types import GRAVITY, Array, RobotState
 
 Ground = Callable[[float, float], tuple[float, Array]]
@@ -84,7 +85,9 @@ class SensedState:
         self._lost = False
         self._state: RobotState | None = None
         self._deviation: Deviation | None = None
-        self._height, self._above = 0.0, [0.0, 0.0]
+        self._doubt = Doubt(self._body, sensors, self._joints.rate_noise)
+        self._rate: RateFilter
+        self._above = [0.0, 0.0]
 
     @property
     def filter(self) -> InvariantFilter:
@@ -102,16 +105,19 @@ class SensedState:
 
     def sense(self, readings: Readings) -> Estimate:
         """The estimate of a tick, by the time of its readings, which may come at any."""
+        parameters = self._parameters
         if self._tick < 0:
             self._from = readings.time
         self._tick = round((readings.time - self._from) / self._period)
         q, qd = self._joints.update(readings)
         if self._filter is None:
             self._filter = self._start(readings.joint_position.values)
+            gyro = readings.angular_velocity.values
+            self._rate = RateFilter(gyro, self._period, parameters.sensors.gyro_density, parameters.ground.turning_plan)
             self._contact = self._feeling(readings)
             self._contact.update(self._wrench(readings), self._still, self._above)
             self._state = self._now(readings, q, qd)
-            self._deviation = self._uncertainty(self._body.offset_jacobians())
+            self._deviation = self._unsure(self._body.offset_jacobians())
         elif not self._lost:
             kept = self._state
             with np.errstate(all="ignore"):
@@ -207,6 +213,7 @@ class SensedState:
         at = self._tick - round(rate.age / self._period)
         if at > self._imu_at:
             filter_.propagate(rate.values, force.values, (at - self._imu_at) * self._period)
+            self._rate.update(readings.angular_velocity.values, self._gained(at), at - self._imu_at)
             self._imu_at = at
         contact.update(self._wrench(readings), self._still, self._above)
         body.update(self._known(readings.joint_position.values, filter_.stand.offsets))
@@ -227,8 +234,21 @@ class SensedState:
                 self._land(slipped, J)
                 filter_.weigh(J)
         if due:
-            self._deviation = self._uncertainty(J)
+            self._deviation = self._unsure(J)
             self._above = [self._over_ground(k) for k in (0, 1)]
+
+    def _gained(self, at: int) -> Array | None:
+        """Angular velocity that the IMU was planned to gain from its last reading to that of a tick, shape (3,)."""
+        told, first = self._base_told, self._imu_at - self._tick
+        if len(told) < -first:
+            return None
+        gained = told[first][3:]
+        for back in range(first + 1, at - self._tick):
+            gained = gained + told[back][3:]
+        return self._body.turned_to_imu(self._period * gained)
+
+    def _unsure(self, J: Array) -> Deviation:
+        return self._doubt.deviation(self.filter, self._contact, self._rate.deviation, J)
 
     def _change(self, J: Array) -> None:
         filter_, firm = self.filter, self._contact.firm
@@ -257,7 +277,7 @@ class SensedState:
         """The state now, which is older by the age of the IMU's readings."""
         s = self.filter.stand
         late = self._tick - self._imu_at
-        rate = readings.angular_velocity.values - s.gyro_bias
+        rate = self._rate.rate - s.gyro_bias
         q = self._known(q, s.offsets)
         base, p, velocity = self._body.base(s.R, s.p, s.v, rate, q, qd)
         if late and self._base_told:
@@ -274,44 +294,6 @@ class SensedState:
         far, fast = float(state.q[:7] @ state.q[:7]), float(state.v @ state.v)
         # Nothing that is not finite is less than a number.
         return far < FARTHEST**2 and fast < FASTEST**2 and (self._tick % self._every != 0 or self.filter.finite)
-
-    def _uncertainty(self, J: Array) -> Deviation:
-        """Standard deviations by the covariance of the filter; J as of `SensedBody.offset_jacobians`."""
-        filter_, body, sensors = self.filter, self._body, self._parameters.sensors
-        s, P = filter_.stand, filter_.P
-        force = self._contact.wrench[:, 2]
-        lever, by_joints, moving = body.com_jacobians(int(force[1] > force[0]))
-        by_joints = s.R @ by_joints
-        rows = np.zeros((6, len(P)))
-        rows[:3, TURN] = -pin.skew(s.R @ lever)
-        rows[:3, OFFSETS] = -by_joints[:, body.chain]
-        for k in (0, 1):
-            rows[3 + k, TURN] = -pin.skew(s.R @ body.position[k] + s.p)[2]
-            rows[3 + k, POSITION.stop - 1] = 1.0
-            rows[3 + k, OFFSETS] = -s.R[2] @ J[k, :3]
-        rows[5] = rows[3] - rows[4]
-        self._height = float(lever @ s.R[2])
-        place = np.maximum(np.einsum("ij,jk,ik->i", rows, P, rows), 0.0)
-        by_joints[:, body.chain] = 0.0
-        com = place[:3] + (by_joints**2).sum(axis=1) * sensors.encoder_offset**2
-        spread = np.diagonal(P)
-        speed = spread[VELOCITY] + ((s.R @ moving) ** 2).sum(axis=1) * self._joints.rate_noise**2
-        com, speed, tilt = np.sqrt(com), np.sqrt(speed), np.sqrt(spread[:2])
-        load = self._of_load(speed, com, float(tilt.max()))
-        return Deviation(com, speed, tilt, np.sqrt(place[3:5]), math.sqrt(place[5]), *load)
-
-    def _of_load(self, speed: Array, com: Array, tilt: float) -> tuple[float, float]:
-        """Deviations of the force and the moment that the load observer sees within its span."""
-        if not self._contact.known:
-            return math.inf, math.inf
-        force, moment = self._contact.deviation
-        # The change of velocity over a span, and the soles' forces, which lean with the estimate.
-        shaken = self._body.mass * math.sqrt(2.0) * float(np.hypot(*speed[:2])) / SPAN
-        leaning = self._weight * tilt
-        lateral = math.hypot(shaken, leaning, force)
-        # What does not change from span to span no median takes out: it counts twice.
-        wrong = math.hypot(self._weight * float(np.hypot(*com[:2])), leaning * self._height, force * self._height)
-        return lateral, math.hypot(2.0 * wrong, moment)
 
 
 def _sole(yaw: float, up: Array) -> Array:

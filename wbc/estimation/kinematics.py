@@ -109,6 +109,21 @@ class SensedBody:
         to_imu = self._imu.rotation.T
         return to_imu @ (data.com[0] - placed.translation), to_imu @ (J - sole), to_imu @ J
 
+    def turning_inertia(self) -> tuple[float, float]:
+        """What angular velocities make of moment of momentum about the CoM, at the angles last taken.
+
+        Returns:
+            that of the base about a horizontal axis, the greater one; the root sum of squares of all joints' [kg m^2].
+        """
+        A = pin.computeCentroidalMap(self.model, self._data, self._q)[3:5]
+        return float(np.linalg.norm(A[:, 3:6], axis=1).max()), float(np.linalg.norm(A[:, 6:], axis=1).max())
+
+    def turned_to_imu(self, turn: Array) -> Array | None:
+        """A turn of the base in the axes of the IMU, shape (3,); None where joints are between them [rad/s]."""
+        if self._at_base:
+            return turn
+        return None if self._behind else np.asarray(self._placement.rotation.T @ turn)
+
     def base(self, R: Array, p: Array, v: Array, rate: Array, q: Array, qd: Array) -> tuple[Array, Array, Array]:
         """The base from the IMU: orientation (3, 3), position (3,) [m], velocity in its axes (6,) [m/s, rad/s].
 

@@ -53,6 +53,7 @@ class GroundNoise:
     height: float = number(1.5e-3, "m", "of the ground's height where a foot lands")
     level: float = number(2e-4, "rad", "of the soles' tilt to the ground at the start")
     model: float = number(1.5e-3, "m/s", "of a second's change of velocity, by links that bend and by sampling")
+    turning_plan: float = number(0.02, "rad/s", "of a second's change of angular velocity, against what is planned")
 
     def __post_init__(self) -> None:
         check(self, "estimator", "ground")

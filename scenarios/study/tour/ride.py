@@ -155,7 +155,8 @@ class Ride:
         if self._tick % (self.row.rate // COMMAND_RATE) == 0:
             orders = command_to(*self._way(time))
         try:
-            command = controller.step(self.world.measure(), orders, arms)
+            seen = self.world.contracted() if self.row.contract else self.world.measure()
+            command = controller.step(seen, orders, arms)
         except RunFault as fault:
             self._fault = str(fault)
             return JointCommand(np.zeros(joints))

@@ -76,6 +76,16 @@ class TourWorld:
         mujoco_to_pinocchio(self.data.qpos, self.data.qvel, self._q, self._v)
         return Measurement.of_state(self.time, self._q.copy(), self._v.copy(), self.torque.copy(), self._wrenches())
 
+    def contracted(self) -> Measurement:
+        """What the benchmark hands over: joints, attitude and turning of the pelvis; nothing else of it is a number.
+
+        The torques of the joints are those of the drives, whose targets and gains a walker knows.
+        """
+        mujoco_to_pinocchio(self.data.qpos, self.data.qvel, self._q, self._v)
+        q, v = self._q.copy(), self._v.copy()
+        q[:3] = v[:3] = np.nan
+        return Measurement.of_state(self.time, q, v, self.torque.copy())
+
     def advance(self, command: JointCommand, period: float, punch: Punch | None = None) -> None:
         """Go on for so long [s] with a command whose servos, if it has any, are followed in each step.
 

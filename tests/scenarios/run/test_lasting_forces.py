@@ -44,6 +44,26 @@ def test_a_lasting_force_is_found_within_a_tenth_and_walked_with(tmp_path):
 
 
 @pytest.mark.physics
+@pytest.mark.parametrize(
+    ("direction", "phase", "seed"), [("left", ("single", 0.5), 1), ("backward", ("double", 0.5), 2)]
+)
+def test_a_lasting_force_is_found_and_walked_with_from_sensors(direction, phase, seed, tmp_path):
+    """Within a tenth in the median; what is found shakes with the noise of momentum and wrenches."""
+    result = walk(tmp_path, "walk", *NATURAL, pulled(40, direction, phase), "sensing.preset=good", f"seed={seed}")
+    assert result.verdict.reasons == ()
+    log, along = read(result.log), np.array([*FORCES[direction], 0])
+    acting = log["/measurement"].field("external_force") @ along
+    began, ended = np.flatnonzero(acting > 39.0)[[0, -1]]
+    found = log["/estimate"].field("external_force")
+    lasting = found[began + 100 : ended]
+    assert np.median(lasting @ along) == pytest.approx(40.0, abs=4.0)
+    assert np.abs(lasting - 40.0 * along).max() < 16.0
+    # No ghost before it acts, nor soon after it.
+    assert np.linalg.norm(found[:began], axis=1).max() < 8.0
+    assert np.linalg.norm(found[ended + 150 :], axis=1).max() < 8.0
+
+
+@pytest.mark.physics
 def test_a_force_that_is_walked_with_fells_it_without_the_estimate(tmp_path):
     assert walk(tmp_path, "walk", *NATURAL, pulled(60, "left")).verdict.reasons == ()
     assert walk(tmp_path, "walk", *NATURAL, pulled(60, "left"), OFF, "duration=5").verdict.metrics["fell"]
@@ -61,16 +81,18 @@ def test_an_undisturbed_walk_is_the_same_to_the_last_digit(tmp_path):
 
 @pytest.mark.physics
 @pytest.mark.parametrize("scale", [0.75, 1.25])
-def test_the_true_weight_is_found_within_a_hundredth(scale, tmp_path):
-    log = read(walk(tmp_path, "stand", f"errors.mass_scale={scale}", "duration=0.8").log)
+@pytest.mark.parametrize("keys", [(), ("sensing.preset=good",)], ids=["truth", "good"])
+def test_the_true_weight_is_found_within_a_hundredth(scale, keys, tmp_path):
+    log = read(walk(tmp_path, "stand", f"errors.mass_scale={scale}", "duration=0.8", *keys).log)
     np.testing.assert_allclose(log["/estimate"].field("mass")[100:], 100.0 / scale, rtol=0.01)
 
 
 @pytest.mark.long
 @pytest.mark.parametrize("phase", PHASES)
 @pytest.mark.parametrize("direction", FORCES)
-def test_forces_that_last_two_seconds(direction, phase, tmp_path):
-    keys = (*NATURAL, pulled(40, direction, phase), "start.position_noise=0.0005")
+@pytest.mark.parametrize("keys", [(), ("sensing.preset=good",)], ids=["truth", "good"])
+def test_forces_that_last_two_seconds(keys, direction, phase, tmp_path):
+    keys = (*NATURAL, pulled(40, direction, phase), "start.position_noise=0.0005", *keys)
     assert walk(tmp_path, "walk", *keys).verdict.reasons == ()
 
 

@@ -90,3 +90,28 @@ def test_the_com_from_a_sole_is_that_of_finite_differences(robot):
 def test_a_frame_that_is_not_there_is_refused(robot):
     with pytest.raises(ValueError, match="no frame 'elbow'"):
         SensedBody(robot.model, robot.frames.soles, ImuMount("elbow"))
+
+
+@pytest.mark.parametrize("mount", MOUNTS)
+def test_a_turn_of_the_base_is_that_of_an_imu_that_no_joint_parts_from_it(robot, mount):
+    body, turn = SensedBody(robot.model, robot.frames.soles, mount), np.array([0.1, -0.2, 0.3])
+    body.update(robot.standing[7:])
+    found = body.turned_to_imu(turn)
+    behind = mount.body is not None
+    assert found is None if behind else np.allclose(found, np.array(mount.rotation).T @ turn)
+
+
+def test_turning_inertia_is_what_spinning_makes_of_moment_of_momentum(robot):
+    body, data = SensedBody(robot.model, robot.frames.soles, ImuMount()), robot.model.createData()
+    body.update(robot.standing[7:])
+    whole, joints = body.turning_inertia()
+    q = np.concatenate((pin.neutral(robot.model)[:7], robot.standing[7:]))
+    spun = np.eye(robot.nv)[3:5] + 0.0
+    found = [np.linalg.norm(pin.computeCentroidalMomentum(robot.model, data, q, v).angular[:2]) for v in spun]
+    assert whole == pytest.approx(max(found), rel=0.05)
+    # A random motion of the joints alone has that as its standard deviation, about the axis that has more.
+    rng, spins = np.random.default_rng(2), []
+    for _ in range(4000):
+        v = np.concatenate((np.zeros(6), rng.normal(size=robot.nv - 6)))
+        spins.append(pin.computeCentroidalMomentum(robot.model, data, q, v).angular[:2].copy())
+    assert joints == pytest.approx(np.std(spins, axis=0).max(), rel=0.05)

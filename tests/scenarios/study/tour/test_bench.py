@@ -1,7 +1,10 @@
 """The bench keeps tours as they come and goes on with those of the same making alone."""
 
 import json
+import re
 
+import mujoco
+import numpy as np
 import pytest
 from typer.testing import CliRunner
 
@@ -10,7 +13,8 @@ from surefoot.scenarios.errors import ScenarioError
 from surefoot.scenarios.study.tour import bench as module
 from surefoot.scenarios.study.tour.bench import Bench, lines
 from surefoot.scenarios.study.tour.ride import Ride, TourResult
-from surefoot.scenarios.study.tour.rows import ROWS, command_to
+from surefoot.scenarios.study.tour.robot import tour_robot
+from surefoot.scenarios.study.tour.rows import DRIVES, ROWS, command_to
 
 pytestmark = pytest.mark.unit
 
@@ -88,3 +92,24 @@ def test_a_tour_begins_on_its_feet_and_is_the_same_each_time(row):
     assert results[0] == results[1] and results[0].completed
     assert len(results[0].punches) == 1 and results[0].punches[0].survived
     assert rides[0].world.pelvis[2] > 0.7
+
+
+def test_the_controller_is_told_the_drives_of_the_arms_as_they_are():
+    robot, description = tour_robot(), ROWS["arms"].controller().walk.robot
+    armature = mujoco.MjModel.from_xml_string(description.mjcf).dof_armature[6:]
+    arms = {}
+    for pattern, gains in DRIVES.items():
+        arms |= dict.fromkeys((name for name in description.joint_names if re.fullmatch(pattern, name)), gains)
+    assert len(arms) == 14
+    for name, inertia in zip(description.joint_names, armature, strict=True):
+        if name in arms:
+            assert arms[name] == pytest.approx(robot.arm_gains(inertia), abs=1e-4)
+
+
+def test_the_contract_hands_over_no_place_and_no_speed_of_the_base():
+    ride = Ride(ROWS["contract"], 0)
+    ride.step()
+    seen, true = ride.world.contracted(), ride.world.measure()
+    assert np.isnan(seen.q[:3]).all() and np.isnan(seen.v[:3]).all() and np.isnan(seen.wrench).all()
+    assert np.isnan(seen.accelerometer).all()
+    assert np.array_equal(seen.q[3:], true.q[3:]) and np.array_equal(seen.v[3:], true.v[3:])

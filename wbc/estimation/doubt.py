@@ -1,0 +1,86 @@
+"""How sure an estimate is: standard deviations of what planner and controller use, by the covariance of the filter."""
+
+import math
+
+import numpy as np
+import pinocchio as pin
+
+from surefoot.wbc.estimation.contact import SoleContact
+from surefoot.wbc.estimation.estimate import Deviation
+from surefoot.wbc.estimation.invariant_filter import OFFSETS, POSITION, TURN, VELOCITY, InvariantFilter
+from surefoot.wbc.estimation.kinematics import SensedBody
+from surefoot.wbc.estimation.parameters import SensorNoise
+from surefoot.wbc.external import SPAN
+from surefoot.wbc.types import GRAVITY, Array
+
+LASTS = 3.0
+"""By how much more counts what does not change from span to span: no median takes it out, as it does noise [-]."""
+
+
+class Doubt:
+    """Standard deviations of an estimate.
+
+    Args:
+        body: kinematics of the robot.
+        sensors: noise of the sensors.
+        rate_noise: standard deviation of a joint's velocity [rad/s].
+    """
+
+    def __init__(self, body: SensedBody, sensors: SensorNoise, rate_noise: float) -> None:
+        self._body, self._sensors, self._rate_noise = body, sensors, rate_noise
+        self._weight = GRAVITY * body.mass
+        self._turning: tuple[float, float] | None = None
+
+    def deviation(self, filter_: InvariantFilter, contact: SoleContact, gyro: float, J: Array) -> Deviation:
+        """Deviations now.
+
+        Args:
+            filter_: of the state.
+            contact: of the soles.
+            gyro: standard deviation of the angular velocity [rad/s].
+            J: Jacobians of the soles, as of `SensedBody.offset_jacobians`.
+        """
+        body, sensors, s, P = self._body, self._sensors, filter_.stand, filter_.P
+        force = contact.wrench[:, 2]
+        stance = int(force[1] > force[0])
+        lever, by_joints, moving = body.com_jacobians(stance)
+        by_joints = s.R @ by_joints
+        rows = np.zeros((6, len(P)))
+        rows[:3, TURN] = -pin.skew(s.R @ lever)
+        rows[:3, OFFSETS] = -by_joints[:, body.chain]
+        for k in (0, 1):
+            rows[3 + k, TURN] = -pin.skew(s.R @ body.position[k] + s.p)[2]
+            rows[3 + k, POSITION.stop - 1] = 1.0
+            rows[3 + k, OFFSETS] = -s.R[2] @ J[k, :3]
+        rows[5] = rows[3] - rows[4]
+        place = np.maximum(np.einsum("ij,jk,ik->i", rows, P, rows), 0.0)
+        by_joints[:, body.chain] = 0.0
+        com = place[:3] + (by_joints**2).sum(axis=1) * sensors.encoder_offset**2
+        spread = np.diagonal(P)
+        arm = s.R @ (body.position[stance] + lever)
+        # A turn about an axis moves the CoM as far as it is beside that.
+        turned = (float(arm @ arm) - arm**2) * gyro**2
+        speed = spread[VELOCITY] + ((s.R @ moving) ** 2).sum(axis=1) * self._rate_noise**2 + turned
+        com, speed, tilt = np.sqrt(com), np.sqrt(speed), np.sqrt(spread[:2])
+        load = self._of_load(speed, com, float(tilt.max()), float(lever @ s.R[2]), gyro, contact)
+        return Deviation(com, speed, tilt, np.sqrt(place[3:5]), math.sqrt(place[5]), *load)
+
+    def _of_load(
+        self, speed: Array, com: Array, tilt: float, height: float, gyro: float, contact: SoleContact
+    ) -> tuple[float, float]:
+        """Deviations of the force and the moment that the load observer sees within its span."""
+        if self._turning is None:
+            self._turning = self._body.turning_inertia()
+        whole, joints = self._turning
+        force, moment = contact.deviation
+        bias = LASTS * math.sqrt(2.0) * contact.bias
+        # Momentum and moment of momentum are held at both ends of a span.
+        twice = math.sqrt(2.0) / SPAN
+        shaken = self._body.mass * twice * float(speed[:2].max())
+        spun = twice * math.hypot(whole * gyro, joints * self._rate_noise)
+        leaning = LASTS * self._weight * tilt
+        wrong = LASTS * self._weight * float(com[:2].max())
+        return (
+            math.hypot(shaken, force, leaning, bias),
+            math.hypot(spun, moment, force * height, wrong, leaning * height, bias * height),
+        )

@@ -69,6 +69,7 @@ CHANNELS = (
     ),
     channels.command,
     channels.link,
+    channels.shadow,
     channels.timing,
     channels.process,
 )

@@ -1,4 +1,4 @@
-"""Metrics of a line on which messages may be late or lost, between plant and controller in two processes."""
+"""Metrics of a controller beside its plant: a line on which messages are late or lost, and the shadow of a log."""
 
 import numpy as np
 
@@ -33,3 +33,16 @@ def commands_limited(run: RunView) -> int | None:
     """Control ticks at which a plant in another process did less than it was told."""
     limited = run.log["/link"].field("commands_limited")
     return int(limited[-1]) if len(limited) else None
+
+
+@metric(
+    unit="N m", parts=("rms", "max"), reads={"/shadow": ("command",), "/torque": ("command",)}, least=0.0,
+)  # fmt: skip
+def shadow_difference(run: RunView) -> dict[str, float] | None:
+    """Commanded torques minus those of the log in whose shadow it walked: RMS and largest [N m]."""
+    then, now = run.log["/shadow"].field("command"), run.log["/torque"].field("command")
+    count = min(len(then), len(now))
+    if not count:
+        return None
+    difference = now[:count] - then[:count]
+    return {"rms": float(np.sqrt(np.mean(difference**2))), "max": float(np.abs(difference).max())}

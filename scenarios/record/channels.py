@@ -286,6 +286,12 @@ def link(_: Sizes | None = None) -> ChannelSpec:
     return ChannelSpec("/link", "Link", fields, link.__doc__ or "")
 
 
+def shadow(n: Sizes) -> ChannelSpec:
+    """The torques of the log in whose shadow a controller walked, every control tick."""
+    fields = (_real("command", n.nj, "N m", "", "commanded then"),)
+    return ChannelSpec("/shadow", "Shadow", fields, shadow.__doc__ or "")
+
+
 def timing(_: Sizes) -> ChannelSpec:
     """Time spent in each part of a control tick; excluded from reproducibility."""
     parts = ("state", "wbc_build", "wbc_solve", "planner", "physics", "log", "tick")

@@ -69,6 +69,8 @@ CHANNELS = (
         channels.torque,
     ),
     channels.command,
+    channels.link,
+    channels.shadow,
     channels.timing,
     channels.process,
 )

@@ -6,6 +6,7 @@ Each table stands between two comment lines, `<!-- table: name -->` and `<!-- en
 page between `<!-- value: name -->` and `<!-- end -->`.
 """
 
+import csv
 import inspect
 import math
 import re
@@ -199,6 +200,16 @@ def field_table() -> str:
     return "\n".join(["| what | value | who | evidence | source |", "|---|---|---|---|---|", *rows])
 
 
+def engines_table() -> str:
+    """The walks in two simulators, as `examples/other_simulator/compare.py` has written them down."""
+    with (FOLDER / "other-simulator.csv").open(encoding="utf-8") as file:
+        names, *rows = csv.reader(file)
+    shown = [OWN[name] for name in names[4:]]
+    heads = [*names[:4], *(f"`{name}` [{metric.shown}]" for name, metric in zip(names[4:], shown, strict=True))]
+    lines = [[*row[:4], *(f"{float(v) * m.scale:.3g}" for v, m in zip(row[4:], shown, strict=True))] for row in rows]
+    return "\n".join("| " + " | ".join(line) + " |" for line in [heads, ["---"] * len(heads), *lines])
+
+
 TABLES: dict[str, tuple[str, Callable[[], str]]] = {
     "keys": ("scenarios.md", keys_table),
     "metrics": ("scenarios.md", metrics_table),
@@ -207,6 +218,7 @@ TABLES: dict[str, tuple[str, Callable[[], str]]] = {
     "sensors": ("sensors.md", sensors_table),
     "standing": ("standing.md", standing_table),
     "field": ("standing.md", field_table),
+    "engines": ("other-simulator.md", engines_table),
 }
 
 

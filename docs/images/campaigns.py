@@ -18,6 +18,7 @@ from typing import Any
 
 import yaml
 from PIL import Image
+from sources import save_png
 
 from surefoot.scenarios.show.kit.figures import PAGE_WIDTH, save
 from surefoot.scenarios.study.campaigns.campaign import read_campaign
@@ -116,17 +117,17 @@ def _save(figure: Any, name: str) -> None:
         picture = drawn.convert("RGB")
     width = round(WIDTH * figure.get_figwidth() / PAGE_WIDTH)
     height = round(picture.height * width / picture.width)
-    picture.resize((width, height), Image.Resampling.LANCZOS).save(FOLDER / name, optimize=True)
+    save_png(picture.resize((width, height), Image.Resampling.LANCZOS), name)
     print(FOLDER / name)
 
 
-def main() -> None:
+def main(arguments: Sequence[str] | None = None) -> None:
     """Draw the picture that is asked for."""
     drawers = {"push-map": push_map, "push-map-pendulum": push_map, "robustness": robustness}
     parser = argparse.ArgumentParser(description=__doc__, formatter_class=argparse.RawDescriptionHelpFormatter)
     parser.add_argument("picture", choices=drawers)
     parser.add_argument("folder", type=Path, help="of a campaign")
-    options = parser.parse_args()
+    options = parser.parse_args(arguments)
     drawers[options.picture](options.folder, f"{options.picture}.png")
 
 

@@ -6,6 +6,7 @@ It takes about five minutes on two cores.
 """
 
 import math
+from collections.abc import Sequence
 from concurrent.futures import ProcessPoolExecutor
 from dataclasses import dataclass
 from pathlib import Path
@@ -18,6 +19,7 @@ import matplotlib.pyplot as plt
 import numpy as np
 from matplotlib.axes import Axes
 from numpy.typing import NDArray
+from sources import KEY, digest
 
 import surefoot
 from surefoot.planner.geometry import sole_corners
@@ -97,7 +99,7 @@ ARROW = {"arrowstyle": "-|>", "color": "#2a9d5c", "linewidth": 1.6}
 DOT = {"boxstyle": "circle,pad=0.25", "color": "#2a9d5c"}
 
 
-def main() -> None:
+def main(_: Sequence[str] = ()) -> None:
     """Walk the courses and write the picture."""
     with ProcessPoolExecutor() as pool:
         found = list(pool.map(walked, range(1, COURSES + 1)))
@@ -107,7 +109,7 @@ def main() -> None:
         print(seed, found[seed - 1].passed, found[seed - 1].error, found[seed - 1].turned)
     figure.supxlabel("x [m]", fontsize=8)
     figure.supylabel("y [m]", fontsize=8)
-    figure.savefig(PICTURE, dpi=110)
+    figure.savefig(PICTURE, dpi=110, metadata={KEY: digest(PICTURE.name)})
 
 
 if __name__ == "__main__":

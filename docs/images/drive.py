@@ -10,6 +10,7 @@ import json
 import os
 import subprocess
 import sys
+from collections.abc import Sequence
 from pathlib import Path
 from tempfile import TemporaryDirectory
 
@@ -66,7 +67,7 @@ def filmed(page: Browser, address: str) -> list[Image.Image]:
     return pictures
 
 
-def main() -> None:
+def main(_: Sequence[str] = ()) -> None:
     """Drive and write the picture."""
     with TemporaryDirectory() as folder:
         command = [sys.executable, "-m", "surefoot", "drive", "--out", folder]

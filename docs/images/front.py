@@ -6,10 +6,12 @@ It runs the walk, and needs off-screen OpenGL and a minute or two.
 """
 
 import tempfile
+from collections.abc import Sequence
 from pathlib import Path
 
 from animate import EVERY, Shot, pictures
 from recoveries import NATURAL
+from webp import save_webp
 
 from surefoot.scenarios.log import Log, read
 from surefoot.scenarios.run.run import run_scenario
@@ -37,11 +39,10 @@ QUALITY = 58
 
 def draw(log: Log) -> None:
     """Write the picture of a walk."""
-    (first, *rest), period = pictures(log, SHOT)
-    first.save(PICTURE, save_all=True, append_images=rest, duration=period, loop=0, quality=QUALITY, method=6)
+    save_webp(PICTURE, *pictures(log, SHOT), quality=QUALITY, method=6)
 
 
-def main() -> None:
+def main(_: Sequence[str] = ()) -> None:
     """Walk and draw."""
     with tempfile.TemporaryDirectory() as folder:
         result = run_scenario(load("walk", (*KEYS, f"pushes=[{PUSH}]")), Path(folder))

@@ -17,6 +17,7 @@ matplotlib.use("Agg")
 import matplotlib.pyplot as plt
 import numpy as np
 from matplotlib.colors import ListedColormap
+from sources import KEY, digest
 
 OUTCOMES = ("walks", "refused", "torque", "ZMP", "fall")
 COLOURS = ("#2a9d5c", "#b9c0c9", "#e9a23b", "#8f6bb5", "#c8452f")
@@ -67,7 +68,7 @@ def draw(found: Mapping[Cell, Row]) -> None:
     patches = [plt.Rectangle((0, 0), 1, 1, color=colour) for colour in COLOURS]
     figure.legend(patches, NAMES, loc="outside lower center", ncols=5, frameon=False, fontsize=9)
     figure.suptitle("Where the robot walks (speed, and largest torque in % of its limit)", fontsize=11)
-    figure.savefig(PICTURE, dpi=110)
+    figure.savefig(PICTURE, dpi=110, metadata={KEY: digest(PICTURE.name)})
 
 
 def main(arguments: Sequence[str] | None = None) -> None:

@@ -7,9 +7,11 @@ By default those that come along; else their names, or robot files. It needs off
 
 import argparse
 import tempfile
+from collections.abc import Sequence
 from pathlib import Path
 
 from animate import Shot, pictures
+from sources import ROBOTS
 from webp import save_webp
 
 from surefoot.models import RobotOptions, describe
@@ -20,7 +22,6 @@ from surefoot.scenarios.show.replay.content import ReplayWindow
 from surefoot.sim.render import Camera
 
 FOLDER = Path(__file__).parent
-ROBOTS = ("talos", "g1", "alexander", "jvrc1", "gr3")
 SIZE = (320, 320)
 
 DISTANCE, LOWER = 3.1, 0.15
@@ -45,11 +46,11 @@ def draw(name: str, log: Log) -> Path:
     return path
 
 
-def main() -> None:
+def main(arguments: Sequence[str] | None = None) -> None:
     """Draw those that are asked for."""
     parser = argparse.ArgumentParser(description=__doc__, formatter_class=argparse.RawDescriptionHelpFormatter)
     parser.add_argument("names", nargs="*", metavar="ROBOT", help=", ".join(ROBOTS))
-    for name in parser.parse_args().names or ROBOTS:
+    for name in parser.parse_args(arguments).names or ROBOTS:
         with tempfile.TemporaryDirectory() as folder:
             result = run_scenario(load("walk", (f"robot={name}", "gait.steps=6")), Path(folder))
             if result.verdict.metrics["fell"]:

@@ -1,159 +1,170 @@
-"""Draw the pictures of the documentation, from runs that it makes.
+"""Draw the pictures of the documentation, moving ones too, from runs that it makes.
 
     pip install pillow
-    python docs/images/make.py [NAME]...
+    python docs/images/make.py [NAME]... [--campaigns]
 
-Names are those of the files, by default all. Pictures of the robot need off-screen OpenGL (see `sim.gl`). The map takes
-some five minutes on two cores, the animation one or two, the others seconds. What else than the log a picture follows
-from, its colours and the way it is drawn, goes into it as a digest, which the tests compare with the code.
+Names are those of the files. By default all are drawn but those of campaigns, which take hours and come with
+`--campaigns`. Pictures of the robot need off-screen OpenGL (see `sim.gl`), that of the page to drive a Chromium. Most
+take seconds or a minute, courses and gait map some five minutes on two cores. What else than its run a picture follows
+from goes into it as a digest (`sources.py`), which the tests compare with the code.
 """
 
 import argparse
-import hashlib
+import sys
 import tempfile
-from collections.abc import Callable
+from collections.abc import Callable, Iterator
+from contextlib import contextmanager
+from importlib import import_module
 from pathlib import Path
 
 from PIL import Image
-from PIL.PngImagePlugin import PngInfo
+from sources import DRAWINGS, FOLDER, RECOVERIES, ROBOTS, ROOT, digest, save_png
 
-FOLDER = Path(__file__).parent
-ROOT = FOLDER.parents[1]
-KEY = "sources"
 SIZE = (1300, 750)
 """Of the figure, which on the page is as wide as the text. It keeps all colours: few of them make thin curves alike."""
-
-PALETTE = "scenarios/palette.py"
-SOURCES: dict[str, tuple[str, ...]] = {
-    "walk.png": (PALETTE, "docs/images/poses.py"),
-    "walk.gif": (PALETTE, "docs/images/animate.py"),
-    "figures.png": (
-        PALETTE,
-        *(f"scenarios/show/{name}.py" for name in ("figures/motion", "figures/page", "kit/shading", "kit/figures")),
-    ),
-    **{f"{name}.svg": ("docs/images/drawings.py",) for name in ("tick", "planner", "qp", "recovery", "estimation")},
-}
-"""What a picture looks like by; the map's looks are its own, and its content changes with every part of the stack."""
+FALLING = (3.0, 4.4)
+"""What is shown of the walk that falls [s]."""
 
 
-def digest(name: str) -> str:
-    """Of the sources of a picture."""
-    return hashlib.sha256(b"".join((ROOT / source).read_bytes() for source in SOURCES[name])).hexdigest()[:16]
+@contextmanager
+def run(scenario: str, settings: object = ()) -> Iterator[Path]:
+    """The log of a run."""
+    import surefoot
+
+    with tempfile.TemporaryDirectory() as folder:
+        yield surefoot.run(surefoot.load(scenario, settings), out=Path(folder)).log
 
 
-def noted(name: str) -> str:
-    """The digest that a picture was drawn with."""
-    if name.endswith(".svg"):
-        return (FOLDER / name).read_text(encoding="utf-8").partition(f"{KEY}: ")[2][:16]
-    with Image.open(FOLDER / name) as picture:
-        found = picture.info.get("comment", b"").decode() or picture.info.get(KEY, "")
-    return str(found)
-
-
-def save_png(picture: Image.Image, name: str) -> None:
-    """Save a picture with its digest."""
-    info = PngInfo()
-    info.add_text(KEY, digest(name))
-    picture.save(FOLDER / name, optimize=True, pnginfo=info)
-
-
-def walk(log: Path) -> None:
+def walk() -> None:
     """The robot at several moments."""
     from poses import composite
 
     from surefoot.scenarios.log import read
 
-    save_png(composite(read(log)), "walk.png")
+    with run("walk") as log:
+        save_png(composite(read(log)), "walk.png")
 
 
-def animation(log: Path) -> None:
+def animation() -> None:
     """A stretch of the walk with its marks."""
     from animate import WALK, palette, pictures, save
 
     from surefoot.scenarios.log import read
 
-    images, period = pictures(read(log), WALK)
+    with run("walk") as log:
+        images, period = pictures(read(log), WALK)
     save(FOLDER / "walk.gif", images, period, palette(images), comment=digest("walk.gif").encode())
 
 
-def figures(log: Path) -> None:
+def figures() -> None:
     """ZMP, CoM and DCM as `surefoot plot --what balance` draws them."""
+    with run("diagonal-walk") as log:
+        _balance(log, "figures.png")
+
+
+def falling() -> None:
+    """The same of the walk of docs/falling.md."""
+    sys.path.insert(0, str(FOLDER.parent))
+    with run("walk", import_module("falling").SETTINGS) as log:
+        _balance(log, "falling.png", *FALLING)
+
+
+def _balance(log: Path, name: str, start: float | None = None, end: float | None = None) -> None:
     from surefoot.scenarios.show.figures.page import plot
 
-    drawn = plot(log, log.with_name("balance.png"), what="balance")
+    drawn = plot(log, log.with_name("balance.png"), what="balance", start=start, end=end)
     with Image.open(drawn.path) as picture:
-        save_png(picture.convert("RGB").resize(SIZE, Image.Resampling.LANCZOS), "figures.png")
+        height = SIZE[1] if start is None else round(SIZE[0] * picture.height / picture.width)
+        save_png(picture.convert("RGB").resize((SIZE[0], height), Image.Resampling.LANCZOS), name)
 
 
-def gait_map(_: Path) -> None:
+def gait_map() -> None:
     """Where the robot walks, by a campaign of some minutes."""
-    from gait_map import main as draw_map
+    with campaign("gait-map") as folder:
+        import_module("gait_map").main([str(folder / "table.csv")])
 
+
+@contextmanager
+def campaign(name: str, *settings: str) -> Iterator[Path]:
+    """The folder of a campaign that is run."""
     from surefoot.scenarios.study.campaigns.campaign import read_campaign
     from surefoot.scenarios.study.campaigns.sweep import cores, sweep
 
     with tempfile.TemporaryDirectory() as folder:
-        swept = sweep(read_campaign("gait-map"), Path(folder) / "gait-map", cores())
-        draw_map([str(swept.folder / "table.csv")])
+        yield sweep(read_campaign(name, settings), Path(folder) / name, cores()).folder
 
 
-def drawing(name: str) -> Callable[[Path], None]:
+def drawing(name: str) -> Callable[[], None]:
     """Boxes and arrows, which follow from no run."""
 
-    def draw(_: Path) -> None:
-        from drawings import DRAWINGS
+    def draw() -> None:
+        from drawings import DRAWINGS as DRAWN
 
-        (FOLDER / name).write_text(DRAWINGS[name].svg(digest(name)), encoding="utf-8")
+        (FOLDER / name).write_text(DRAWN[name].svg(digest(name)), encoding="utf-8")
 
     return draw
 
 
-PICTURES: dict[str, tuple[str, Callable[[Path], None]]] = {
-    "walk.png": ("walk", walk),
-    "walk.gif": ("walk", animation),
-    "figures.png": ("diagonal-walk", figures),
-    "gait-map.png": ("", gait_map),
-    **{name: ("", drawing(name)) for name in SOURCES if name.endswith(".svg")},
-}
-"""The scenario that a picture shows, if it is one, and what draws it from its log."""
+def by(module: str, *arguments: str) -> Callable[[], None]:
+    """What another module of this folder draws, when it is given these words."""
+    return lambda: import_module(module).main(list(arguments))
 
-OF_CAMPAIGNS = (
-    "front.webp",
-    "push-map.png",
-    "push-map-pendulum.png",
-    "push-map-as-it-was.png",
-    "robustness.png",
-    "courses.png",
-    "drive.webp",
-    *(f"recovery-{name}.webp" for name in ("forward", "crossing", "standing", "sideways", "stairs", "lasting")),
-    *(f"robot-{name}.webp" for name in ("talos", "g1", "alexander", "jvrc1", "gr3", "h1")),
-)
-"""Pictures that others draw: `campaigns.py` those of campaigns that take hours, one as it drew it before, `courses.py`,
-`drive.py`, `recoveries.py`, `gallery.py` and `front.py`."""
+
+def of_campaign(name: str, *settings: str) -> Callable[[], None]:
+    """A picture of a campaign that takes hours."""
+
+    def draw() -> None:
+        spec = name.removesuffix("-pendulum")
+        with campaign(spec, *settings) as folder:
+            import_module("campaigns").main([name, str(folder)])
+
+    return draw
+
+
+PICTURES: dict[str, Callable[[], None]] = {
+    "walk.png": walk,
+    "walk.gif": animation,
+    "figures.png": figures,
+    "falling.png": falling,
+    **{name: drawing(name) for name in DRAWINGS},
+    "front.webp": by("front"),
+    **{name: by("recoveries", name) for name in RECOVERIES},
+    **{f"robot-{name}.webp": by("gallery", name) for name in ROBOTS},
+    "drive.webp": by("drive"),
+    "courses.png": by("courses"),
+    "gait-map.png": gait_map,
+}
+"""What draws a picture."""
+
+OF_CAMPAIGNS: dict[str, Callable[[], None]] = {
+    "push-map.png": of_campaign("push-map", "fidelity=full"),
+    "push-map-pendulum.png": of_campaign("push-map-pendulum", "fidelity=pendulum"),
+    "robustness.png": of_campaign("robustness"),
+}
+"""Likewise, in hours."""
+
+GIVEN = ("robot-h1.webp", "push-map-as-it-was.png")
+"""Not drawn here: a robot whose model does not come along, by `gallery.py FILE`, and a map of earlier code."""
+
+WITHOUT_DIGEST = ("gait-map.png", *OF_CAMPAIGNS, "push-map-as-it-was.png")
+"""Of campaigns that were run before their pictures had digests."""
 
 
 def main() -> None:
-    """Draw the pictures that are asked for; each scenario is run once."""
+    """Draw the pictures that are asked for."""
     parser = argparse.ArgumentParser(description=__doc__, formatter_class=argparse.RawDescriptionHelpFormatter)
-    parser.add_argument("names", nargs="*", metavar="NAME", help=", ".join(PICTURES))
-    names = parser.parse_args().names or list(PICTURES)
-    if unknown := set(names) - set(PICTURES):
-        parser.error(f"no picture {', '.join(sorted(unknown))}; there are {', '.join(PICTURES)}")
-    logs: dict[str, Path] = {"": Path()}
-    with tempfile.TemporaryDirectory() as folder:
-        for name in names:
-            scenario, draw = PICTURES[name]
-            logs[scenario] = logs.get(scenario) or run(scenario, Path(folder))
-            draw(logs[scenario])
-            print(FOLDER / name)
-
-
-def run(scenario: str, folder: Path) -> Path:
-    """Run a scenario; its log."""
-    import surefoot
-
-    return surefoot.run(surefoot.load(scenario), out=folder).log
+    parser.add_argument("names", nargs="*", metavar="NAME", help=", ".join((*PICTURES, *OF_CAMPAIGNS)))
+    parser.add_argument("--campaigns", action="store_true", help="also those of campaigns that take hours")
+    told = parser.parse_args()
+    every = {**PICTURES, **OF_CAMPAIGNS}
+    names = told.names or [*PICTURES, *(OF_CAMPAIGNS if told.campaigns else ())]
+    if unknown := set(names) - set(every):
+        parser.error(f"no picture {', '.join(sorted(unknown))}; there are {', '.join(every)}")
+    for name in names:
+        every[name]()
+        print(FOLDER / name)
 
 
 if __name__ == "__main__":
+    sys.path.insert(0, str(ROOT))
     main()

@@ -8,6 +8,7 @@ Names are those of the files, by default all; they need off-screen OpenGL and ta
 import argparse
 import math
 import tempfile
+from collections.abc import Sequence
 from dataclasses import dataclass
 from pathlib import Path
 
@@ -89,11 +90,11 @@ RECOVERIES = {
 }
 
 
-def main() -> None:
+def main(arguments: Sequence[str] | None = None) -> None:
     """Draw those that are asked for."""
     parser = argparse.ArgumentParser(description=__doc__, formatter_class=argparse.RawDescriptionHelpFormatter)
     parser.add_argument("names", nargs="*", metavar="NAME", help=", ".join(RECOVERIES))
-    for name in parser.parse_args().names or RECOVERIES:
+    for name in parser.parse_args(arguments).names or RECOVERIES:
         recovery = RECOVERIES[name]
         with tempfile.TemporaryDirectory() as folder:
             scenario = load(recovery.scenario, (*recovery.keys, f"pushes=[{recovery.push}]"))

@@ -27,7 +27,9 @@ def reference():
     return module
 
 
-@pytest.mark.parametrize("name", ["keys", "metrics", "channels", "robot-keys", "handed", "standing", "field"])
+@pytest.mark.parametrize(
+    "name", ["keys", "metrics", "channels", "robot-keys", "handed", "standing", "field", "engines"]
+)
 def test_tables_are_up_to_date(reference, name):
     page, table = reference.TABLES[name]
     text = (ROOT / "docs" / page).read_text(encoding="utf-8")

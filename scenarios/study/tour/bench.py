@@ -16,6 +16,7 @@ from surefoot.scenarios.output import reason, write_whole
 from surefoot.scenarios.record.provenance import relevant_versions
 from surefoot.scenarios.run.run import made_folder
 from surefoot.scenarios.study.campaigns.engine import side_by_side
+from surefoot.scenarios.study.tour.page import markdown
 from surefoot.scenarios.study.tour.results import RowResult, to_json
 from surefoot.scenarios.study.tour.ride import PunchTaken, TourResult, run_tour
 from surefoot.scenarios.study.tour.rows import ROWS
@@ -23,7 +24,7 @@ from surefoot.scenarios.study.tour.rules import DURATION
 
 NOTE = "Own implementation, not calibrated: no learned policy has been run in it yet."
 
-JOURNAL, RESULT = "tours.jsonl", "result.json"
+JOURNAL, RESULT, PAGE = "tours.jsonl", "result.json", "result.md"
 
 
 @lru_cache(maxsize=1)
@@ -103,15 +104,17 @@ class Bench:
         }
 
     def write(self) -> Path:
-        """Write the result into the folder.
+        """Write the result into the folder, in JSON and in Markdown.
 
         Returns:
-            its path.
+            path of the former.
         """
-        path = self._folder / RESULT
-        with write_whole(path, replace=True) as temporary:
-            temporary.write_text(json.dumps(self.to_json(), indent=1, allow_nan=False) + "\n", encoding="utf-8")
-        return path
+        told = self.to_json()
+        texts = {RESULT: json.dumps(told, indent=1, allow_nan=False) + "\n", PAGE: markdown(told)}
+        for name, text in texts.items():
+            with write_whole(self._folder / name, replace=True) as temporary:
+                temporary.write_text(text, encoding="utf-8")
+        return self._folder / RESULT
 
     def _read(self) -> None:
         """Find the tours that the folder has of these versions."""

@@ -16,10 +16,10 @@ from surefoot.scenarios.study.tour.odometry import LegOdometry
 from surefoot.scenarios.study.tour.robot import robot_file
 from surefoot.values import dataclass
 
-GAIN = 1.2
+GAIN = 1.0
 """Of the velocity towards a place over the distance from it, and of the yaw rate over the angle [1/s]."""
 
-FASTEST = (0.4, 0.27, 0.9)
+FASTEST = (0.4, 0.2, 0.8)
 """Forward, sideways [m/s], and yaw rate [rad/s]."""
 
 COMMAND_RATE = 10

@@ -12,6 +12,7 @@ from surefoot.scenarios.apps.cli import app
 from surefoot.scenarios.errors import ScenarioError
 from surefoot.scenarios.study.tour import bench as module
 from surefoot.scenarios.study.tour.bench import Bench, lines
+from surefoot.scenarios.study.tour.page import markdown
 from surefoot.scenarios.study.tour.ride import Ride, TourResult
 from surefoot.scenarios.study.tour.robot import tour_robot
 from surefoot.scenarios.study.tour.rows import DRIVES, ROWS, command_to
@@ -61,6 +62,11 @@ def test_the_result_is_whole_and_tells_what_it_is(ran, tmp_path):
     told = json.loads(bench.write().read_text())
     assert told["note"].startswith("Own implementation, not calibrated")
     assert told["differences"] and told["source"] and told["versions"]["mujoco"]
+    page = (tmp_path / module.PAGE).read_text()
+    assert page == markdown(told)
+    assert (
+        "| `torque` | 4 | 11.5 (" in page and "| gr00t_wbc h066_p000 | 85.2 | 80 % |" in page and told["note"] in page
+    )
     text = "\n".join(lines(told))
     assert "11.5" in text and "gr00t_wbc" in text and told["note"] in text
 

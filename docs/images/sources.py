@@ -1,0 +1,65 @@
+"""Which code a picture of the documentation is drawn by; its digest is in the picture, and the tests compare both."""
+
+import hashlib
+from pathlib import Path
+
+from PIL import Image
+from PIL.PngImagePlugin import PngInfo
+
+FOLDER = Path(__file__).parent
+ROOT = FOLDER.parents[1]
+KEY = "sources"
+
+_OWN = "docs/images"
+PALETTE = "scenarios/palette.py"
+_FIGURES = tuple(
+    f"scenarios/show/{name}.py" for name in ("figures/motion", "figures/page", "kit/shading", "kit/figures")
+)
+_CAMPAIGNS = (f"{_OWN}/campaigns.py", "scenarios/study/campaigns/thresholds.py", "scenarios/show/kit/figures.py")
+_MOVING = (PALETTE, f"{_OWN}/animate.py")
+
+RECOVERIES = tuple(
+    f"recovery-{name}.webp" for name in ("forward", "crossing", "standing", "sideways", "stairs", "lasting")
+)
+ROBOTS = ("talos", "g1", "alexander", "jvrc1", "gr3")
+DRAWINGS = tuple(f"{name}.svg" for name in ("tick", "planner", "qp", "recovery", "estimation"))
+
+SOURCES: dict[str, tuple[str, ...]] = {
+    "walk.png": (PALETTE, f"{_OWN}/poses.py"),
+    "walk.gif": _MOVING,
+    "figures.png": (PALETTE, *_FIGURES),
+    "falling.png": (PALETTE, *_FIGURES),
+    **dict.fromkeys(DRAWINGS, (f"{_OWN}/drawings.py",)),
+    "front.webp": (*_MOVING, f"{_OWN}/front.py", f"{_OWN}/recoveries.py"),
+    **dict.fromkeys(RECOVERIES, (*_MOVING, f"{_OWN}/recoveries.py")),
+    **dict.fromkeys([f"robot-{name}.webp" for name in (*ROBOTS, "h1")], (*_MOVING, f"{_OWN}/gallery.py")),
+    "drive.webp": (f"{_OWN}/drive.py",),
+    "courses.png": (f"{_OWN}/courses.py",),
+    "gait-map.png": (f"{_OWN}/gait_map.py",),
+    **dict.fromkeys(("push-map.png", "push-map-pendulum.png", "robustness.png"), (PALETTE, *_CAMPAIGNS)),
+}
+"""What else than its run a picture follows from: colours, camera, and how it is drawn."""
+
+
+def digest(name: str) -> str:
+    """Of the sources of a picture."""
+    return hashlib.sha256(b"".join((ROOT / source).read_bytes() for source in SOURCES[name])).hexdigest()[:16]
+
+
+def noted(name: str) -> str:
+    """The digest that a picture was drawn with; empty where it has none."""
+    path = FOLDER / name
+    if path.suffix == ".svg":
+        return path.read_text(encoding="utf-8").partition(f"{KEY}: ")[2][:16]
+    with Image.open(path) as picture:
+        if path.suffix == ".webp":
+            return picture.info.get("xmp", b"").decode().partition(f"{KEY}=")[2][:16]
+        found = picture.info.get("comment", b"").decode() or picture.info.get(KEY, "")
+    return str(found)
+
+
+def save_png(picture: Image.Image, name: str) -> None:
+    """Save a picture with its digest."""
+    info = PngInfo()
+    info.add_text(KEY, digest(name))
+    picture.save(FOLDER / name, optimize=True, pnginfo=info)

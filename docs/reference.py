@@ -68,6 +68,8 @@ CHANNELS = (
         channels.torque,
     ),
     channels.command,
+    channels.link,
+    channels.shadow,
     channels.timing,
     channels.process,
 )

@@ -208,6 +208,10 @@ def _quintic(start: list[float], end: list[float], t: float) -> tuple[float, ...
     return x, v, 0.5 * a, third, fourth, (6.0 * gap - 3.0 * speed + 0.5 * bend) / t**5
 
 
+greatest = np.maximum.reduce
+"""Of an array along its first axis; the method ``max`` goes through Python first."""
+
+
 def shifted(coefficients: Array, time: float) -> Array:
     """The same polynomials with their local time starting at `time`."""
     powers = np.array([time**i for i in _EXPONENT])

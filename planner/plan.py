@@ -24,7 +24,7 @@ from surefoot.planner.types import (
     PhaseKind,
     PlanStatus,
 )
-from surefoot.values import dataclass
+from surefoot.values import dataclass, opened
 
 
 @dataclass(frozen=True, slots=True)
@@ -103,6 +103,7 @@ class Planner(Protocol):
 
 _put = object.__setattr__
 
+_OMEGA = 4
 _IN_POINT: Mapping[str, slice | int] = {
     "com": slice(7, 10),
     "com_velocity": slice(16, 19),
@@ -111,7 +112,7 @@ _IN_POINT: Mapping[str, slice | int] = {
     "pendulum_zmp": slice(34, 36),
     "zmp_reference": slice(0, 2),
     "dcm": slice(38, 40),
-    "omega": 4,
+    "omega": _OMEGA,
     "stiffness": 5,
     "load_left": 6,
     "swing": slice(10, 16),
@@ -166,12 +167,11 @@ class PlanSample:
     @classmethod
     def of_point(cls, time: float, point: Array, contacts: tuple[bool, bool], swing_foot: Foot | None) -> "PlanSample":
         """A sample out of the numbers of the kernel, shape (POINT,), which become fields when they are first read."""
-        sample = cls.__new__(cls)
-        _put(sample, "time", time)
-        _put(sample, "contacts", contacts)
-        _put(sample, "swing_foot", swing_foot)
-        _put(sample, "point", point)
-        return sample
+        sample = _OpenSample()
+        sample.time, sample.contacts, sample.swing_foot, sample.point = time, contacts, swing_foot, point
+        sample.omega = point.item(_OMEGA)  # which is read at every tick
+        sample.__class__ = cls
+        return sample  # type: ignore[no-any-return]
 
     if not TYPE_CHECKING:
 
@@ -191,6 +191,9 @@ class PlanSample:
         return replace(
             middle, com=self.com, com_velocity=self.com_velocity, swing=self.swing, swing_velocity=self.swing_velocity
         )
+
+
+_OpenSample, _of_point = opened(PlanSample), PlanSample.of_point
 
 
 class PlanSampler:
@@ -217,8 +220,9 @@ class PlanSampler:
         self._touchdown = np.inf if plan.swing is None else plan.swing.touchdown_time - TOUCHING
         single = plan.phase.kind is PhaseKind.SINGLE
         self._lands = plan.time + plan.phase.left - TOUCHING if single else np.inf
+        self._begin, self._length = plan.time, plan.sample_time
         self._start = plan.time
-        self._table = np.zeros((6, COLUMNS))
+        self._table: Array
         self._contacts = (True, True)
         self._swing_foot: Foot | None = None
 
@@ -266,18 +270,17 @@ class PlanSampler:
             return sample, sample.until(self.sample(middle))
         if now != self._entered:
             self._enter(*now)
-        at, over = self._kernel.sample(self._local(time), self._local(middle))
-        foot = self._swing_foot
-        return (
-            PlanSample.of_point(time, at, self._contacts_at(time), foot),
-            PlanSample.of_point(middle, over, self._contacts_at(middle), foot),
-        )
+        points, foot = self._kernel.sample(self._local(time), self._local(middle)), self._swing_foot
+        contacts = late = self._contacts
+        if middle >= self._lands:
+            contacts, late = self._contacts_at(time), self._contacts_at(middle)
+        return _of_point(time, points[0], contacts, foot), _of_point(middle, points[1], late, foot)
 
     def _place(self, time: float) -> tuple[int, bool]:
         """The interval of an instant, and whether the swing foot has landed by then."""
-        plan = self.plan
-        interval = int((time - plan.time) / plan.sample_time + 1e-6)
-        return 0 if interval < 0 else min(interval, self._last), time >= self._touchdown
+        interval = int((time - self._begin) / self._length + 1e-6)
+        last = self._last
+        return 0 if interval < 0 else last if interval > last else interval, time >= self._touchdown
 
     def _go_to(self, time: float) -> None:
         place = self._place(time)
@@ -286,7 +289,8 @@ class PlanSampler:
 
     def _local(self, time: float) -> float:
         """Time since the begin of the interval [s]."""
-        return min(max(time - self._start, 0.0), self.plan.sample_time)
+        passed, length = time - self._start, self._length
+        return 0.0 if passed < 0.0 else length if passed > length else passed
 
     def _contacts_at(self, time: float) -> tuple[bool, bool]:
         return self._contacts if time < self._lands or self._entered[0] else (True, True)
@@ -310,8 +314,7 @@ class PlanSampler:
                 plan.com, plan.com_velocity, plan.com_acceleration,
                 plan.zmp_reference, plan.zmp_offset, plan.omega, plan.stiffness, plan.load_left,
             )  # fmt: skip
-            ends = [quantity[i : i + 2] for quantity in quantities]
-            self._kernel.enter(ends, plan.jerk[i], swing, plan.sample_time)
+            self._kernel.enter(i, quantities, plan.jerk[i], swing, plan.sample_time)
 
     def _tabulated(self, i: int, swing: Array | None) -> Array:
         """An interval: 7 linear functions, 9 polynomials and their two derivatives as columns."""

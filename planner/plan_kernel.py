@@ -7,6 +7,9 @@ import numpy as np
 from surefoot.native.library import Library
 from surefoot.planner.types import Array
 
+_SIZES = (3, 3, 3, 2, 2, 1, 1, 1)
+"""Of what is given at both ends of an interval; see `PlanKernel.enter`."""
+
 COLUMNS, POINT = 34, 40
 """Of the table of an interval, and numbers of a point: these columns, pendulum ZMP, ZMP and DCM [-]."""
 
@@ -20,6 +23,8 @@ class PlanKernel:
 
     def __init__(self, kernels: Library) -> None:
         self._ends, self._swing, self._points = np.zeros(COLUMNS), np.zeros((6, 6)), np.zeros((2, POINT))
+        *parts, self._jerk = np.split(self._ends, np.cumsum([2 * size for size in _SIZES]))
+        self._places = [part.reshape((2, size) if size > 1 else (2,)) for part, size in zip(parts, _SIZES, strict=True)]
         interval = kernels.fill(
             "PlanInterval",
             ends=self._ends,
@@ -30,17 +35,20 @@ class PlanKernel:
         self._enter = kernels.bind("plan_interval_enter", interval)
         self._sample = kernels.bind("plan_interval_sample", interval)
 
-    def enter(self, ends: Sequence[Array], jerk: Array, swing: Array | None, length: float) -> None:
+    def enter(self, i: int, quantities: Sequence[Array], jerk: Array, swing: Array | None, length: float) -> None:
         """Prepare an interval.
 
         Args:
-            ends: CoM, its velocity and acceleration, ZMP reference, ZMP offset, ω, λ and load of the left foot at its
-                begin and its end, shapes (2, 3), (2, 3), (2, 3), (2, 2), (2, 2), (2,), (2,) and (2,).
+            i: sample at which it begins.
+            quantities: CoM, its velocity and acceleration, ZMP reference, ZMP offset, ω, λ and load of the left foot at
+                all samples.
             jerk: of the CoM within it, shape (2,) [m/s^3].
             swing: polynomials of the swing foot in the local time, shape (6, 6); None for none.
             length: of the interval [s].
         """
-        np.concatenate([*(part.ravel() for part in ends), jerk], out=self._ends)
+        for place, quantity in zip(self._places, quantities, strict=True):
+            place[...] = quantity[i : i + 2]
+        self._jerk[...] = jerk
         self._swing[:] = 0.0 if swing is None else swing
         self._enter(length)
 

@@ -36,6 +36,14 @@ from surefoot.planner.types import (
     PlanStatus,
     SolverStatus,
 )
+from surefoot.values import maker
+
+_a_plan, _a_problem, _a_context, _a_status = (
+    maker(WalkPlan),
+    maker(MotionProblem),
+    maker(StepContext),
+    maker(PlanStatus),
+)
 
 
 class WalkingPlanner:
@@ -197,7 +205,7 @@ class WalkingPlanner:
         shifts = motion.shifts @ support.rotation.T
         footsteps = execution.upcoming(time, shifts)
         if execution.free[0]:
-            balance = replace(balance, shift=shifts[0])
+            balance = Balance(balance.planned, balance.movable, shifts[0], balance.delay, balance.outside)
         if execution.phase.swing_foot is not None:
             execution.swing_to(footsteps[0], time, feet, motion.solver is SolverStatus.HELD)
         self._plan = self._world_plan(time, support, window, local, motion, footsteps, balance)
@@ -207,6 +215,8 @@ class WalkingPlanner:
     def _unsure(state: CentroidalState, window: Window) -> float:
         """Two standard deviations of the DCM [m]."""
         com, velocity = state.deviation
+        if not com and not velocity:
+            return 0.0
         return 2.0 * math.hypot(com, velocity / float(window.omega[0]))
 
     def _sight(self, state: CentroidalState) -> tuple[Support, Array, Window]:
@@ -235,7 +245,7 @@ class WalkingPlanner:
         ahead = stiffness, window.height.height[:, :count], offset, reference.point[:count], reference.gain[:count]
         frame = support.rotation, support.origin
         com, jerk, zmp, offset, point = self._world.of(local, motion.jerk, motion.shifts, ahead, frame)
-        return WalkPlan(
+        return _a_plan(
             time=time,
             sample_time=self.parameters.sample_time,
             com=com[0],
@@ -266,7 +276,7 @@ class WalkingPlanner:
         jerk = np.zeros((self.parameters.horizon + 1, 2))
         if self._plan is not None:
             jerk[:-1] = self._plan.jerk @ support.rotation
-        return MotionProblem(
+        return _a_problem(
             state=local,
             stiffness=window.stiffness,
             omega=window.omega,
@@ -288,7 +298,7 @@ class WalkingPlanner:
         if swing is not None:
             left, transfer = execution.time_left, schedule.step(phase.step).double * self.parameters.sample_time
         bounds = self._recovery.bounds(increment, here, left, adjusted)
-        return StepContext(increment, (side, -side), execution.free, here, left, transfer, *bounds)
+        return _a_context(increment, (side, -side), execution.free, here, left, transfer, *bounds)
 
     def _local_state(self, state: CentroidalState, support: Support) -> Array:
         """Position and velocity as measured, acceleration as the last plan had it for now."""
@@ -302,7 +312,7 @@ class WalkingPlanner:
         age, warned = 0, self._plan is not None and self._plan.status.falling
         if motion.solver is SolverStatus.HELD:
             age = (self._plan.status.age if self._plan is not None else 0) + 1
-        return PlanStatus(
+        return _a_status(
             solver=motion.solver,
             zmp_slack=motion.zmp_slack,
             terminal_slack=motion.terminal_slack,

@@ -24,7 +24,7 @@ class Foot(IntEnum):
     @property
     def other(self) -> "Foot":
         """The opposite foot."""
-        return Foot(1 - self)
+        return Foot.RIGHT if self is Foot.LEFT else Foot.LEFT
 
     @property
     def side(self) -> float:

@@ -24,6 +24,7 @@ class PushSchedule:
         total: sum of the applied forces, world frame, shape (3,) [N].
         mean: its mean over the last `World.advance`, shape (3,) [N].
         active: bodies and the forces applied to them.
+        next_change: the first tick at which the forces differ from the applied ones.
     """
 
     def __init__(self, pushes: Sequence[Push], body_ids: Sequence[int], physics_rate: int) -> None:
@@ -34,11 +35,7 @@ class PushSchedule:
         self._index = 0
         self.total, self.mean = np.zeros(3), np.zeros(3)
         self.active: list[tuple[int, Array]] = []
-
-    @property
-    def next_change(self) -> int:
-        """The first tick at which the forces differ from the applied ones."""
-        return self._ticks[self._index + 1]
+        self.next_change = self._ticks[1]
 
     def rewind(self, xfrc_applied: Array) -> None:
         """Apply the forces of tick 0 without added pushes; `xfrc_applied` is MuJoCo's (nbody, 6) array."""
@@ -56,12 +53,12 @@ class PushSchedule:
         """Add a push from the present tick on; what is applied changes with the next `step_over`, at that tick."""
         self._live = [*(other for other in self._live if other.end > tick), _acting(push, body, self._rate)]
         self._ticks, self._forces = _timeline(self._live, tick)
-        self._index = -1
+        self._index, self.next_change = -1, self._ticks[0]
 
     def _apply(self, xfrc_applied: Array) -> None:
         xfrc_applied[:] = 0.0
         self.total[:] = 0.0
-        self.active = self._forces[self._index]
+        self.active, self.next_change = self._forces[self._index], self._ticks[self._index + 1]
         for body, force in self.active:
             xfrc_applied[body, :3] += force
             self.total += force

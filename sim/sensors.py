@@ -12,6 +12,9 @@ from surefoot.sim.contacts import ContactSense
 from surefoot.sim.errors import WorldError
 from surefoot.sim.measurement import Array, Measurement
 from surefoot.sim.pushes import PushSchedule
+from surefoot.values import maker
+
+_a_measurement = maker(Measurement)
 
 ROUND_OFF = 1e-9
 """Share of a push below which what remains of a body's external force is rounding."""
@@ -52,11 +55,10 @@ class SensorReader:
         self._q, self._v, self._torque = np.zeros(nq), np.zeros(nv), np.zeros(nv - 6)
         self._specific_force, self._accelerometer = np.zeros(3), np.zeros(3)
         self._wrench, self._push = np.zeros((2, 6)), np.zeros(3)
-        self._q_view, self._v_view = _read_only(self._q), _read_only(self._v)
-        self._joint_position, self._joint_velocity = self._q_view[7:], self._v_view[6:]
-        self._gyro, self._torque_view = self._v_view[3:6], _read_only(self._torque)
-        self._accelerometer_view, self._wrench_view = _read_only(self._accelerometer), _read_only(self._wrench)
-        self._push_view = _read_only(self._push)
+        q, v = _read_only(self._q), _read_only(self._v)
+        torque, felt, wrench = _read_only(self._torque), _read_only(self._accelerometer), _read_only(self._wrench)
+        self._views = q[7:], v[6:], torque, v[3:6], felt, wrench, q, v, _read_only(self._push)
+        """Of a measurement, from the joints' positions to the push."""
 
     def read(self, time: float, pushes: PushSchedule) -> Measurement:
         """Everything at `time` [s]; `pushes` are the forces of the step that ended there."""
@@ -68,23 +70,10 @@ class SensorReader:
             if pushes.active:
                 self._without_pushes(pushes)
             else:
-                np.copyto(self._contact, self._external)
+                self._contact[...] = self._external
             self._read_compiled()
         nonfoot_contact, self_contact = self._touch.read()
-        return Measurement(
-            time=time,
-            joint_position=self._joint_position,
-            joint_velocity=self._joint_velocity,
-            joint_torque=self._torque_view,
-            gyro=self._gyro,
-            accelerometer=self._accelerometer_view,
-            wrench=self._wrench_view,
-            q=self._q_view,
-            v=self._v_view,
-            external_force=self._push_view,
-            nonfoot_contact=nonfoot_contact,
-            self_contact=self_contact,
-        )
+        return _a_measurement(time, *self._views, nonfoot_contact, self_contact)
 
     def _read(self, pushes: PushSchedule) -> None:
         """Fill the buffers but for the pushes."""

@@ -2,6 +2,7 @@
 
 import copy
 import logging
+import math
 from collections.abc import Sequence
 from functools import lru_cache
 
@@ -103,7 +104,7 @@ class World:
 
     def measure(self) -> Measurement:
         """What the sensors say now."""
-        return self._sensors.read(self.time, self._pushes)
+        return self._sensors.read(self.tick / self.physics_rate, self._pushes)
 
     def push(self, push: Push) -> None:
         """Add a push while the world runs; it acts beside the others, with its whole impulse, until the next reset.
@@ -130,10 +131,10 @@ class World:
         Raises:
             SimulationDiverged: the torque or the state is not finite.
         """
-        if not np.dot(torque, torque) < np.inf:
+        # Methods and assignments: numpy's functions of these names go through Python first.
+        if not torque.dot(torque) < math.inf:
             raise SimulationDiverged(self.time, "the commanded torque is not finite")
-        np.copyto(self._last_qpos, self._qpos)
-        np.copyto(self._last_qvel, self._qvel)
+        self._last_qpos[...], self._last_qvel[...] = self._qpos, self._qvel
         if self._drives is None:
             self._ctrl[:] = torque
         else:
@@ -150,7 +151,7 @@ class World:
             if pushes.active:
                 pushes.mean += (stop - tick) / steps * pushes.total
             tick = stop
-        if not np.dot(self._qacc, self._qacc) < ACCELERATION_LIMIT**2:
+        if not self._qacc.dot(self._qacc) < ACCELERATION_LIMIT**2:
             self._diverge()
         self.tick = end
 

@@ -9,7 +9,7 @@ import sys
 
 import pytest
 
-from surefoot.values import dataclass
+from surefoot.values import dataclass, maker, opened
 
 pytestmark = pytest.mark.unit
 
@@ -204,3 +204,53 @@ print(len(frozen), len(late), len(made))
     frozen, late, made = map(int, done.stdout.split())
     assert frozen == late > 100
     assert made < 0.25 * late
+
+
+@dataclass(frozen=True, slots=True)
+class Wide:
+    """Has fields enough to be set while it is opened."""
+
+    a: float
+    b: float
+    c: float
+    d: float = 4.0
+
+    def __post_init__(self):
+        object.__setattr__(self, "d", self.d + self.a)
+
+
+class Wider(Wide):
+    """A class below, with a place for more."""
+
+
+def test_a_value_of_many_fields_is_frozen_from_its_construction_on():
+    value, below = Wide(1.0, 2.0, c=3.0), Wider(1.0, 2.0, 3.0)
+    for one, kind in ((value, Wide), (below, Wider), (copy.copy(value), Wide), (dataclasses.replace(value), Wide)):
+        assert type(one) is kind
+        with pytest.raises(dataclasses.FrozenInstanceError):
+            one.a = 2.0
+    assert (below.a, below.b, below.c, below.d) == (value.a, value.b, value.c, value.d) == (1.0, 2.0, 3.0, 5.0)
+    assert dataclasses.replace(value, d=0.0) == Wide(1.0, 2.0, 3.0, 0.0) != value
+
+
+def test_what_is_made_opened_becomes_the_value():
+    made = opened(Wide)()
+    made.a, made.b, made.c, made.d = 1.0, 2.0, 3.0, 5.0
+    made.__class__ = Wide
+    assert made == Wide(1.0, 2.0, 3.0)
+    with pytest.raises(dataclasses.FrozenInstanceError):
+        made.a = 2.0
+
+
+@pytest.mark.parametrize(("args", "named"), [((1.0, 2.0, 3.0), {}), ((1.0,), {"b": 2.0, "c": 3.0, "d": 0.0})])
+def test_a_maker_makes_what_the_class_makes(args, named):
+    make = maker(Wide)
+    made, value = make(*args, **named), Wide(*args, **named)
+    assert made == value
+    assert type(made) is Wide
+    with pytest.raises(dataclasses.FrozenInstanceError):
+        made.a = 2.0
+    with pytest.raises(TypeError):
+        make(1.0)
+    ours, _ = both()
+    assert maker(ours)(1).b is not maker(ours)(1).b  # a default is made for each

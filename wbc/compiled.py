@@ -85,8 +85,7 @@ class CompiledTerms:
 
     def update(self, q: Array, v: Array, mass: float) -> None:
         """Fill all arrays of the state q, shape (nq,), and v, shape (nv,), with the model's mass [kg] and no load."""
-        np.copyto(self._q, q)
-        np.copyto(self._v, v)
+        self._q[...], self._v[...] = q, v  # numpy.copyto goes through Python first
         if self._loaded:
             self.bear(mass, NO_LOAD)
             self._loaded = False
@@ -110,7 +109,7 @@ class CompiledTerms:
             wrench: sole wrenches in the sole frames, shape (2, 6) [N, N·m].
             toe: as of `RobotTerms.level_soles`; the soles do not lean.
         """
-        np.copyto(self._wrench, wrench)
+        self._wrench[...] = wrench
         self._see(toe)
         return self._level.copy(), self._yaw.copy(), self._zmp.copy()
 
@@ -187,7 +186,7 @@ class CompiledTick:
         """Take the reference of this tick."""
         r = reference
         if r.numbers is not None:
-            np.copyto(self._numbers, r.numbers)
+            self._numbers[...] = r.numbers
             return
         rest = (*_NUMBERS(r), *r.load_share, *r.roll, r.swing_foot, r.rolling_foot)
         parts = (*_VECTORS(r), r.swing_rotation.ravel(), r.ground_normal.ravel(), rest)

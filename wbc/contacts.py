@@ -1,6 +1,6 @@
 """Which contacts the whole-body QP holds, and how much load each may take: plan and feeling combined."""
 
-from surefoot.values import dataclass
+from surefoot.values import dataclass, maker
 from surefoot.wbc.parameters import ContactParameters
 from surefoot.wbc.types import FootSensing, WbcReference
 
@@ -20,6 +20,9 @@ class ContactState:
     felt: tuple[bool, bool]
     force_cap: tuple[float, float]
     rolling: int = -1
+
+
+_a_state = maker(ContactState)
 
 
 class ContactSchedule:
@@ -49,21 +52,21 @@ class ContactSchedule:
 
     def update(self, reference: WbcReference, sensing: FootSensing) -> ContactState:
         """Contacts of this tick from the plan, and from what an estimator decided or else the normal forces."""
-        felt = sensing.contact
+        felt, held, planned = sensing.contact, self._active, reference.planned_contact
         if felt is None:
             felt = (self._feel(0, sensing.normal_force[0]), self._feel(1, sensing.normal_force[1]))
-        planned = reference.planned_contact
-        for k in (0, 1):
-            early = not planned[k] and reference.swing_progress >= self._parameters.early_progress
-            if not self._active[k]:
-                if felt[k] and (planned[k] or early):
-                    self._active[k] = True
-                    self._loading[k] = 0.0
-            elif not planned[k] and not early and self._active[1 - k]:
-                self._active[k] = False
-        active = (self._active[0], self._active[1])
+        if not (held[0] and held[1] and planned[0] and planned[1]):
+            for k in (0, 1):
+                early = not planned[k] and reference.swing_progress >= self._parameters.early_progress
+                if not held[k]:
+                    if felt[k] and (planned[k] or early):
+                        held[k] = True
+                        self._loading[k] = 0.0
+                elif not planned[k] and not early and held[1 - k]:
+                    held[k] = False
+        active = (held[0], held[1])
         rolling = reference.rolling_foot if active[0] and active[1] else -1
-        return ContactState(active, felt, (self._cap(0, reference), self._cap(1, reference)), rolling)
+        return _a_state(active, felt, (self._cap(0, reference), self._cap(1, reference)), rolling)
 
     def _feel(self, k: int, normal_force: float) -> bool:
         touches = normal_force > self._parameters.felt_force
@@ -78,7 +81,8 @@ class ContactSchedule:
             return 3.0 * self.weight
         if not reference.planned_contact[k]:
             return parameters.early_cap
-        self._loading[k] = min(1.0, self._loading[k] + self._period / parameters.loading_time)
+        if self._loading[k] < 1.0:
+            self._loading[k] = min(1.0, self._loading[k] + self._period / parameters.loading_time)
         cap = parameters.early_cap + self._loading[k] * (3.0 * self.weight - parameters.early_cap)
         if reference.lifting_foot == k and self._loading[1 - k] >= 1.0:
             remaining = min(1.0, reference.time_to_switch / parameters.unloading_time)

@@ -9,8 +9,9 @@ import numpy as np
 import pinocchio as pin
 from numpy.typing import NDArray
 
+from surefoot.forces import NO_LOAD
 from surefoot.similarity import Similarity
-from surefoot.values import dataclass
+from surefoot.values import dataclass, maker
 from surefoot.wbc.arm_swing import ArmSwing
 from surefoot.wbc.balance import SupportRegion
 from surefoot.wbc.compiled import CompiledTick
@@ -45,6 +46,11 @@ Constants here are the reference robot's; see `surefoot.similarity`."""
 FADE, FADE_DAMPING = 0.05, 0.02
 """Time in which the last torque fades out [s], and torque of a joint's damper at 1 rad/s meanwhile over its largest one
 [s/rad]."""
+
+
+_a_report = maker(WbcReport)
+
+_SOLVED = SolveStatus.SOLVED  # a member is looked up by its name at each access
 
 
 @dataclass(frozen=True, slots=True)
@@ -212,7 +218,9 @@ class WholeBodyController:
         """
         start = time.perf_counter()
         if sensing.wrench is not None:
-            self.terms.bear(self._observer.update(self.terms, sensing.wrench, sensing.load_deviation))
+            load = self._observer.update(self.terms, sensing.wrench, sensing.load_deviation)
+            if load is not NO_LOAD:
+                self.terms.bear(load)
             self.schedule.weight = self.terms.mass * GRAVITY
         contacts = self.schedule.update(reference, sensing)
         qp = self.build(self.terms, reference, contacts)
@@ -220,20 +228,23 @@ class WholeBodyController:
         status, solution = self.solve(qp, fail_solvers)
         answer = self.interpret(self.terms, solution)
         solved = time.perf_counter()
-        return WbcReport(
-            torque=answer.torque,
-            status=status,
-            iterations=solution.iterations if solution else 0,
-            primal_residual=solution.violation if solution else math.inf,
-            dual_residual=solution.dual_residual if solution else math.nan,
-            acceleration=answer.acceleration,
-            wrench=answer.wrench,
-            active=contacts.active,
-            felt=contacts.felt,
-            task_error=answer.task_error,
-            build_time=built - start,
-            solve_time=solved - built,
-            load=self.terms.load,
+        iterations, violation, dual = 0, math.inf, math.nan
+        if solution is not None:
+            iterations, violation, dual = solution.iterations, solution.violation, solution.dual_residual
+        return _a_report(
+            answer.torque,
+            status,
+            iterations,
+            violation,
+            dual,
+            answer.acceleration,
+            answer.wrench,
+            contacts.active,
+            contacts.felt,
+            answer.task_error,
+            built - start,
+            solved - built,
+            self.terms.load,
         )
 
     def build(self, terms: RobotTerms, reference: WbcReference, contacts: ContactState) -> QpData:
@@ -264,10 +275,13 @@ class WholeBodyController:
     def solve(self, qp: QpData, fail_solvers: bool = False) -> tuple[SolveStatus, QpSolution | None]:
         """A solution by the first solver whose answer holds, else by the equalities alone; None if there is none."""
         if not fail_solvers:
-            for status, solver in zip((SolveStatus.SOLVED, SolveStatus.SECOND_SOLVER), self._solvers, strict=True):
-                solution = solver.solve(qp)
-                if solution is not None and solution.violation <= ACCEPTED_VIOLATION:
-                    return status, solution
+            first, second = self._solvers
+            solution = first.solve(qp)
+            if solution is not None and solution.violation <= ACCEPTED_VIOLATION:
+                return _SOLVED, solution
+            solution = second.solve(qp)
+            if solution is not None and solution.violation <= ACCEPTED_VIOLATION:
+                return SolveStatus.SECOND_SOLVER, solution
         solution = equalities_only(qp)
         return (SolveStatus.HELD if solution is None else SolveStatus.EQUALITIES_ONLY), solution
 
@@ -283,7 +297,7 @@ class WholeBodyController:
         if self._tick is None or terms is not self.terms:
             self._read(terms, solution.x)
         else:
-            np.copyto(self._x, solution.x)
+            self._x[...] = solution.x
             self._read_compiled()
         for foot, to_sole in self._seen:
             answer.wrench[foot] = to_sole @ answer.wrench[foot]
@@ -318,6 +332,8 @@ class WholeBodyController:
     def _shift(self, terms: RobotTerms, reference: WbcReference, contacts: ContactState) -> None:
         """See a rolling foot from its toe edge, a leaning one from its line, others from their soles."""
         rolling, self._seen = reference.rolling_foot, []
+        if rolling < 0 and terms.leaning is None and not terms.is_shifted:
+            return
         for foot in (0, 1):
             if foot == rolling and (rolling == contacts.rolling or not contacts.active[rolling]):
                 self._seen.append((foot, terms.shift_foot(foot, self._toe, reference.roll[0])))

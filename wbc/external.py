@@ -166,7 +166,7 @@ class LoadObserver:
         if self._count == 0:
             self._begin()
             return self.load
-        np.copyto(self._wrench, wrench)
+        self._wrench[...] = wrench
         add()
         if self._count == self._ticks:
             self._count = 0
@@ -240,7 +240,7 @@ class LoadObserver:
     def _tell(self) -> None:
         """The estimate as a load."""
         self.load = NO_LOAD
-        if self._estimate.any():
+        if any(self._estimate.tolist()):
             x, y, *moment, more = self._estimate.tolist()
             self.load = ExternalLoad(np.array([x, y, 0.0]), np.array(moment), 1.0 + more)
 

@@ -237,6 +237,11 @@ class RobotTerms:
             self._shifted[k] = False
             (self._update_sole if self.compiled is None else self.compiled.unshift)(k)
 
+    @property
+    def is_shifted(self) -> bool:
+        """Whether a foot is seen from elsewhere than its sole."""
+        return self._shifted[0] or self._shifted[1]
+
     def _update_torso(self) -> None:
         model, data, frame = self.model, self.data, self._torso
         pin.updateFramePlacement(model, data, frame)

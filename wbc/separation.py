@@ -63,9 +63,15 @@ class Separation:
             unbounded: value of an absent bound.
         """
         p = self._parameters
-        distances = self._all_distances(data) if self._due is None else self._due_distances(data, self._due)
-        if not distances and self._clear is rows:
-            return
+        if self._due is None:
+            distances = self._all_distances(data)
+        else:
+            due = self._due.find()
+            if not due and self._clear is rows:
+                return
+            distances = self._due_distances(data, due, self._due.distances)
+            if not distances and self._clear is rows:
+                return
         self._clear = None if distances else rows
         near = [k for k, distance in distances.items() if 0.0 < distance < p.attention]
         near.sort(key=distances.__getitem__)
@@ -91,14 +97,14 @@ class Separation:
         pin.computeDistances(self._geometry, self._data)
         return {k: result.min_distance for k, result in enumerate(self._results)}
 
-    def _due_distances(self, data: pin.Data, due: "_DuePairs") -> dict[int, float]:
-        """Those that may be within the attention."""
+    def _due_distances(self, data: pin.Data, due: Sequence[int], known: Array) -> dict[int, float]:
+        """Those that may be within the attention, which are known from here on."""
         distances: dict[int, float] = {}
-        for k in due.find():
-            if not distances:
-                pin.updateGeometryPlacements(self._model, data, self._geometry, self._data)
+        if due:
+            pin.updateGeometryPlacements(self._model, data, self._geometry, self._data)
+        for k in due:
             pin.computeDistance(self._geometry, self._data, k)
-            distances[k] = due.distances[k] = self._results[k].min_distance
+            distances[k] = known[k] = self._results[k].min_distance
         return distances
 
     def _compiled(self, terms: CompiledTerms, first: int, second: int) -> Callable[[], float]:
@@ -171,7 +177,7 @@ class _DuePairs:
             due=self._due,
         )
 
-    def find(self) -> list[int]:
+    def find(self) -> Sequence[int]:
         """Their numbers, in the state of the terms; each is to be measured there."""
-        found: list[int] = self._due[: self._find()].tolist()
-        return found
+        count = self._find()
+        return self._due[:count].tolist() if count else ()

@@ -10,7 +10,7 @@ from numpy.typing import NDArray
 from proxsuite import proxqp
 
 from surefoot.native.library import Library, library
-from surefoot.values import dataclass
+from surefoot.values import dataclass, maker
 from surefoot.wbc.parameters import SOLVER_NAMES
 from surefoot.wbc.qp import EQUALITY_ROWS, FOOT_ROWS, QpData
 from surefoot.wbc.types import Array
@@ -34,6 +34,9 @@ class QpSolution:
     violation: float
     iterations: int
     dual_residual: float = float("nan")
+
+
+_a_solution = maker(QpSolution)
 
 
 class QpSolver(Protocol):
@@ -198,7 +201,7 @@ class CompiledEqualities:
         if qp is not self._qp:
             self.bind(qp)
         violation = self._run(self._split)
-        return QpSolution(self._x.copy(), violation, 0) if math.isfinite(violation) else None
+        return _a_solution(self._x.copy(), violation, 0) if math.isfinite(violation) else None
 
     def activate(self) -> QpSolution | None:
         """The minimiser of the QP last solved under all of its constraints; None where few active ones do not do."""

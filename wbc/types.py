@@ -16,7 +16,7 @@ from numpy.typing import NDArray
 
 from surefoot.forces import NO_LOAD, ExternalLoad
 from surefoot.similarity import GRAVITY as GRAVITY
-from surefoot.values import dataclass
+from surefoot.values import dataclass, opened
 
 Array = NDArray[np.float64]
 
@@ -169,15 +169,11 @@ class WbcReference:
 
         Those numbers become fields when they are first read.
         """
-        reference = cls.__new__(cls)
-        _put(reference, "numbers", numbers)
-        _put(reference, "planned_contact", planned_contact)
-        _put(reference, "time_to_switch", time_to_switch)
-        _put(reference, "lifting_foot", lifting_foot)
-        _put(reference, "swing_foot", swing_foot)
-        _put(reference, "swing_progress", swing_progress)
-        _put(reference, "rolling_foot", rolling_foot)
-        return reference
+        made = _OpenReference()
+        made.numbers, made.planned_contact, made.time_to_switch = numbers, planned_contact, time_to_switch
+        made.lifting_foot, made.swing_foot, made.swing_progress = lifting_foot, swing_foot, swing_progress
+        made.rolling_foot, made.__class__ = rolling_foot, cls
+        return made  # type: ignore[no-any-return]
 
     if not TYPE_CHECKING:
 
@@ -190,6 +186,9 @@ class WbcReference:
             value = part.reshape(shape) if name in _ARRAYS else tuple(part.tolist()) if shape else part.item()
             _put(self, name, value)
             return value
+
+
+_OpenReference = opened(WbcReference)
 
 
 @dataclass(frozen=True, slots=True)

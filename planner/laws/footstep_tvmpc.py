@@ -156,6 +156,10 @@ def _with_rate_limit(G: Array, h: Array, m: int, limit: float, last_jerk: Array)
     return np.concatenate((G, rows)), np.concatenate((h, bound), axis=1)
 
 
+_STATUSES = tuple(SolverStatus)
+"""By the number of solvers that have failed."""
+
+
 class FootstepTvmpc:
     """Blocked jerk and two footstep shifts per axis; ZMP box and terminal DCM bound are soft, so it has no bad tick.
 
@@ -210,7 +214,7 @@ class FootstepTvmpc:
                 if solution.z is not None:
                     jerk[:, axis] = solution.z[self._blocks]
                     shifts[:, axis], slack[:, axis] = solution.z[m : m + 2], solution.z[m + 2 :]
-        worst = SolverStatus(max(x.attempt, y.attempt))
+        worst = _STATUSES[max(x.attempt, y.attempt)]
         return Motion(jerk + built.jerk, shifts, slack[0], slack[1], worst, qps=built.axes)
 
     def _nominal(self, problem: MotionProblem) -> NominalMotion:

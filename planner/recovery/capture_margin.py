@@ -83,6 +83,7 @@ class CaptureMargin:
 
     Attributes:
         cycle: shortest time from a landing to the next one, in which a foot is swung as far as legs reach [s].
+        told: where kernels are told of steps; None of plain Python.
     """
 
     def __init__(self, legs: LegReach, parameters: PlannerParameters, half_size: Array) -> None:
@@ -98,6 +99,7 @@ class CaptureMargin:
         self._middle = 0.5 * _edges(near + far, near + far)[:, None]
         kernels, edges = library(), (self._half, self._apart, self._middle)
         self._compiled = None if kernels is None else CompiledMargins(kernels, legs, parameters, self.cycle, edges)
+        self.told = None if self._compiled is None else self._compiled.step
 
     def landed(self, growth: float, side: float, count: int) -> Array:
         """Edges of what one that has just landed captures, from its last foot, with 0, ... count - 1 steps more.

@@ -44,9 +44,17 @@ class CompiledStep:
             dearer=DEARER,
         )
         self.bound, self._numbers = kernels.buffer("Landing")
+        self._told: tuple[StepProblem, Array, Array, float] | None = None
 
     def tell(self, com: Array, dcm: Array, omega: float, step: "StepProblem") -> None:
-        """Let kernels count with a step and a state; arguments as of `CaptureMargin.margins`."""
+        """Let kernels count with a step and a state; arguments as of `CaptureMargin.margins`.
+
+        What was told last is not told again.
+        """
+        told = self._told
+        if told is not None and told[0] is step and told[1] is com and told[2] is dcm and told[3] == omega:
+            return
+        self._told = step, com, dcm, omega
         legs = self._legs.turned(step.place.yaw)
         rest = (step.double, step.single, step.cycle, step.shortest, *step.face.ravel().tolist(), step.crosses)
         place = (omega, *step.nominal.tolist(), step.place.foot.side, *step.swing.ravel().tolist())
@@ -96,11 +104,11 @@ class CompiledOutlook:
         if window is self._window:
             return
         self._window, arrays, driving = window, self._arrays, window.driving
-        np.copyto(arrays["stiffness"], window.stiffness)
-        np.copyto(arrays["omega"], window.omega)
-        np.copyto(arrays["point"], driving.point)
-        np.copyto(arrays["gain"], driving.gain)
-        np.copyto(arrays["half_size"], driving.half_size)
+        arrays["stiffness"][...] = window.stiffness
+        arrays["omega"][...] = window.omega
+        arrays["point"][...] = driving.point
+        arrays["gain"][...] = driving.gain
+        arrays["half_size"][...] = driving.half_size
         self._decay()
 
 
@@ -124,11 +132,11 @@ class CompiledMargins:
         edges: tuple[Array, Array, Array],
     ) -> None:
         numbers, (half, apart, middle) = parameters.recovery, edges
-        self._step, self._margins = CompiledStep(kernels, legs), np.zeros(numbers.most_steps)
+        self.step, self._margins = CompiledStep(kernels, legs), np.zeros(numbers.most_steps)
         self._run = kernels.bind(
             "capture_margins",
-            legs=self._step.legs,
-            step=self._step.bound,
+            legs=self.step.legs,
+            step=self.step.bound,
             cycle=cycle,
             timing=parameters.step_adaptation.timing,
             half=half,
@@ -145,7 +153,7 @@ class CompiledMargins:
 
     def margins(self, com: Array, dcm: Array, omega: float, step: "StepProblem", steps: int, fixed: bool) -> Array:
         """See `CaptureMargin.margins`, for no more steps than the planner counts with."""
-        self._step.tell(com, dcm, omega, step)
+        self.step.tell(com, dcm, omega, step)
         self._run(steps, fixed)
         return self._margins[:steps].copy()
 
@@ -157,14 +165,20 @@ class CompiledAdjustment:
         kernels: the library.
         legs: what they can do.
         parameters: of the planner.
-        outlook: where windows are told to kernels.
+        outlook: where windows are told to kernels; None for a place of its own.
+        step: where steps are told to them, likewise.
     """
 
     def __init__(
-        self, kernels: Library, legs: LegReach, parameters: PlannerParameters, outlook: CompiledOutlook | None
+        self,
+        kernels: Library,
+        legs: LegReach,
+        parameters: PlannerParameters,
+        outlook: CompiledOutlook | None,
+        step: CompiledStep | None,
     ) -> None:
         numbers = parameters.recovery
-        self._step, self._outlook = CompiledStep(kernels, legs), outlook or CompiledOutlook(kernels, parameters)
+        self._step, self._outlook = step or CompiledStep(kernels, legs), outlook or CompiledOutlook(kernels, parameters)
         self._result, self.count = np.zeros(6), self._outlook.count
         names = (
             "shift_weight", "second_weight", "time_weight", "stretch_weight", "swing_weight", "cross_factor",

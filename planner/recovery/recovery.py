@@ -30,17 +30,18 @@ class Recovery:
         self._execution, legs = execution, execution.legs
         self._parameters = p = execution.schedule.ground.parameters
         self._planned = PlannedMargin(p)
-        self.adjustment = None if legs is None else StepAdjustment(legs, p, self._planned.outlook)
-        self._movable = None if legs is None else CaptureMargin(legs, p, half_size)
+        self.adjustment, self._movable = None, None if legs is None else CaptureMargin(legs, p, half_size)
+        if legs is not None and self._movable is not None:
+            self.adjustment = StepAdjustment(legs, p, self._planned.outlook, self._movable.told)
+        self._seen: tuple[Array, Window, Array, Array] | None = None
 
     def steps_out(self, local: Array, window: Window) -> bool:
         """Insert a step of a robot that stands and would fall, or stands astride; says whether."""
         execution, schedule, now = self._execution, self._execution.schedule, self._execution.clock.now
-        stands = execution.adapts and execution.info.leads_to == 0 and schedule.stops(now)
-        if self.adjustment is None or not stands:
+        if self.adjustment is None or not execution.adapts or execution.leads_to or not schedule.stops(now):
             return False
         numbers, standing = self._parameters.recovery, execution.phase.kind is PhaseKind.STAND
-        error = _dcm(local, window) - self._planned.nominal(window)
+        error = self._capture_point(local, window)[1] - self._planned.nominal(window)
         if (np.abs(error) <= numbers.stand_share * window.driving.half_size[-1]).all():
             # Once it is at rest the robot brings its feet side by side again.
             # Feet without a CoP of their own would end in a wide step, since there is no time to shift the weight.
@@ -94,7 +95,7 @@ class Recovery:
             last: the plan before; None for the first.
             unsure: how far the DCM may be from where it is estimated, by which both margins are less [m].
         """
-        execution, p, dcm = self._execution, self._parameters, _dcm(local, window)
+        execution, p, (com, dcm) = self._execution, self._parameters, self._capture_point(local, window)
         planned = movable = self._planned.margin(dcm, window)
         if step is None:
             planned = movable = max(planned, signed_distance(support.outer, support.origin + support.rotation @ dcm))
@@ -102,7 +103,7 @@ class Recovery:
             terrain, ahead = execution.schedule.ground.terrain, len(execution.schedule.after(execution.landed))
             steps = terrain.footholds.counted(ahead, p.recovery.most_steps)
             omega, fixed = float(window.omega[0]), not execution.free[0]
-            movable = max(planned, float(self._movable.margins(local[:, 0], dcm, omega, step, steps, fixed)[-1]))
+            movable = max(planned, float(self._movable.margins(com, dcm, omega, step, steps, fixed)[-1]))
         kept = last is not None and last.phase.landed == execution.landed
         shift, delay = (last.balance.shift, last.balance.delay) if last is not None and kept else (np.zeros(2), 0.0)
         outside = 0 if last is None else last.balance.outside
@@ -120,7 +121,7 @@ class Recovery:
             return None
         if execution.phase.swing_foot is not None and execution.swing is None:
             return None
-        adjusted = self.adjustment.solve(local[:, 0], _dcm(local, window), window, step, unsure)
+        adjusted = self.adjustment.solve(*self._capture_point(local, window), window, step, unsure)
         execution.adapted |= adjusted is not None
         return adjusted
 
@@ -148,7 +149,10 @@ class Recovery:
             boxes[0] = adjusted.box
         return shifts_within(boxes, increment, free)
 
-
-def _dcm(local: Array, window: Window) -> Array:
-    """DCM of a CoM position and velocity per axis, shape (2,) [m]."""
-    return np.asarray(local[:, 0] + local[:, 1] / window.omega[0])
+    def _capture_point(self, local: Array, window: Window) -> tuple[Array, Array]:
+        """CoM and DCM of a position and velocity per axis, shape (2,) each [m]; the same arrays for the same state."""
+        seen = self._seen
+        if seen is None or seen[0] is not local or seen[1] is not window:
+            com = local[:, 0]
+            self._seen = seen = local, window, com, com + local[:, 1] / window.omega[0]
+        return seen[2], seen[3]

@@ -37,7 +37,7 @@ from surefoot.native.library import library
 from surefoot.planner.geometry import seen_from, wrap_angle
 from surefoot.planner.model.dcm import decays, moving_cop, nominal_dcm, pendulum_com
 from surefoot.planner.parameters import PlannerParameters
-from surefoot.planner.recovery.compiled import CompiledAdjustment, CompiledOutlook
+from surefoot.planner.recovery.compiled import CompiledAdjustment, CompiledOutlook, CompiledStep
 from surefoot.planner.references.window import Window
 from surefoot.planner.references.zmp_reference import Support
 from surefoot.planner.steps.execution import Execution
@@ -103,7 +103,7 @@ class StepProblem:
         legs = execution.legs
         shortest = 0.0 if legs is None else shortest_swing(step, legs, numbers.lifting)
         if execution.swing is not None:
-            moving = execution.swing.evaluate(time)[1, :2] @ rotation
+            moving = execution.swing.coefficients(time)[1, :2] @ rotation
         place, face = _landing_place(step, schedule.step(landed), numbers.parallel)
         return cls(
             place=place,
@@ -150,14 +150,21 @@ class StepAdjustment:
         legs: what they can do.
         parameters: of the planner.
         outlook: where kernels are told of windows, if others have it in common; one of its own by default.
+        told: where they are told of steps of these legs, likewise.
     """
 
-    def __init__(self, legs: LegReach, parameters: PlannerParameters, outlook: CompiledOutlook | None = None) -> None:
+    def __init__(
+        self,
+        legs: LegReach,
+        parameters: PlannerParameters,
+        outlook: CompiledOutlook | None = None,
+        told: CompiledStep | None = None,
+    ) -> None:
         self._legs, self._timing = legs, parameters.step_adaptation.timing
         self._sample_time, self._numbers = parameters.sample_time, parameters.recovery
         self._authority = np.array(parameters.cop_authority)
         self._changes, kernels = np.array(parameters.recovery.time_changes), library()
-        self._compiled = None if kernels is None else CompiledAdjustment(kernels, legs, parameters, outlook)
+        self._compiled = None if kernels is None else CompiledAdjustment(kernels, legs, parameters, outlook, told)
 
     def solve(
         self, com: Array, dcm: Array, window: Window, step: StepProblem, unsure: float = 0.0

@@ -24,10 +24,13 @@ from surefoot.planner.steps.gait import GaitParameters
 from surefoot.planner.steps.phases import PhaseSamples
 from surefoot.planner.steps.schedule import Schedule
 from surefoot.planner.types import GRAVITY, Array
+from surefoot.values import maker
 
 if TYPE_CHECKING:
     from surefoot.planner.references.window import Sight
 
+
+_some_samples, _a_reference, _a_height = maker(PhaseSamples), maker(ZmpReference), maker(HeightPreview)
 
 _ROOM = 64
 """Phases, steps and support points for which there is memory from the start; a walk that sees more takes more [-]."""
@@ -64,7 +67,8 @@ class CompiledPreview:
         shapes |= dict.fromkeys(("ground", "load_left", "stiffness", "softened"), (reach,))
         whole = ("which", "kind", "index", "contacts")
         self._layout = np.dtype([(k, np.int64 if k in whole else np.float64, shape) for k, shape in shapes.items()])
-        self._made, self._course = np.zeros(1, self._layout), np.zeros(9)
+        self._memory, self._course = np.zeros(self._layout.itemsize, np.uint8), np.zeros(9)
+        self._made = np.ndarray((), self._layout, self._memory)
         # A subclass may have a height of its own.
         own = getattr(type(profile), "height", None) is SmoothHeight.height
         self._smooth = cast(SmoothHeight, profile) if own else None
@@ -85,7 +89,7 @@ class CompiledPreview:
             softening=softening,
             looked_at=len(LOOKED_AT),
             course=self._course,
-            **{name: self._made[name][0] for name in self._layout.names or ()},
+            **{name: self._made[name] for name in self._layout.names or ()},
         )
         self._look, self._weigh, self.soonest_calm = (
             kernels.bind(name, self._bound) for name in ("preview_look", "preview_weigh", "preview_transition")
@@ -102,17 +106,17 @@ class CompiledPreview:
         if not steady:
             self._course[:] = clock.begun, clock.elapsed, clock.length, *clock.coefficients
         self._look(steady, clock.now, self._smooth is not None)
-        height = self._made["height"][0]
+        height = self._made["height"]
         if self._smooth is None:
             samples = self._samples(execution, self._copy())
-            np.copyto(height, self._profile.height(self._gait, samples, support.heights)[:, 1:-1])
+            height[...] = self._profile.height(self._gait, samples, support.heights)[:, 1:-1]
         found = moved(execution, height)
         if found is not height:
-            np.copyto(height, found)
+            height[...] = found
         self._weigh()
         made = self._copy()
-        reference = ZmpReference(made["point"], made["gain"], made["half_size"], made["ground"])
-        preview = HeightPreview(made["height"], made["stiffness"])
+        reference = _a_reference(made["point"], made["gain"], made["half_size"], made["ground"])
+        preview = _a_height(made["height"], made["stiffness"])
         samples, stiffness, load = self._samples(execution, made), made["softened"], made["load_left"]
         return samples, reference, preview, stiffness, made["omega"], load[: self._count]
 
@@ -142,10 +146,10 @@ class CompiledPreview:
 
     def _copy(self) -> Any:
         """What the kernels have made, by name, in memory of its own."""
-        return self._made.view(np.uint8).copy().view(self._layout).reshape(())
+        return np.ndarray((), self._layout, self._memory.copy())
 
     def _samples(self, execution: Execution, made: Any) -> PhaseSamples:
-        return PhaseSamples(
+        return _some_samples(
             phases=execution.schedule.phases,
             which=made["which"],
             kind=made["kind"],

@@ -31,7 +31,8 @@ from surefoot.planner.parameters import LegInertia
 from surefoot.planner.references.com_height import HeightPreview
 from surefoot.planner.steps.phases import Phase, PhaseSamples
 from surefoot.planner.steps.schedule import Schedule
-from surefoot.planner.steps.step import unit_swing
+from surefoot.planner.steps.step import Step, unit_swing
+from surefoot.planner.swing.course import Ground
 from surefoot.planner.swing.heel_off import RollSpan, bump
 from surefoot.planner.swing.trajectory import TOUCHING, SwingTrajectory
 from surefoot.planner.types import GRAVITY, Array, Foot, PhaseKind
@@ -138,7 +139,13 @@ def _swing(phase: Phase, schedule: Schedule, elapsed: float) -> tuple[SwingTraje
     step, late = schedule.step(phase.step), elapsed % 1.0
     if min(late, 1.0 - late) <= CLOCK_ROUNDING:
         return step.swing, 0.0
-    return unit_swing(phase.samples - late, step.climb, step.course, schedule.ground.parameters), late
+    return _rest_of(step, phase.samples - late, schedule.ground), late
+
+
+@lru_cache(maxsize=16)
+def _rest_of(step: Step, samples: float, ground: Ground) -> SwingTrajectory:
+    """The swing of a step that has so many samples, the same from plan to plan."""
+    return unit_swing(samples, step.climb, step.course, ground.parameters)
 
 
 def zmp_offset(
@@ -298,7 +305,7 @@ class _CompiledOffset:
         self._which[:count], self._elapsed[:count] = which, samples.elapsed[:count]
         self._clock[:count] = samples.clock[:count]
         (rotation, origin), position, steps = frame, schedule.positions, schedule.steps
-        numbers, last = range(which[0], which[-1] + 1), len(steps) - 1
+        numbers, last = range(int(which[0]), int(which[-1]) + 1), len(steps) - 1
         elapsed = samples.elapsed[which.searchsorted(numbers)].tolist()
         phases, heads = np.empty((len(numbers), 35)), []
         for told, number, gone in zip(phases, numbers, elapsed, strict=True):

@@ -2,7 +2,6 @@
 
 import math
 from collections.abc import Callable
-from dataclasses import replace
 from functools import partial
 
 import numpy as np
@@ -10,6 +9,7 @@ from numpy.typing import NDArray
 
 from surefoot.forces import ExternalLoad
 from surefoot.native.library import library
+from surefoot.planner.geometry import greatest
 from surefoot.planner.model.dcm import natural_frequency
 from surefoot.planner.model.time_scaling import Course, TimeScaling
 from surefoot.planner.parameters import PlannerParameters
@@ -30,7 +30,7 @@ from surefoot.planner.steps.execution import Execution
 from surefoot.planner.steps.gait import GaitParameters
 from surefoot.planner.steps.phases import PhaseSamples
 from surefoot.planner.types import GRAVITY, Array
-from surefoot.values import dataclass
+from surefoot.values import dataclass, maker
 
 
 @dataclass(frozen=True, slots=True)
@@ -64,7 +64,7 @@ class OffsetTable:
             return False
         if aim is None or self.aim is None:
             return aim is self.aim
-        return bool(np.abs(aim - self.aim).max() <= apart)
+        return bool(greatest(np.abs(aim - self.aim)) <= apart)
 
     def guess(self, ticks: int, key: SupportKey, count: int) -> Array | None:
         """About what the next one will be, shape (count, 2) [m]; None where the last one tells nothing of it."""
@@ -103,6 +103,8 @@ class Window:
     load_left: Array
     contacts: NDArray[np.bool_]
 
+
+_a_window, _a_reference = maker(Window), maker(ZmpReference)
 
 Sight = tuple[PhaseSamples, ZmpReference, HeightPreview, Array, Array, Array]
 """What the walk ahead looks like.
@@ -201,9 +203,9 @@ class ReferencePreview:
         offset = self._offset(execution, samples, support, point, height, position, time)
         if leant is not None:
             offset = offset + leant[:count]
-        return Window(
+        return _a_window(
             reference=seen,
-            driving=replace(seen, point=seen.point - offset),
+            driving=_a_reference(seen.point - offset, seen.gain, seen.half_size, seen.height),
             offset=offset,
             height=height.part(count),
             stiffness=stiffness[:count],

@@ -5,11 +5,11 @@ from dataclasses import replace
 
 import numpy as np
 
-from surefoot.planner.geometry import sole_pose, wrap_angle
+from surefoot.planner.geometry import greatest, sole_pose, wrap_angle
 from surefoot.planner.model.time_scaling import CLOCK_ROUNDING, TimeScaling
 from surefoot.planner.steps.adaptation import aligned, with_heel_lifted
 from surefoot.planner.steps.gait import GaitParameters
-from surefoot.planner.steps.phases import PhaseSamples
+from surefoot.planner.steps.phases import Phase, PhaseSamples
 from surefoot.planner.steps.schedule import Schedule
 from surefoot.planner.steps.source import StepSource
 from surefoot.planner.swing.heel_off import FootRoll
@@ -72,6 +72,7 @@ class Execution:
         self._parameters, self._size, self._terrain = parameters, parameters.size, schedule.ground.terrain
         self._pose = np.repeat([self._size.length, 1.0], 3)
         self._lead = parameters.touchdown_lead / parameters.sample_time
+        self._told: tuple[Phase, TimeScaling, Schedule, PhaseInfo] | None = None
         self._patience = round(parameters.late_touchdown / parameters.sample_time)
         self.follow(schedule)
 
@@ -86,11 +87,21 @@ class Execution:
     @property
     def info(self) -> PhaseInfo:
         """The phase now, in seconds."""
+        told, key = self._told, (self.phase, self.clock, self.schedule)
+        if told is not None and told[0] is key[0] and told[1] is key[1] and told[2] is key[2]:
+            return told[3]
         phase, t = self.phase, self._parameters.sample_time
-        follows = phase if phase.stance is not None else self.schedule.phase(phase.end)
-        leads_to = follows.step if follows.stance is not None else 0
         elapsed, duration = (self.clock.now - phase.start) * t, phase.samples * t
-        return PhaseInfo(phase.kind, phase.stance, phase.step, elapsed, duration, leads_to, self.time_left)
+        info = PhaseInfo(phase.kind, phase.stance, phase.step, elapsed, duration, self.leads_to, self.time_left)
+        self._told = *key, info
+        return info
+
+    @property
+    def leads_to(self) -> int:
+        """As of `PhaseInfo`."""
+        phase = self.phase
+        follows = phase if phase.stance is not None else self.schedule.phase(phase.end)
+        return follows.step if follows.stance is not None else 0
 
     @property
     def left(self) -> float:
@@ -257,7 +268,7 @@ class Execution:
             self.swing = start_swing(foot, pose, target, time, self.left, course, self._parameters, unsure)
         else:
             target[2] -= self.swing.aim
-            if not (self.fixed or held) and (np.abs(target - self.swing.target) / self._pose).max() > _SAME_TARGET:
+            if not (self.fixed or held) and greatest(np.abs(target - self.swing.target) / self._pose) > _SAME_TARGET:
                 # Over edges the foot keeps to the times in which its course clears them.
                 gliding = self.adapted and self._wide
                 self.swing = self.swing.retargeted(time, target, gliding, LEAST_GLIDE * self._size.time)

@@ -42,7 +42,7 @@ _LEVEL = 1e-3
 """Difference of height, of the reference robot, up to which ground is level, as its boxes are rounded [m]."""
 
 
-@dataclass(frozen=True, slots=True)
+@dataclass(frozen=True, slots=True, eq=False)
 class Ground:
     """What steps are laid on, and by whom.
 

@@ -2,6 +2,7 @@
 
 import math
 from dataclasses import field, replace
+from functools import lru_cache
 
 import numpy as np
 
@@ -85,7 +86,13 @@ class SwingTrajectory:
         return self.bend_time < math.inf
 
     def coefficients(self, time: float) -> Array:
-        """Polynomials in the local time from `time` on, valid until the next of the times above, shape (6, 6)."""
+        """Polynomials in the local time from `time` on, valid until the next of the times above, shape (6, 6).
+
+        Several ask for the instant of a plan; the array is read-only.
+        """
+        return _coefficients(self, time)
+
+    def _coefficients(self, time: float) -> Array:
         result = np.zeros((6, 6))
         if time >= self.touchdown_time - TOUCHING:
             result[0] = self.target
@@ -236,6 +243,13 @@ class SwingTrajectory:
         top = np.array([[apex], [0.0], [bend]])
         rise, fall = quintic(state, top, up), quintic(top, end, down)
         return replace(self, rise_start=time, rise=rise, fall_start=self.apex_time, fall=fall)
+
+
+@lru_cache(maxsize=4)
+def _coefficients(trajectory: SwingTrajectory, time: float) -> Array:
+    made = trajectory._coefficients(time)
+    made.flags.writeable = False
+    return made
 
 
 _FACTORIAL = np.array([[1.0], [1.0], [2.0]])

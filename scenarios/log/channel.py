@@ -84,6 +84,8 @@ class ChannelWriter(Waiting):
         self._names = tuple(field.name for field in spec.fields)
         self._records = blank_records(spec.fields, channel_id, capacity)
         self._views: tuple[NDArray[np.generic], ...] = tuple(self._records[name] for name in self._names)
+        self._stamps = tuple(self._records[name] for name in ("_log_time", "_stamp", "_publish_time"))
+        self._sequence, self._index = self._records["_sequence"], np.zeros((capacity, 2), "<u8")
         self._bytes = self._records.view(np.uint8).reshape(capacity, -1)
         self._offsets = np.arange(capacity, dtype=np.uint64) * np.uint64(self._records.dtype.itemsize)
 
@@ -180,17 +182,19 @@ class ChannelWriter(Waiting):
 
     def take(self, offset: int) -> tuple[memoryview, bytes]:
         """See `Waiting`."""
-        n, records = self.count, self._records
-        stamps = records["_log_time"][:n] if self._stamped else np.array(self.times, np.uint64)
+        n, stamps = self.count, self._stamps[0][: self.count]
         if not self._stamped:
-            for name in ("_stamp", "_log_time", "_publish_time"):
-                records[name][:n] = stamps
-            records["_sequence"][:n] = np.arange(self.total, self.total + n)
+            times = np.array(self.times, np.uint64)
+            for view in self._stamps:
+                view[:n] = times
+            self._sequence[:n] = np.arange(self.total, self.total + n)
         self._stamped = False
         self.total += n
         self.drop()
-        index = message_index(self.channel_id, stamps, self._offsets[:n] + np.uint64(offset))
-        return self._bytes[:n].data.cast("B"), index
+        index = self._index[:n]
+        index[:, 0], index[:, 1] = stamps, self._offsets[:n]
+        index[:, 1] += np.uint64(offset)
+        return self._bytes[:n].data.cast("B"), index_record(self.channel_id, index)
 
 
 def message_index(channel_id: int, times_ns: ArrayLike, offsets: ArrayLike) -> bytes:
@@ -198,6 +202,11 @@ def message_index(channel_id: int, times_ns: ArrayLike, offsets: ArrayLike) -> b
     times = np.asarray(times_ns, "<u8")
     index = np.empty((len(times), 2), "<u8")
     index[:, 0], index[:, 1] = times, offsets
+    return index_record(channel_id, index)
+
+
+def index_record(channel_id: int, index: NDArray[np.uint64]) -> bytes:
+    """The same of times and offsets side by side, shape (n, 2)."""
     entries = index.tobytes()
     return _INDEX_HEADER.pack(Opcode.MESSAGE_INDEX, len(entries) + 6, channel_id, len(entries)) + entries
 

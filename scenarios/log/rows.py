@@ -9,7 +9,7 @@ from operator import is_
 import numpy as np
 from numpy.typing import NDArray
 
-from surefoot.native.library import Library
+from surefoot.native.library import Bound, Library
 from surefoot.scenarios.log.channel import ChannelWriter, Clock
 from surefoot.values import dataclass
 
@@ -99,6 +99,7 @@ class RowWriter:
         self._writers, self._derive = list(writers.values()), layout.derive
         self._vectors = np.zeros((capacity, _width(self._at[0])))
         self._numbers: list[tuple[float, ...]] = []
+        self._standing: Sequence[Array] | None = ()
         self._times: list[int] = []
         self._capacity, self._clock = capacity, clock
 
@@ -114,8 +115,13 @@ class RowWriter:
             ValueError: the vectors do not fill the row, or the numbers of a row of this chunk did not.
             LogError: the chunk that this row completes cannot be written.
         """
-        if vectors:
-            np.concatenate(tuple(map(np.ndarray.ravel, vectors)), out=self._vectors[len(self._times)])
+        self._standing = vectors
+        self.again(time_ns, numbers)
+
+    def again(self, time_ns: int, numbers: tuple[float, ...]) -> None:
+        """The same with the very arrays of the row before, whose values may be others; of standing rows."""
+        if self._standing:
+            np.concatenate(tuple(map(np.ndarray.ravel, self._standing)), out=self._vectors[len(self._times)])
         self._numbers.append(numbers)
         self._times.append(time_ns)
         if time_ns >= self._clock.due or len(self._times) == self._capacity:
@@ -200,8 +206,7 @@ class CompiledRows(RowWriter):
         self._row, self._announced = row[:vectors], numbers
         # From plain numbers straight into memory: an array of them would take longer.
         self._pack, self._bytes, self._behind = struct.Struct(f"{numbers}d").pack_into, row.data.cast("B"), 8 * vectors
-        self._put = self._bind(kernels, row, places)
-        steps = []
+        steps: list[Callable[[], None]] = []
         if layout.standing:
             self._sources, self._sizes = np.zeros((2, vectors), dtype=np.int64)
             self._source = kernels.fill(
@@ -210,10 +215,15 @@ class CompiledRows(RowWriter):
             steps.append(kernels.bind("log_row_gather", self._source))
         if layout.compiled is not None:
             steps.append(layout.compiled(kernels, lambda first, last: row[places[first].start : places[last].stop]))
-        self._standing: Sequence[Array] | None = () if layout.standing else None
-        self._complete = kernels.sequence(steps) if steps else None
+        self._standing = () if layout.standing else None
+        before = kernels.calls(steps)
+        if before is None:
+            raise TypeError("what a row derives is no kernel")
+        self._put = self._bind(kernels, row, places, before)
 
-    def _bind(self, kernels: Library, row: Array, places: Mapping[Place, slice]) -> Callable[[int, int, int], None]:
+    def _bind(
+        self, kernels: Library, row: Array, places: Mapping[Place, slice], before: Bound
+    ) -> Callable[[int, int, int], None]:
         records = [writer.records for writer in self._writers]
         views = [
             (writer.spec.topic, field.name, writer.view(field.name))
@@ -227,6 +237,7 @@ class CompiledRows(RowWriter):
 
         return kernels.bind(
             "log_row_put",
+            before=before,
             values=row,
             fields=len(views),
             first=numbers(place.start for place in at),
@@ -248,11 +259,13 @@ class CompiledRows(RowWriter):
                 np.concatenate(vectors, out=self._row)
         elif len(vectors) != len(standing) or not all(map(is_, vectors, standing)):
             self._look(vectors, standing)
+        self.again(time_ns, numbers)
+
+    def again(self, time_ns: int, numbers: tuple[float, ...]) -> None:
+        """See `RowWriter`."""
         if len(numbers) != self._announced:
             raise ValueError(f"a row of {len(numbers)} numbers, where there are places for {self._announced}")
         self._pack(self._bytes, self._behind, *numbers)
-        if self._complete is not None:
-            self._complete()
         times = self._times
         count = len(times)
         self._put(count, time_ns, self._writers[0].total + count)

@@ -9,7 +9,7 @@ import numpy as np
 from numpy.typing import NDArray
 
 from surefoot.native.library import library
-from surefoot.planner.geometry import frame_rotation
+from surefoot.planner.geometry import frame_rotation, greatest
 from surefoot.planner.plan import PlanSample, WalkPlan
 from surefoot.planner.plan_kernel import POINT
 from surefoot.planner.steps.commands import Command
@@ -51,18 +51,8 @@ _FOOTSTEPS = ("current_left", "current_right", "next", "next_foot", "touchdown_t
 _NO_FOOTSTEP = (math.nan,) * 4
 
 
-@dataclass(frozen=True, slots=True)
-class TickTiming:
-    """Wall-clock time of the parts of one control tick, and the controller's processor time [s]."""
-
-    state: float
-    wbc_build: float
-    wbc_solve: float
-    planner: float
-    physics: float
-    log: float
-    tick: float
-    controller: float
+TickTiming = tuple[float, float, float, float, float, float, float, float]
+"""Wall-clock time of the parts of one control tick, and the controller's processor time, as the log has them [s]."""
 
 
 @dataclass(frozen=True, slots=True)
@@ -99,9 +89,7 @@ class WalkRecorder:
         self._footstep = writer.channel(channels.footstep(sizes))
         self._command = writer.channel(channels.command(sizes))
         timing = writer.channel(channels.timing(sizes))
-        parts = [field.name for field in timing.spec.fields]
-        self._timing = writer.rows(RowLayout((), ((timing, parts),)))
-        self._parts: Callable[[TickTiming], tuple[float, ...]] = attrgetter(*parts)
+        self._timing = writer.rows(RowLayout((), ((timing, [field.name for field in timing.spec.fields]),)))
         self._process = writer.channel(channels.process(sizes))
         self._looked = -1
         self._support = np.zeros((SUPPORT_VERTICES, 2))
@@ -110,6 +98,7 @@ class WalkRecorder:
         self._point = np.zeros(POINT)
         seen = PlanSample.of_point(0.0, self._point, (True, True), None)
         self._sampled = *_sampled(seen), seen.swing[:3], seen.swing_velocity[:3], self._support
+        self._last: tuple[Array, ...] | None = None
         self._roll: Callable[[float, float, float], None] | None = None
         if kernels := library():
             self._roll = kernels.bind("roll_centre", level=level, rates=rates, position=position, velocity=velocity)
@@ -122,7 +111,7 @@ class WalkRecorder:
     def plan(self, time_ns: int, plan: WalkPlan) -> None:
         """A new plan with its horizon and footsteps."""
         status, balance = plan.status, plan.balance
-        slack, held = (status.zmp_slack.max(), status.terminal_slack.max()), status.solver is SolverStatus.HELD
+        slack, held = (greatest(status.zmp_slack), greatest(status.terminal_slack)), status.solver is SolverStatus.HELD
         self._plan(time_ns, plan, slack, held, (balance.planned, balance.movable))
         ahead = [*plan.footsteps, *[None] * (3 - len(plan.footsteps))]
         self._footsteps(
@@ -170,7 +159,11 @@ class WalkRecorder:
             self._point[:] = sample.point
         if roll is not None and pitch and roll.foot is sample.swing_foot:
             vectors = *vectors[:6], *self._centre(roll, sample), self._support
-        self._reference.append(time_ns, numbers, *vectors)
+        if vectors is self._last:
+            self._reference.again(time_ns, numbers)
+        else:
+            self._reference.append(time_ns, numbers, *vectors)
+            self._last = vectors
 
     def _centre(self, roll: FootRoll, sample: PlanSample) -> tuple[Array, Array]:
         """See `FootRoll.centre`."""
@@ -184,7 +177,11 @@ class WalkRecorder:
 
     def timing(self, time_ns: int, timing: TickTiming) -> None:
         """Wall-clock times of the tick, and once a simulated second the state of the process."""
-        self._timing.append(time_ns, tuple([1e6 * part for part in self._parts(timing)]))
+        state, build, solve, plan, physics, log, tick, busy = timing
+        self._timing.append(
+            time_ns,
+            (1e6 * state, 1e6 * build, 1e6 * solve, 1e6 * plan, 1e6 * physics, 1e6 * log, 1e6 * tick, 1e6 * busy),
+        )
         second = time_ns // 1_000_000_000
         if second != self._looked:
             self._looked = second

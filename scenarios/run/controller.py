@@ -98,7 +98,7 @@ class Controller:
         self._landing: Landing | None = None
         self._begin, self._now = math.nan, -math.inf
         self._torques: TorqueWrench | None = None
-        self._command: JointCommand
+        self._command = JointCommand(np.zeros(0))
         self.planning: Planning
         self.state: RobotState
         self.report: WbcReport
@@ -202,9 +202,10 @@ class Controller:
         # What falls gives way; the controller goes on, unheard, since estimator and planner take its contacts.
         falling, state = self._gives_way and self.planning.plan.status.falling, self.state
         torque = self._giving_way.torque(state.q[7:], state.v[6:]) if falling else report.torque
-        self._command = JointCommand(torque)
         if self._output.servo:
             self._command = self._output.command(torque, state.q[7:], state.v[6:], report.acceleration[6:])
+        elif self._command.torque is not torque:
+            self._command = JointCommand(torque)
         return self._command
 
     def _observe(self, readings: "Readings | Measurement", now: float) -> None:
@@ -217,7 +218,7 @@ class Controller:
             self.wrench = self._inferred(readings, state, passed)
         if self._faults is not None and self._faults.active("state_nan", self.planning.tick(now)):
             state = RobotState(np.full_like(state.q, np.nan), state.v)
-        if not math.isfinite(np.dot(state.q, state.q) + np.dot(state.v, state.v)):
+        if not math.isfinite(state.q.dot(state.q) + state.v.dot(state.v)):
             raise RunFault(f"the measured state is not finite at {now:.3f} s")
         self.state = state
         self.terms: RobotTerms = self.whole_body.observe(state)

@@ -140,7 +140,17 @@ class Planning:
         Raises:
             RunFault: nothing was measured for too long.
         """
-        begin = time.perf_counter()
+        spent = 0.0
+        if self._due / self._plan_rate <= now + ROUNDING / self._rate:
+            begin = time.perf_counter()
+            self._catch_up(now, measure)
+            spent = time.perf_counter() - begin
+        # What is decided now acts until the next tick, so that it is to do what is planned for the middle of that; the
+        # state is held against that of now, from which on it does so.
+        return *self.sampler.tick(now, now + 0.5 * period), spent
+
+    def _catch_up(self, now: float, measure: Callable[[], Measured]) -> None:
+        """Make the plans that are due; see `follow`."""
         latest = now + ROUNDING / self._rate
         if (self._due + MOST_MISSED) / self._plan_rate < now:
             raise RunFault(
@@ -154,10 +164,6 @@ class Planning:
             self._due += 1
             tick = self.tick(now)
             self.update(tick, tick * 1_000_000_000 // self._rate, state, zmp, feet)
-        spent = time.perf_counter() - begin
-        # What is decided now acts until the next tick, so that it is to do what is planned for the middle of that; the
-        # state is held against that of now, from which on it does so.
-        return *self.sampler.tick(now, now + 0.5 * period), spent
 
     def update(self, tick: int, now_ns: int, state: CentroidalState, zmp: NDArray[np.float64], feet: FeetState) -> None:
         """Measure and plan; a frozen planner only measures, but the first plan is made whatever the faults say.

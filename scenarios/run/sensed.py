@@ -19,6 +19,7 @@ from surefoot.scenarios.setup.walk import Walk
 from surefoot.sim.measurement import Measurement
 from surefoot.sim.sensor_errors import SensorErrors
 from surefoot.similarity import GRAVITY
+from surefoot.values import maker
 from surefoot.wbc.estimation.estimate import Deviation, Estimate, Planned
 from surefoot.wbc.estimation.estimator import Footing, SensedState
 from surefoot.wbc.estimation.kinematics import ImuMount
@@ -26,6 +27,8 @@ from surefoot.wbc.estimation.parameters import ContactDetection, EstimatorParame
 from surefoot.wbc.types import Array, FootSensing, WbcReference, WbcReport
 
 _OPTIONS = ("sensing", "options")
+
+_a_sensing = maker(FootSensing)
 
 SWAY, SWAY_TIME = (0.3, 1.0), 0.1
 """Angular velocity and acceleration of a walking pelvis, RMS, and how long they keep their sign [rad/s, m/s^2, s]."""
@@ -136,6 +139,7 @@ class Senses:
             self._sense = part.sense
         else:
             self._estimate = part.estimate
+        self._last: Estimate | None = None
         self._told: Callable[[Planned], None] | None = part.told if self.reads and told else None
 
     def __call__(self, readings: Readings | Measurement) -> Estimate:
@@ -148,7 +152,11 @@ class Senses:
             wanted = "what sensors say, as surefoot.Readings" if self.reads else "the state, as surefoot.Measurement"
             raise ParameterError(("readings",), f"a {type(readings).__name__} for this estimator", f"give {wanted}")
         if isinstance(readings, Measurement):
-            return Estimate(self._estimate(readings), readings.wrench)
+            state, wrench, last = self._estimate(readings), readings.wrench, self._last
+            # A world that measures into the same arrays, and a state of these, make the same estimate.
+            if last is None or last.state is not state or last.wrench is not wrench:
+                self._last = last = Estimate(state, wrench)
+            return last
         estimate: Estimate = self._sense(readings)
         felt = readings.wrench
         return estimate if estimate.wrench is not None or felt is None else replace(estimate, wrench=felt.values)
@@ -169,7 +177,7 @@ def foot_sensing(estimate: Estimate, wrench: Array, wanted: bool) -> FootSensing
     """
     forces, sure = (wrench.item(2), wrench.item(8)), estimate.deviation
     if sure is None:
-        return FootSensing(forces, wrench if wanted else None, estimate.contact)
+        return _a_sensing(forces, wrench if wanted else None, estimate.contact)
     return FootSensing(forces, wrench if wanted else None, estimate.contact, (sure.force, sure.moment))
 
 

@@ -53,10 +53,14 @@ class TrueState:
 
     def __init__(self, walk: Walk) -> None:
         """Nothing is needed of the walk."""
+        self._state: RobotState | None = None
 
     def estimate(self, measurement: Measurement) -> RobotState:
         """See `Estimator`."""
-        return RobotState(measurement.q, measurement.v)
+        state = self._state
+        if state is None or state.q is not measurement.q or state.v is not measurement.v:
+            self._state = state = RobotState(measurement.q, measurement.v)
+        return state
 
 
 class SensorEstimator(Protocol):

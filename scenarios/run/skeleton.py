@@ -13,7 +13,7 @@ from surefoot.planner.plan import PlanSample, WalkPlan
 from surefoot.planner.types import PhaseInfo, PhaseKind
 from surefoot.scenarios.errors import SetupError
 from surefoot.scenarios.record.provenance import AFTER_FALL
-from surefoot.scenarios.record.walk import TickTiming, WalkRecorder
+from surefoot.scenarios.record.walk import WalkRecorder
 from surefoot.scenarios.run.planning import ROUNDING, Planning, RunFault
 from surefoot.scenarios.run.tick import Look, Spent
 from surefoot.scenarios.setup.gait import PushPoint
@@ -151,29 +151,6 @@ class Walker(Protocol):
         ...
 
 
-@dataclass(slots=True)
-class Watch:
-    """Splits wall-clock time into laps.
-
-    Attributes:
-        last: end of the last lap [s].
-    """
-
-    last: float
-
-    @classmethod
-    def start(cls) -> "Watch":
-        """A watch whose first lap begins now."""
-        return cls(time.perf_counter())
-
-    def lap(self) -> float:
-        """Time since the last lap ended [s]."""
-        now = time.perf_counter()
-        passed = now - self.last
-        self.last = now
-        return passed
-
-
 class ClosedLoop:
     """One run: a walker and its records on one integer clock.
 
@@ -264,27 +241,29 @@ class ClosedLoop:
         return ""
 
     def _step(self, tick: int) -> tuple[PlanSample, bool]:
-        watch, busy = Watch.start(), time.thread_time_ns()
-        begin = watch.last
-        walker, rate = self.walker, self.rate
+        clock, busy_clock = time.perf_counter, time.thread_time_ns
+        begin, busy = clock(), busy_clock()
+        walker, rate, recorder = self.walker, self.rate, self._recorder
         now, now_ns = tick / rate, tick * 1_000_000_000 // rate
         walker.sense(tick, now)
-        sense_time = watch.lap()
+        sensed = clock()
         sample, spent = walker.control(tick, now)
-        busy = time.thread_time_ns() - busy
-        watch.lap()
+        busy = busy_clock() - busy
+        decided = clock()
         plan = self.planning.plan
         if self._pushes:
             self._push(now, plan)
         walker.record(now_ns, sample)
-        self._recorder.reference(now_ns, plan, sample)
+        recorder.reference(now_ns, plan, sample)
         fallen = walker.fallen(sample)
         walker.draw(tick, now_ns, plan, sample, fallen)
-        log_time = watch.lap()
+        logged = clock()
         walker.advance(now)
-        physics_time = watch.lap()
-        parts = (sense_time + spent.state, spent.build, spent.solve, spent.plan, physics_time, log_time)
-        self._recorder.timing(now_ns, TickTiming(*parts, watch.last - begin, 1e-9 * busy))
+        end = clock()
+        state, plan_time, build, solve = spent
+        state += sensed - begin
+        log = logged - decided
+        recorder.timing(now_ns, (state, build, solve, plan_time, end - logged, log, end - begin, 1e-9 * busy))
         return sample, fallen
 
     def _push(self, now: float, plan: WalkPlan) -> None:

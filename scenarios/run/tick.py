@@ -1,5 +1,7 @@
 """What there is to see of a control tick: of what walks, and of a simulation that is stepped from outside."""
 
+from typing import NamedTuple
+
 import numpy as np
 from numpy.typing import NDArray
 
@@ -12,8 +14,7 @@ from surefoot.wbc.types import RobotState, WbcReport
 Array = NDArray[np.float64]
 
 
-@dataclass(frozen=True, slots=True)
-class Spent:
+class Spent(NamedTuple):
     """Wall-clock time that deciding took in one control tick.
 
     Attributes:

@@ -359,8 +359,18 @@ typedef struct {
 
 void plan_reference_fill(const PlanReference *plan, int64_t swing_foot, int64_t rolling_foot);
 
+/* Kernels without numbers of their own, one after another: addresses of functions and of their structs. */
+typedef struct {
+    int64_t count;
+    const int64_t *functions;
+    const int64_t *structs;
+} Calls;
+
+void calls_run(const Calls *calls);
+
 /* Counterpart of `scenarios.log.rows.RowWriter`; places and records are addresses, strides and lengths bytes. */
 typedef struct {
+    const Calls *before;
     const double *values;
     int64_t fields;
     const int64_t *first;
@@ -502,15 +512,6 @@ typedef struct {
 } Support;
 
 void support_rebuild(const Support *support, int64_t left, int64_t right, int64_t rolling);
-
-/* Kernels without numbers of their own, one after another: addresses of functions and of their structs. */
-typedef struct {
-    int64_t count;
-    const int64_t *functions;
-    const int64_t *structs;
-} Calls;
-
-void calls_run(const Calls *calls);
 
 /* Counterpart of `planner.model.dcm.nominal_motion`; `upper` is scratch. */
 typedef struct {

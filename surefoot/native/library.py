@@ -136,9 +136,14 @@ class Library:
 
     def sequence(self, kernels: Sequence[Callable[[], Any]]) -> Callable[[], None]:
         """Kernels that take no numbers, one after another in one call; what is no such kernel is called by Python."""
+        calls = self.calls(kernels)
+        return partial(_call_all, tuple(kernels)) if calls is None else self.bind("calls_run", calls)
+
+    def calls(self, kernels: Sequence[Callable[[], Any]]) -> Bound | None:
+        """The same as a struct that other kernels take; None where one of them is called by Python."""
         bound = [kernel for kernel in kernels if isinstance(kernel, _Kernel) and len(kernel.call.argtypes) == 1]
         if len(bound) < len(kernels):
-            return partial(_call_all, tuple(kernels))
+            return None
         functions = [ctypes.cast(kernel.call, ctypes.c_void_p).value for kernel in bound]
         calls = self.fill(
             "Calls",
@@ -147,7 +152,7 @@ class Library:
             structs=np.array([kernel.args[0] for kernel in bound], dtype=np.int64),
         )
         # What the kernels are bound to must live as long.
-        return self.bind("calls_run", Bound(calls.struct, (calls, *bound)))
+        return Bound(calls.struct, (calls, *bound))
 
     def buffer(self, struct: str) -> tuple[Bound, Any]:
         """A struct of numbers alone, and its memory as an array, shape (numbers,)."""

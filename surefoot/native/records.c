@@ -4,9 +4,10 @@
 
 static char *at(int64_t address) { return (char *)(intptr_t)address; }
 
-/* Puts the row into record `number` of each channel, with its time [ns] and its number in the file. */
+/* Completes the row, and puts it into record `number` of each channel, with its time [ns] and its number in the file. */
 void log_row_put(const LogRow *row, int64_t number, int64_t time, int64_t sequence) {
     const uint32_t counted = (uint32_t)sequence;
+    calls_run(row->before);
     for (int64_t c = 0; c < row->channels; c++) {
         char *record = at(row->records[c]) + number * row->lengths[c];
         memcpy(record + row->header[0], &counted, sizeof counted);

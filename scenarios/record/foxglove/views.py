@@ -227,7 +227,7 @@ class BodyView:
         """Say what has changed since the last control tick."""
         force = measurement.external_force
         fallback = report.status >= _FALLBACK or plan.status.solver is _HELD
-        self._events.update(time_ns, report.active, bool(np.dot(force, force)), fallback, plan.status.falling, fallen)
+        self._events.update(time_ns, report.active, bool(force.dot(force)), fallback, plan.status.falling, fallen)
 
     def picture(
         self, tick: int, time_ns: int, measurement: Measurement, terms: RobotTerms, plan: WalkPlan, sample: PlanSample

@@ -54,7 +54,7 @@ def test_what_moved_is_told_and_the_rest_is_not(searched, tmp_path):
         ((0.4, 0.25, 0.3), False),
         ((0.4, 0.2, 0.35), False),  # by one step of the search, and the mean is the same
         ((0.4, 0.25, 0.2), True),  # the mean
-        ((0.5, 0.15, 0.4), True),  # the least
+        ((0.5, 0.1, 0.5), True),  # the least
         ((0.4, None, 0.6), True),
         ((0.4, 0.25, "above"), False),
     ],

@@ -25,6 +25,7 @@ from surefoot.planner.laws.law import Motion, MotionProblem, StepContext
 from surefoot.planner.plan import WalkPlan
 from surefoot.planner.references.zmp_reference import ZmpReference
 from surefoot.planner.types import CentroidalState, FeetState
+from surefoot.scenarios import catalogue
 from surefoot.scenarios.file.schema import (
     CommandSettings,
     Fault,
@@ -70,6 +71,8 @@ CHANNELS = (
         channels.torque,
     ),
     channels.command,
+    channels.link,
+    channels.shadow,
     channels.timing,
     channels.process,
 )
@@ -217,7 +220,34 @@ def benchmark_tables() -> str:
     return markdown(json.loads((FOLDER / "benchmark-g1.json").read_text(encoding="utf-8")))
 
 
+CATALOGUE = (
+    ("meets every criterion", "met"),
+    ("goes to the end, misses a criterion", "missed"),
+    ("falls", "fell"),
+    ("refused before it runs", "refused"),
+)
+"""What may become of a scenario: in words, and as docs/catalogue.yaml has it."""
+
+
+def walked() -> Any:
+    """What the robots that come along make of the catalogue, as `docs/catalogue.py` has measured it."""
+    return yaml.safe_load((FOLDER / "catalogue.yaml").read_text(encoding="utf-8"))
+
+
+def catalogue_table() -> str:
+    """How many scenarios each robot walks, and the names of those that it does not."""
+    rows = [_walked_row(name, found) for name, found in walked().items()]
+    head = "| robot | " + " | ".join(words for words, _ in CATALOGUE) + " | not met |"
+    return "\n".join([head, "|---" * (len(CATALOGUE) + 2) + "|", *rows])
+
+
+def _walked_row(name: str, found: Any) -> str:
+    lacks = ", ".join(f"`{one}`" for kind in ("missed", "fell", "refused") for one in found[kind])
+    return f"| `{name}` | {' | '.join(str(len(found[kind])) for _, kind in CATALOGUE)} | {lacks} |"
+
+
 TABLES: dict[str, tuple[str, Callable[[], str]]] = {
+    "catalogue": ("robots.md", catalogue_table),
     "keys": ("scenarios.md", keys_table),
     "metrics": ("scenarios.md", metrics_table),
     "channels": ("log.md", channels_table),
@@ -302,6 +332,7 @@ TABLES["handed"] = ("extending.md", handed_tables)
 
 VALUES: dict[str, str] = {
     "chunk": f"{CHUNK_PERIOD_NS / 1e6:g} ms",
+    "scenarios": str(len(catalogue.OWN)),
 }
 
 

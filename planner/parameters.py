@@ -49,9 +49,9 @@ class GroundSearch:
     hurry_after: float = quantity(math.inf, "s")
     hurry_speed: float = quantity(0.5, "m/s")
     hurry_acceleration: float = quantity(16.0, "m/s^2")
-    unsure_speed: float = quantity(130.0, "1/s")
-    unsure_acceleration: float = quantity(6500.0, "1/s^2")
-    unsure_aim: float = quantity(0.8, "-")
+    unsure_speed: float = quantity(36.0, "1/s")
+    unsure_acceleration: float = quantity(5100.0, "1/s^2")
+    unsure_aim: float = quantity(1.5, "-")
     most_unsure: float = quantity(2e-3, "m")
 
     def __post_init__(self) -> None:

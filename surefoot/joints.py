@@ -39,7 +39,7 @@ class JointCommand:
 
     def with_joints(self, chosen: NDArray[np.bool_], other: "JointCommand") -> "JointCommand":
         """The same with another command for some joints, bool, shape (nj,)."""
-        mine, theirs = (one.servo or _no_servo(len(one.torque)) for one in (self, other))
+        mine, theirs = (one.servo or no_servo(len(one.torque)) for one in (self, other))
         names = ("position", "velocity", "stiffness", "damping")
         servo = Servo(*(np.where(chosen, getattr(theirs, name), getattr(mine, name)) for name in names))
         return JointCommand(np.where(chosen, other.torque, self.torque), servo)
@@ -57,7 +57,7 @@ class JointCommand:
         return self.torque + s.stiffness * (s.position - position) + s.damping * (s.velocity - velocity)
 
 
-def _no_servo(joints: int) -> Servo:
+def no_servo(joints: int) -> Servo:
     """One that adds no torque."""
     zero = np.zeros(joints)
     return Servo(zero, zero, zero, zero)

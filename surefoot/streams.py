@@ -24,6 +24,7 @@ class Stream(IntEnum):
     WRENCH = 11
     MOTOR = 12
     DRIVEN = 13
+    LINE = 14
     TOUR = 14
 
 

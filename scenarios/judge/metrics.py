@@ -12,7 +12,7 @@ from surefoot.errors import PartError
 from surefoot.guard import Guard, MisfitError, shown
 from surefoot.plugins import Declared, PluginError
 from surefoot.scenarios.errors import LogError, Problem, nearest
-from surefoot.scenarios.judge import balance, computing, effort, feet, health, names, sensed, walking
+from surefoot.scenarios.judge import balance, computing, effort, feet, health, linked, names, sensed, walking
 from surefoot.scenarios.judge.digest import Digest, Reads, RunView, Source
 from surefoot.scenarios.judge.metric import Metric, Reduction
 from surefoot.scenarios.judge.placed import PLACED
@@ -36,7 +36,7 @@ def gathered(*modules: ModuleType) -> dict[str, Metric[Any]]:
     return found
 
 
-OWN: Mapping[str, Metric[Any]] = gathered(walking, balance, feet, effort, computing, sensed)
+OWN: Mapping[str, Metric[Any]] = gathered(walking, balance, feet, effort, computing, sensed, linked)
 """Ours, in the order in which they are shown."""
 
 METRICS: Declared[Metric[Any]] = names.METRICS.filled(Metric, OWN, lambda metric: metric.meaning)

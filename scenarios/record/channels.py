@@ -274,6 +274,24 @@ def torque(n: Sizes) -> ChannelSpec:
     return ChannelSpec("/torque", "JointTorque", fields, torque.__doc__ or "")
 
 
+def link(_: Sizes | None = None) -> ChannelSpec:
+    """What became of messages between plant and controller in two processes, with each state that came."""
+    fields = (
+        _scalar("command_age", "s", "of the state that the command in force answers, when this one was measured"),
+        _int("states_missed", "control ticks since the state before whose states did not come"),
+        _int("commands_missed", "control ticks so far at which no new command was there"),
+        _int("commands_limited", "control ticks so far at which the plant did less than it was told"),
+        _int("damped", "1: the plant has damped its joints"),
+    )
+    return ChannelSpec("/link", "Link", fields, link.__doc__ or "")
+
+
+def shadow(n: Sizes) -> ChannelSpec:
+    """The torques of the log in whose shadow a controller walked, every control tick."""
+    fields = (_real("command", n.nj, "N m", "", "commanded then"),)
+    return ChannelSpec("/shadow", "Shadow", fields, shadow.__doc__ or "")
+
+
 def timing(_: Sizes) -> ChannelSpec:
     """Time spent in each part of a control tick; excluded from reproducibility."""
     parts = ("state", "wbc_build", "wbc_solve", "planner", "physics", "log", "tick")

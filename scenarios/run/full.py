@@ -141,6 +141,7 @@ class WholeBody:
     ) -> None:
         self.mind, self.plant, self._sensors = mind, plant, sensors
         self._foreign = not isinstance(plant, World)
+        self._says_tick = self._foreign and hasattr(plant, "control_tick")
         self._recorder, self._view, self._sensed = recorder, view, sensed
         walk = mind.walk
         # The controller's terms are those of the true robot in its true state where nothing is believed or estimated.
@@ -166,12 +167,13 @@ class WholeBody:
         """See `Walker`."""
         return self.mind.whole_body
 
-    def sense(self, tick: int, now: float) -> None:
-        """See `Walker`."""
+    def sense(self, tick: int, now: float) -> int:
+        """See `Walker`; of a plant that says at which tick it measured, that."""
         self.measurement = measurement = self.plant.measure()
         self._readings = measurement if self._sensors is None else self._sensors.read(measurement, tick)
         if self._own_truth is not None:
             self._own_truth.update(measurement.q, measurement.v)
+        return self.plant.control_tick if self._says_tick else tick  # type: ignore[attr-defined]
 
     def control(self, tick: int, now: float) -> tuple[PlanSample, Spent]:
         """See `Walker`."""

@@ -180,13 +180,14 @@ class PointMass:
         """The feet."""
         return self._feet.state
 
-    def sense(self, tick: int, now: float) -> None:
+    def sense(self, tick: int, now: float) -> int:
         """See `Walker`."""
         position = np.append(self._plant.position, self._height - self._height_error)
         velocity = np.append(self._plant.velocity, self._climb)
         if self._faults.active("state_nan", tick) or not math.isfinite(float(position.sum() + velocity.sum())):
             raise RunFault(f"the measured state is not finite at {now:.3f} s")
         self.state, self._now = CentroidalState(now, position, velocity), now
+        return tick
 
     def measured(self) -> Measured:
         """What the planner may measure."""

@@ -106,8 +106,8 @@ class Walker(Protocol):
         """Its whole-body controller; None without one."""
         ...
 
-    def sense(self, tick: int, now: float) -> None:
-        """Measure.
+    def sense(self, tick: int, now: float) -> int:
+        """Measure; gives the number of the control tick that was measured, which may be later where some are lost.
 
         Raises:
             RunFault: what is measured is not finite.
@@ -217,6 +217,7 @@ class ClosedLoop:
         tick, rate = self.tick, self.rate
         try:
             sample, fallen = self._step(tick)
+            tick = self.tick
         except (RunFault, PartError) as fault:
             self.end, self.done, self.fault = fault_end(fault, tick / rate), True, fault
             return None
@@ -244,8 +245,8 @@ class ClosedLoop:
         clock, busy_clock = time.perf_counter, time.thread_time_ns
         begin, busy = clock(), busy_clock()
         walker, rate, recorder = self.walker, self.rate, self._recorder
+        self.tick = tick = walker.sense(tick, tick / rate)
         now, now_ns = tick / rate, tick * 1_000_000_000 // rate
-        walker.sense(tick, now)
         sensed = clock()
         sample, spent = walker.control(tick, now)
         busy = busy_clock() - busy

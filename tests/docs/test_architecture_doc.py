@@ -62,6 +62,7 @@ def test_what_the_picture_names_is_there():
 
 def test_the_picture_goes_through_a_tick_in_the_order_of_the_loop():
     calls = MagicMock()
+    calls.walker.sense.side_effect = lambda tick, now: tick
     calls.walker.control.return_value, calls.walker.fallen.return_value = (None, Spent()), False
     ClosedLoop(calls.walker, calls.recorder, 500, 1.0).step()
     called = [name.split(".") for name, *_ in calls.mock_calls]

@@ -26,6 +26,9 @@ Ground = Callable[[float, float], tuple[float, Array]]
 FASTEST, FARTHEST = 300.0, 1e5
 """Speed, of base and joints together, and place beyond which an estimate has diverged [m/s, rad/s, m]."""
 
+LEANING_ROUNDS = 4
+"""Rounds in which the attitude over soles that lean is found."""
+
 ATTITUDE = 0.1
 """How far off the attitude may be before the soles are taken for level [rad]."""
 
@@ -39,12 +42,15 @@ class Footing:
         yaw: headings of the soles, shape (2,) [rad].
         half_size: half of a sole's length and width [m].
         ground: height and normal of the ground by place.
+        leaning: half width of soles that lean with their shanks, of which position has the lines on which they stand;
+            None for others [m].
     """
 
     position: Array
     yaw: Array
     half_size: tuple[float, float]
     ground: Ground
+    leaning: float | None = None
 
 
 class SensedState:
@@ -71,7 +77,7 @@ class SensedState:
         self._parameters, self._footing, self._period = parameters, footing, period
         self._model, self._sole_names = model, soles
         sensors = parameters.sensors
-        self._body = SensedBody(model, soles, mount)
+        self._body = SensedBody(model, soles, mount, footing.leaning)
         self._weight = GRAVITY * self._body.mass
         self._joints = JointObserver(model.nv - 6, period, parameters.joint_bandwidth, sensors.encoder)
         self._contact: SoleContact
@@ -183,23 +189,43 @@ class SensedState:
 
     def _start(self, joints: Array) -> InvariantFilter:
         body, footing = self._body, self._footing
-        body.update(joints)
-        turned = []
-        for k in (0, 1):
-            _, up = footing.ground(*footing.position[k, :2].tolist())
-            turned.append(_sole(float(footing.yaw[k]), up) @ body.rotation[k].T)
+        body.update(joints, np.eye(3))
+        normals = np.stack([footing.ground(*footing.position[k, :2].tolist())[1] for k in (0, 1)])
+        level = [_sole(float(footing.yaw[k]), normals[k]) for k in (0, 1)]
+        turned = [level[k] @ body.rotation[k].T for k in (0, 1)]
         R = turned[0] @ pin.exp3(0.5 * pin.log3(turned[0].T @ turned[1]))
+        if footing.leaning is not None:
+            R = self._leaning(joints, R, level)
         p = (footing.position - body.position @ R.T).mean(axis=0)
         m = len(body.chain)
         columns = np.vstack((np.zeros(3), p, footing.position))
         stand = Stand(R, columns, np.zeros((2, 3, 3)), np.zeros(3), np.zeros(3), np.zeros(m))
-        filter_ = InvariantFilter(stand, self._parameters.sensors, self._parameters.ground, self._period)
+        parameters, leaning = self._parameters, footing.leaning is not None
+        filter_ = InvariantFilter(stand, parameters.sensors, parameters.ground, self._period, leaning)
         J = body.offset_jacobians()
-        normals = np.stack([footing.ground(*footing.position[k, :2].tolist())[1] for k in (0, 1)])
         filter_.begin(body.position, body.rotation, J, normals, ATTITUDE)
-        body.update(self._known(joints, filter_.stand.offsets))
+        body.update(self._known(joints, filter_.stand.offsets), filter_.stand.R)
         filter_.weigh(J)
         return filter_
+
+    def _leaning(self, joints: Array, R: Array, level: list[Array]) -> Array:
+        """Orientation of the IMU over soles that lean: their lines are level, and so is the way from one to the other.
+
+        Args:
+            joints: their angles, shape (nj,) [rad].
+            R: a first guess, shape (3, 3).
+            level: orientations of level soles, shape (3, 3) each.
+        """
+        body, (left, right) = self._body, self._footing.position
+        apart = (left - right) / np.linalg.norm(left - right)
+        for _ in range(LEANING_ROUNDS):
+            # Which edges are the lines follows from how the soles lean.
+            body.update(joints, R)
+            across = body.position[0] - body.position[1]
+            seen = np.stack((body.rotation[0, :, 0], body.rotation[1, :, 0], across / np.linalg.norm(across)))
+            U, _, V = np.linalg.svd(np.stack((level[0][:, 0], level[1][:, 0], apart)).T @ seen)
+            R = U @ np.diag([1.0, 1.0, float(np.linalg.det(U @ V))]) @ V
+        return R
 
     def _known(self, joints: Array, offsets: Array) -> Array:
         """Angles of the encoders less what their zeros are known to be off."""
@@ -216,7 +242,7 @@ class SensedState:
             self._rate.update(readings.angular_velocity.values, self._gained(at), at - self._imu_at)
             self._imu_at = at
         contact.update(self._wrench(readings), self._still, self._above)
-        body.update(self._known(readings.joint_position.values, filter_.stand.offsets))
+        body.update(self._known(readings.joint_position.values, filter_.stand.offsets), filter_.stand.R)
         changed = contact.firm != filter_.standing
         due = changed or self._tick % self._every == 0
         if due:

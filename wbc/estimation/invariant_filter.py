@@ -42,6 +42,9 @@ _FALL = np.array([0.0, 0.0, -GRAVITY])
 _FALLING = pin.skew(_FALL)
 _UNIT = np.eye(3)
 
+LEANING = 3.0
+"""By how much a sole that leans turns about its line in a second, as a deviation: it tells of nothing else [rad/√s]."""
+
 LIKELY = 9.0
 """Square of the normalised height of a landing over the ground that is believed, from which on it is another ground: by
 chance in one of 370 landings, which then tells no height [-]."""
@@ -109,6 +112,7 @@ class InvariantFilter:
         sensors: noise of the sensors.
         ground: what feet and ground add.
         period: control period [s].
+        leaning: the soles stand on lines along them, about which they turn at will.
 
     Attributes:
         stand: the state.
@@ -117,7 +121,10 @@ class InvariantFilter:
         standing: feet that stand, left first.
     """
 
-    def __init__(self, stand: Stand, sensors: SensorNoise, ground: GroundNoise, period: float) -> None:
+    def __init__(
+        self, stand: Stand, sensors: SensorNoise, ground: GroundNoise, period: float, leaning: bool = False
+    ) -> None:
+        self._leaning = leaning
         self.stand, self._sensors, self._ground, self._period = stand, sensors, ground, period
         n = FIXED + len(stand.offsets)
         self.P, self._F = np.zeros((n, n)), np.eye(n)
@@ -143,8 +150,7 @@ class InvariantFilter:
             normals: of the ground under them, shape (2, 3).
             tilt: how far the attitude may be off before [rad].
         """
-        s, n = self.stand, len(self.P)
-        P = self.P
+        s, n, P = self.stand, len(self.P), self.P
         P[0, 0] = P[1, 1] = tilt**2
         P[8, 8] = tilt**2
         lever = np.eye(n)
@@ -154,12 +160,18 @@ class InvariantFilter:
         for k in (0, 1):
             # Sole normals R̂ Y e_z turn by ξ_R - R̂ J_Y o, sole heights move by ξ_p + hat-terms of ξ_R - R̂ J_y o.
             up, turned = normals[k], s.R @ J[k, 3:]
-            side = np.cross(up, [0.0, 1.0, 0.0])
-            side /= np.linalg.norm(side)
-            for i, axis in enumerate((side, np.cross(up, side))):
-                row = rows[3 * k + i]
-                row[TURN], row[OFFSETS] = axis, -axis @ turned
-                wanted[3 * k + i] = axis @ np.cross(s.R @ Y[k, :, 2], up)
+            if self._leaning:
+                # Only the line is level, which is that a sole is about the axis across it.
+                line = s.R @ Y[k, :, 0]
+                across = np.cross(line, up)
+                rows[3 * k, TURN], rows[3 * k, OFFSETS], wanted[3 * k] = across, -across @ turned, -up @ line
+            else:
+                side = np.cross(up, [0.0, 1.0, 0.0])
+                side /= np.linalg.norm(side)
+                for i, axis in enumerate((side, np.cross(up, side))):
+                    row = rows[3 * k + i]
+                    row[TURN], row[OFFSETS] = axis, -axis @ turned
+                    wanted[3 * k + i] = axis @ np.cross(s.R @ Y[k, :, 2], up)
             foot = s.R @ y[k] + s.p
             row = rows[3 * k + 2]
             row[TURN], row[POSITION], row[OFFSETS] = -pin.skew(foot)[2], _UNIT[2], -(s.R @ J[k, :3])[2]
@@ -232,6 +244,9 @@ class InvariantFilter:
             if self.standing[k]:
                 D[FOOT[k]] += np.square(more * np.array([ground.creep, ground.creep, ground.sinking])) * dt
                 D[SOLE[k]] += (more * ground.rocking) ** 2 * dt
+                if self._leaning:
+                    line = self.stand.Z[k, :, 0]
+                    P[SOLE[k], SOLE[k]] += (LEANING**2 * dt) * np.outer(line, line)
         self.P = P
 
     def land(

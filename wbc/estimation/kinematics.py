@@ -1,9 +1,14 @@
-"""Where the soles are from the IMU, how encoder zeros move them, and where the base is from the IMU."""
+"""Where the soles are from the IMU, how encoder zeros move them, and where the base is from the IMU.
+
+Of soles that lean (see `surefoot.wbc.leaning`) the place is that of the line on which they stand: it stays where it is
+while they turn about it.
+"""
 
 import numpy as np
 import pinocchio as pin
 
 from surefoot.values import dataclass
+from surefoot.wbc.leaning import line_centre
 from surefoot.wbc.model import cross
 from surefoot.wbc.types import Array
 
@@ -32,8 +37,10 @@ class SensedBody:
         model: with a free-flyer base.
         soles: names of the sole frames, left first.
         mount: of the IMU.
+        leaning: half width of soles that lean with their shanks; None for others [m].
 
     Attributes:
+        leaning: as given.
         chain: indices of the joints between the IMU and the soles, shape (m,).
         position: of the soles in the frame of the IMU, shape (2, 3) [m].
         rotation: of the soles to the frame of the IMU, shape (2, 3, 3).
@@ -42,7 +49,7 @@ class SensedBody:
         ValueError: there is no such frame.
     """
 
-    def __init__(self, model: pin.Model, soles: tuple[str, str], mount: ImuMount) -> None:
+    def __init__(self, model: pin.Model, soles: tuple[str, str], mount: ImuMount, leaning: float | None = None) -> None:
         for name in (*soles, *((mount.body,) if mount.body else ())):
             if not model.existFrame(name):
                 raise ValueError(f"robot '{model.name}' has no frame '{name}'")
@@ -60,10 +67,16 @@ class SensedBody:
         self._q, self._v = pin.neutral(model), np.zeros(model.nv)
         self._imu = self._placement
         self.position, self.rotation = np.zeros((2, 3)), np.zeros((2, 3, 3))
+        self.leaning, self._beside = leaning, np.zeros((2, 3))
         self.mass = float(sum(inertia.mass for inertia in model.inertias))
 
-    def update(self, joints: Array) -> None:
-        """Take joint angles, shape (nj,) [rad]."""
+    def update(self, joints: Array, attitude: Array) -> None:
+        """Take joint angles.
+
+        Args:
+            joints: shape (nj,) [rad].
+            attitude: of the IMU in the world, by which soles that lean do so, shape (3, 3).
+        """
         self._q[7:] = joints
         pin.forwardKinematics(self.model, self._data, self._q)
         if self._behind:
@@ -73,6 +86,9 @@ class SensedBody:
             if not self._at_base:
                 placed = self._imu.actInv(placed)
             self.position[k], self.rotation[k] = placed.translation, placed.rotation
+            if self.leaning is not None:
+                self._beside[k] = line_centre(k, np.zeros(3), attitude @ placed.rotation, self.leaning) @ attitude
+                self.position[k] += self._beside[k]
 
     def offset_jacobians(self) -> Array:
         """From small turns of the joints of the chain to those of the soles, shape (2, 6, m) [m/rad, -].
@@ -91,8 +107,11 @@ class SensedBody:
             R, p = self.rotation[k], self.position[k]
             sole = pin.getFrameJacobian(model, data, frame, _LOCAL)[:, columns]
             # What turns the IMU turns the sole the other way about it.
+            turned = R @ sole[3:]
             found[k, :3] = R @ sole[:3] - base[:3] + pin.skew(p) @ base[3:]
-            found[k, 3:] = R @ sole[3:] - base[3:]
+            found[k, 3:] = turned - base[3:]
+            if self.leaning is not None:
+                found[k, :3] -= pin.skew(self._beside[k]) @ turned
         return found
 
     def com_jacobians(self, k: int) -> tuple[Array, Array, Array]:
@@ -105,9 +124,13 @@ class SensedBody:
         model, data = self.model, self._data
         J = pin.jacobianCenterOfMass(model, data, self._q, False)[:, 6:]
         placed = self._data.oMf[self._soles[k]]
-        sole = placed.rotation @ pin.getFrameJacobian(model, data, self._soles[k], _LOCAL)[:3, 6:]
-        to_imu = self._imu.rotation.T
-        return to_imu @ (data.com[0] - placed.translation), to_imu @ (J - sole), to_imu @ J
+        moved = pin.getFrameJacobian(model, data, self._soles[k], _LOCAL)[:, 6:]
+        sole, to_imu = placed.rotation @ moved[:3], self._imu.rotation.T
+        at = placed.translation
+        if self.leaning is not None:
+            beside = self._imu.rotation @ self._beside[k]
+            at, sole = at + beside, sole - pin.skew(beside) @ placed.rotation @ moved[3:]
+        return to_imu @ (data.com[0] - at), to_imu @ (J - sole), to_imu @ J
 
     def turning_inertia(self) -> tuple[float, float]:
         """What angular velocities make of moment of momentum about the CoM, at the angles last taken.

@@ -1,6 +1,7 @@
 """``surefoot serve`` and ``surefoot walk``: a simulated robot and its controller in processes of their own."""
 
 import json
+import math
 from pathlib import Path
 from typing import TYPE_CHECKING, Annotated
 
@@ -21,9 +22,12 @@ from surefoot.scenarios.show.options import (
 from surefoot.values import dataclass
 
 if TYPE_CHECKING:
-    from surefoot.scenarios.file.schema import Scenario
+    from surefoot.scenarios.run.run import Result
 
 DEFAULT_SCENARIO = "walk"
+
+SOFT_START = 0.3
+"""Time in which joints go over from being held to what they are told, in real time [s]."""
 
 app = typer.Typer()
 
@@ -42,6 +46,18 @@ class ServeOptions:
     bind: Annotated[
         str, typer.Option(metavar="HOST", help="Address of this machine; all but the default lets others in.")
     ] = "127.0.0.1"
+    real_time: Annotated[
+        bool, typer.Option("--real-time", help="Go by the wall clock and wait for nobody; else in lockstep.")
+    ] = False
+    delay: Annotated[float, typer.Option(help="By which every command comes later [s].")] = 0.0
+    jitter: Annotated[float, typer.Option(help="Most of what is added to that, by chance [s].")] = 0.0
+    drop: Annotated[float, typer.Option(help="Share of states, and of commands, that get lost.")] = 0.0
+    pause: Annotated[float, typer.Option(help="How long the controller hears nothing, once a second [s].")] = 0.0
+    watchdog: Annotated[float, typer.Option(help="Without a new command for so long joints are damped [s].")] = 0.1
+    soft_start: Annotated[
+        float | None,
+        typer.Option(help="Of joints that were held [s]; by default 0.3 in real time, else 0."),
+    ] = None
 
 
 @app.command()
@@ -49,6 +65,9 @@ class ServeOptions:
 def serve(told: ServeOptions) -> None:
     """Serve the simulated robot to a controller in another process."""
     with importing():
+        from surefoot.scenarios.apps.bridge.host import Care
+        from surefoot.scenarios.apps.bridge.limits import TORQUE_RATE
+        from surefoot.scenarios.apps.bridge.line import Disturbance
         from surefoot.scenarios.apps.bridge.serve import Server
         from surefoot.scenarios.run.interrupts import held_back
         from surefoot.scenarios.run.run import one_thread
@@ -64,7 +83,12 @@ def serve(told: ServeOptions) -> None:
     loaded = load(reference, asked)
     try:
         with refusing():
-            server = Server(resolve(loaded), told.bind, told.port, _say)
+            found = resolve(loaded)
+            disturbance = Disturbance(told.delay, told.jitter, told.drop, told.pause, found.seed)
+            apart = told.real_time or not disturbance.none
+            soft = (SOFT_START if told.real_time else 0.0) if told.soft_start is None else told.soft_start
+            care = Care(disturbance, told.watchdog, soft, TORQUE_RATE if apart else math.inf)
+            server = Server(found, told.bind, told.port, _say, care, told.real_time)
     except SetupError as refusal:
         raise locate(reference, asked, refusal) from None
     typer.echo(
@@ -87,7 +111,10 @@ class WalkOptions:
     """What `surefoot walk` is told."""
 
     scenario: Annotated[str | None, _Scenario] = None
-    on: Annotated[str, typer.Option(metavar="ADDRESS", help="Of the plant, as surefoot serve says it.")] = "127.0.0.1"
+    on: Annotated[str | None, typer.Option(metavar="ADDRESS", help="Of the plant, as surefoot serve says it.")] = None
+    shadow: Annotated[Path | None, typer.Option(metavar="LOG", help="Hear what this log holds, and move nothing.")] = (
+        None
+    )
     set_: Settings = None
     seed: Seed = None
     out: Annotated[Path, typer.Option(help="Directory that gets the run's own folder.")] = Path("runs")
@@ -97,49 +124,62 @@ class WalkOptions:
 @app.command()
 @with_options(WalkOptions)
 def walk(told: WalkOptions) -> None:
-    """Walk a robot that another process serves; log it and judge it."""
+    """Walk a robot that another process serves, or in the shadow of a log; log it and judge it."""
+    if (told.on is None) == (told.shadow is None):
+        raise typer.BadParameter("give one of --on ADDRESS and --shadow LOG")
     with importing():
-        from surefoot.scenarios.apps.bridge.remote import Remote
-        from surefoot.scenarios.apps.bridge.walk import walk_on
         from surefoot.scenarios.setup.load import locate
-        from surefoot.scenarios.show.console import ProgressLine, print_result
+        from surefoot.scenarios.show.console import print_result
 
     asked = overrides(told.set_, told.seed)
-    loaded = None if told.scenario is None else _own(told.scenario, asked)
-    hello = {} if loaded is None else {"robot": loaded.robot, "rate": loaded.rates.control}
-    remote = Remote(told.on, hello)
-    ended = "refused"
+    reference = told.scenario or (None if told.shadow is None else str(told.shadow))
     try:
-        scenario = loaded or _served(remote.welcome.name, remote.welcome.scenario, asked)
-        progress = ProgressLine(scenario.name)
-        with progress:
-            result = walk_on(remote, scenario, told.out, progress)
-        ended = "interrupted" if result.interrupted else "the walk is over"
+        name, result = _on(told.on, told, asked) if told.shadow is None else _in_shadow(told.shadow, told, asked)
     except SetupError as refusal:
-        raise (
-            ScenarioError([str(refusal)]) if told.scenario is None else locate(told.scenario, asked, refusal)
-        ) from None
-    finally:
-        remote.close(ended)
+        if reference is None:
+            raise ScenarioError([str(refusal)]) from None
+        raise locate(reference, asked, refusal) from None
     if told.as_json:
         typer.echo(json.dumps({**result.verdict.to_json(), "log": str(result.log)}, allow_nan=False))
     else:
-        print_result(scenario.name, result.verdict, result.log)
+        print_result(name, result.verdict, result.log)
     if result.interrupted:
         typer.echo(f"interrupted; the log up to here is whole: {result.log}", err=True)
         raise typer.Exit(INTERRUPTED)
     raise typer.Exit(0 if result.verdict.passed else MISSED)
 
 
-def _own(reference: str, asked: list[str]) -> "Scenario":
-    """The scenario that the user names."""
+def _on(address: str | None, told: WalkOptions, asked: list[str]) -> "tuple[str, Result]":
+    """Walk on the plant at an address: the user's scenario, else that of the plant."""
+    from surefoot.scenarios.apps.bridge.remote import Remote
+    from surefoot.scenarios.apps.bridge.walk import walk_on
+    from surefoot.scenarios.setup.load import load, read_scenario
+    from surefoot.scenarios.show.console import ProgressLine
+
+    loaded = None if told.scenario is None else load(told.scenario, asked)
+    hello = {} if loaded is None else {"robot": loaded.robot, "rate": loaded.rates.control}
+    remote = Remote(address or "", hello)
+    ended = "refused"
+    try:
+        said = remote.welcome
+        scenario = loaded or read_scenario(said.scenario, f"scenario served as {said.name}", said.name, asked)
+        progress = ProgressLine(scenario.name)
+        with progress:
+            result = walk_on(remote, scenario, told.out, progress)
+        ended = "interrupted" if result.interrupted else "the walk is over"
+    finally:
+        remote.close(ended)
+    return scenario.name, result
+
+
+def _in_shadow(log: Path, told: WalkOptions, asked: list[str]) -> "tuple[str, Result]":
+    """Walk in the shadow of a log: the user's scenario, else that of the log."""
+    from surefoot.scenarios.apps.bridge.shadow import walk_in_shadow
     from surefoot.scenarios.setup.load import load
+    from surefoot.scenarios.show.console import ProgressLine
 
-    return load(reference, asked)
-
-
-def _served(name: str, text: str, asked: list[str]) -> "Scenario":
-    """The scenario of the plant."""
-    from surefoot.scenarios.setup.load import read_scenario
-
-    return read_scenario(text, f"scenario served as {name}", name, asked)
+    scenario = load(told.scenario or str(log), asked)
+    progress = ProgressLine(scenario.name)
+    with progress:
+        result = walk_in_shadow(log, scenario, told.out, progress)
+    return scenario.name, result

@@ -1,12 +1,15 @@
 """The plant's side of a bridge: a simulated robot that does what it is told, or is damped."""
 
+import math
 from dataclasses import replace
 
 import numpy as np
 
 from surefoot.errors import ParameterError
 from surefoot.forces import Push
-from surefoot.joints import JointCommand, Servo
+from surefoot.joints import JointCommand
+from surefoot.scenarios.apps.bridge.limits import Limits, blended
+from surefoot.scenarios.apps.bridge.line import Disturbance, Line
 from surefoot.scenarios.apps.bridge.messages import Answered, Start, State
 from surefoot.scenarios.errors import LinkError
 from surefoot.scenarios.file.registries import DEFAULTS
@@ -16,9 +19,27 @@ from surefoot.sim.errors import SimulationDiverged
 from surefoot.sim.measurement import Array, Measurement
 from surefoot.sim.readings import SensorSuite
 from surefoot.sim.world import World
+from surefoot.values import dataclass
 
-DAMPING = 0.05
-"""Damping of joints that are let go, over their largest torque, of the reference robot [s/rad]."""
+_SOON = 1e-9
+"""By what times of ticks may miss one another, for rounding [s]."""
+
+
+@dataclass(frozen=True, slots=True)
+class Care:
+    """What a plant does with commands beside obeying them.
+
+    Attributes:
+        disturbance: of the line.
+        watchdog: age of the state that the newest command answers, from which on the joints are damped [s].
+        soft_start: time in which joints go over from being held to what they are told [s].
+        torque_rate: by which torques may change; see `Limits`.
+    """
+
+    disturbance: Disturbance = Disturbance()
+    watchdog: float = math.inf
+    soft_start: float = 0.0
+    torque_rate: float = math.inf
 
 
 class Host:
@@ -26,6 +47,7 @@ class Host:
 
     Args:
         walk: its robot, ground, motors, sensors, rates and seed count; what is walked does not.
+        care: that is taken of commands.
 
     Attributes:
         tick: control ticks since the start.
@@ -36,7 +58,7 @@ class Host:
         ParameterError: it has what only one process can have.
     """
 
-    def __init__(self, walk: Walk) -> None:
+    def __init__(self, walk: Walk, care: Care) -> None:
         _refuse_undivided(walk)
         self.walk, self.rate = walk, walk.rates.control
         robot, rate, size = walk.true_robot, walk.rates.physics, walk.size
@@ -44,10 +66,10 @@ class Host:
         drives = None if errors == IDEAL else Drives(walk.robot, errors, rate, walk.seed)
         self._world = World(robot, walk.ground.true_terrain, rate, (), size, drives)
         self.joints = len(robot.joint_names)
-        zero = np.zeros(self.joints)
-        self._damping = JointCommand(zero, Servo(zero, zero, zero, DAMPING * size.time * walk.robot.torque_limit))
+        self._care, self._line = care, Line(care.disturbance)
+        self._limits = Limits(walk.robot, size, 1.0 / self.rate, care.torque_rate)
         self.tick, self.damped = 0, ""
-        self._command: JointCommand | None = None
+        self._command = self._held = self._limits.damping
         self._answered = Answered()
         self._sensors: SensorSuite | None = None
 
@@ -60,7 +82,8 @@ class Host:
         """Stand at a start."""
         self._world.reset(start.q, start.v, torque=start.torque)
         self.tick, self._answered = 0, Answered()
-        self._command = JointCommand(start.torque)
+        self._limits.begin(start.torque)
+        self._command = self._held = self._limits.holding(start.q[7:], start.torque)
         self._sensors = SensorSuite(self._world, self.walk.hardware.sensors, self.rate, self.walk.seed)
         if not start.senses:
             self._sensors = None
@@ -82,10 +105,20 @@ class Host:
         readings = None if self._sensors is None else self._sensors.read(measurement, self.tick)
         return State(self.tick, measurement, readings, self._answered)
 
-    def take(self, tick: int, command: JointCommand) -> None:
-        """Take a command that answers the state of a tick; one that is older than the last one counts no more."""
-        if tick > self._answered.tick:
-            self._command, self._answered = command, replace(self._answered, tick=tick)
+    @property
+    def tells(self) -> bool:
+        """Whether the state of now gets to the controller; to be asked once a tick."""
+        return self._line.carries_state(self.time)
+
+    def take(self, tick: int, command: JointCommand, now: float | None = None) -> None:
+        """Take a command that answers the state of a tick.
+
+        Args:
+            tick: that it answers; what is older than the newest one counts no more.
+            command: for the joints.
+            now: when it comes, by the plant's clock; None for at this tick [s].
+        """
+        self._line.send(self.time if now is None else now, tick, command)
 
     def damp(self, why: str) -> None:
         """Damp the joints from now on; the first reason counts."""
@@ -93,17 +126,42 @@ class Host:
         self._answered = replace(self._answered, damped=True)
 
     def advance(self) -> None:
-        """Do what is commanded until the next tick.
+        """Do what is commanded until the next tick, or damp the joints where nothing has been for too long.
 
         Raises:
             LinkError: the simulation diverged.
         """
-        command = self._damping if self.damped or self._command is None else self._command
+        self._hear()
         try:
-            self._world.act(command, 1.0 / self.rate)
+            self._world.act(self._obeyed(), 1.0 / self.rate)
         except SimulationDiverged as fault:
             raise LinkError(str(fault)) from None
         self.tick += 1
+
+    def _hear(self) -> None:
+        """Take the command that has arrived, if it is a new one."""
+        arrived, told = self._line.arrived(self.time), self._answered
+        if arrived is not None and arrived[0] > told.tick:
+            tick, self._command = arrived
+            self._answered = replace(told, tick=tick)
+        elif told.tick >= 0:
+            self._answered = replace(told, missed=told.missed + 1)
+        age = (self.tick - self._answered.tick) / self.rate
+        if self._answered.tick >= 0 and age > self._care.watchdog + _SOON:
+            self.damp(f"no command answers a state of the last {age:.3f} s")
+
+    def _obeyed(self) -> JointCommand:
+        """What the joints do now."""
+        if self.damped:
+            return self._limits.damping
+        if self._answered.tick < 0:
+            return self._held
+        command, bent = self._limits.within(self._command, self._world.data.qpos[7:])
+        if bent:
+            self._answered = replace(self._answered, limited=self._answered.limited + 1)
+        if self.time < self._care.soft_start:
+            return blended(self._held, command, self.time / self._care.soft_start)
+        return command
 
     @property
     def joint_velocity(self) -> Array:

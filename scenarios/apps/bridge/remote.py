@@ -10,6 +10,7 @@ from surefoot.forces import Push
 from surefoot.joints import JointCommand
 from surefoot.readings import Readings
 from surefoot.scenarios.apps.bridge.frames import Frame, Kind, Link, connected
+from surefoot.scenarios.apps.bridge.limits import Limits
 from surefoot.scenarios.apps.bridge.messages import (
     Start,
     State,
@@ -23,6 +24,8 @@ from surefoot.scenarios.apps.bridge.messages import (
     why_of,
 )
 from surefoot.scenarios.errors import LinkError
+from surefoot.scenarios.log import LogWriter
+from surefoot.scenarios.record.link import LinkRecorder
 from surefoot.scenarios.run.planning import RunFault
 from surefoot.scenarios.setup.walk import Walk
 from surefoot.sim.measurement import Array, Measurement
@@ -30,6 +33,9 @@ from surefoot.values import dataclass
 
 PATIENCE = 10.0
 """How long a plant may take for an answer [s]."""
+
+SILENCE = 0.5
+"""How long a plant that goes by the wall clock may say nothing; then its joints are damped [s]."""
 
 
 @dataclass(frozen=True, slots=True)
@@ -42,6 +48,8 @@ class Welcome:
         rate: of control ticks [Hz].
         name: of its scenario.
         scenario: its scenario, in YAML.
+        real_time: whether it goes by the wall clock, and waits for nobody.
+        disturbed: whether messages are late or get lost.
     """
 
     robot: str
@@ -49,6 +57,8 @@ class Welcome:
     rate: int
     name: str
     scenario: str
+    real_time: bool = False
+    disturbed: bool = False
 
     @classmethod
     def of(cls, keys: Mapping[str, Any]) -> "Welcome":
@@ -59,13 +69,14 @@ class Welcome:
         """
         try:
             names = tuple(str(name) for name in keys["joints"])
-            return cls(str(keys["robot"]), names, int(keys["rate"]), str(keys["name"]), str(keys["scenario"]))
+            flags = bool(keys.get("real_time")), bool(keys.get("disturbed"))
+            return cls(str(keys["robot"]), names, int(keys["rate"]), str(keys["name"]), str(keys["scenario"]), *flags)
         except (KeyError, TypeError, ValueError):
             raise LinkError("a welcome that does not say which robot is served") from None
 
 
 class Remote:
-    """A plant in another process, connected to; called with a walk, it gives the `surefoot.Plant`.
+    """A plant in another process, connected to.
 
     Args:
         address: at which the plant is served.
@@ -94,14 +105,16 @@ class Remote:
             self._link.close()
             raise LinkError(f"{self._link.peer}: {fault}") from None
 
-    def __call__(self, walk: Walk) -> "RemotePlant":
-        """The plant of a walk.
+    def plant(self, walk: Walk, writer: LogWriter) -> "RemotePlant":
+        """The plant of a walk, and of its log.
 
         Raises:
-            RunFault: it is another robot's.
+            LinkError: it is another robot's.
         """
         check(self.welcome, walk.robot.name, walk.robot.joint_names, walk.rates.control)
-        return RemotePlant(self._link, walk)
+        recorded = self.welcome.real_time or self.welcome.disturbed
+        recorder = LinkRecorder(writer, walk.rates.control) if recorded else None
+        return RemotePlant(self._link, walk, self.welcome.real_time, recorder)
 
     def close(self, why: str) -> None:
         """Say that the walk is over, and why."""
@@ -132,16 +145,20 @@ class RemotePlant:
     Args:
         link: to the process that has it.
         walk: what is walked.
+        real_time: whether it waits for nobody, so that of its states the newest counts.
+        recorder: of what becomes of messages; None for none.
 
     Attributes:
-        tick: number of the control tick at which was measured last.
+        control_tick: number of the control tick at which was measured last.
     """
 
-    def __init__(self, link: Link, walk: Walk) -> None:
-        self._link, self._rate = link, walk.rates.control
+    def __init__(self, link: Link, walk: Walk, real_time: bool = False, recorder: LinkRecorder | None = None) -> None:
+        self._link, self._rate, self._real_time, self._recorder = link, walk.rates.control, real_time, recorder
+        self._patience = SILENCE if real_time else PATIENCE
+        self._damping = Limits(walk.robot, walk.size, 1.0 / self._rate).damping
         self._joints, self._senses = len(walk.robot.joint_names), walk.sensing.source != "truth"
         self._state: State
-        self.tick = -1
+        self.control_tick = -1
 
     def reset(self, q: Array, v: Array | None = None, torque: Array | None = None) -> None:
         """See `surefoot.Plant`."""
@@ -152,6 +169,8 @@ class RemotePlant:
     def measure(self) -> Measurement:
         """See `surefoot.Plant`."""
         frame = self._receive()
+        if self._real_time and frame.kind is Kind.STATE:
+            frame = self._newest(frame)
         try:
             if frame.kind is Kind.END:
                 raise RunFault(why_of(frame.payload))
@@ -160,7 +179,12 @@ class RemotePlant:
             self._state = state_of(frame.payload, self._joints, self._rate, self._senses)
         except LinkError as fault:
             raise RunFault(f"the plant sends {fault}") from None
-        self.tick = self._state.tick
+        if self._recorder is not None:
+            said = self._state.answered
+            self._recorder.state(
+                self._state.tick, self.control_tick, said.tick, (said.missed, said.limited, said.damped)
+            )
+        self.control_tick = self._state.tick
         return self._state.measurement
 
     def read(self, measurement: Measurement, tick: int) -> Readings:
@@ -170,7 +194,7 @@ class RemotePlant:
 
     def act(self, command: JointCommand, period: float) -> None:
         """See `surefoot.Plant`."""
-        self._send(Kind.COMMAND, command_bytes(self.tick, command))
+        self._send(Kind.COMMAND, command_bytes(self.control_tick, command))
 
     def push(self, push: Push) -> None:
         """See `surefoot.Plant`."""
@@ -192,9 +216,18 @@ class RemotePlant:
 
     def _receive(self) -> Frame:
         try:
-            frame = self._link.receive(PATIENCE)
+            frame = self._link.receive(self._patience)
         except LinkError as fault:
             raise RunFault(f"the plant is lost: {fault}") from None
         if frame is None:
-            raise RunFault(f"the plant is lost: {self._link.peer} has sent nothing for {PATIENCE:g} s")
+            with contextlib.suppress(LinkError):
+                self._link.offer(Kind.COMMAND, command_bytes(self.control_tick + 1, self._damping))
+            raise RunFault(f"damped: {self._link.peer} has sent nothing for {self._patience:g} s")
+        return frame
+
+    def _newest(self, frame: Frame) -> Frame:
+        """The last of the states that are there, or the end if it is."""
+        with contextlib.suppress(LinkError):  # what is wrong is told when it is waited for
+            while frame.kind is Kind.STATE and (later := self._link.receive(0.0)) is not None:
+                frame = later
         return frame

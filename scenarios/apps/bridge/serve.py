@@ -8,7 +8,7 @@ from typing import Any
 
 from surefoot.scenarios.apps.bridge.door import Door
 from surefoot.scenarios.apps.bridge.frames import Frame, Kind, Link
-from surefoot.scenarios.apps.bridge.host import Host
+from surefoot.scenarios.apps.bridge.host import Care, Host
 from surefoot.scenarios.apps.bridge.messages import command_of, end_bytes, push_of, start_of, state_bytes, why_of
 from surefoot.scenarios.errors import LinkError
 from surefoot.scenarios.setup.walk import Walk
@@ -19,6 +19,9 @@ PATIENCE, GETTING_READY = 10.0, 300.0
 
 LET_DOWN = 1.0
 """How long a robot that is damped is simulated on [s]."""
+
+MOST_LATE = 0.1
+"""By how much a plant in real time may be late, and catch up [s]."""
 
 _LOOK = 0.1
 
@@ -46,9 +49,12 @@ class Server:
         host: address to be bound to.
         port: likewise; 0 for any free one.
         say: is told what happens, in sentences.
+        care: that is taken of commands.
+        real_time: whether it goes by the wall clock, and waits for nobody.
 
     Attributes:
         plant: the robot.
+        late: how often the machine was too slow for real time, so that the plant's clock was put back.
         address: that is listened at.
 
     Raises:
@@ -56,8 +62,11 @@ class Server:
         LinkError: the address cannot be had.
     """
 
-    def __init__(self, walk: Walk, host: str, port: int, say: Callable[[str], None]) -> None:
-        self.plant, self._walk, self._say = Host(walk), walk, say
+    def __init__(
+        self, walk: Walk, host: str, port: int, say: Callable[[str], None], care: Care, real_time: bool = False
+    ) -> None:
+        self.plant, self._walk, self._say = Host(walk, care), walk, say
+        self._real_time, self.late = real_time, 0
         robot = walk.robot
         welcome = {
             "robot": robot.name,
@@ -65,6 +74,8 @@ class Server:
             "rate": walk.rates.control,
             "name": walk.name,
             "scenario": walk.text,
+            "real_time": real_time,
+            "disturbed": not care.disturbance.none,
         }
         self._door = Door(host, port, self._examine, welcome, say)
         self.address = self._door.address
@@ -110,26 +121,63 @@ class Server:
             if frame.kind is not Kind.RESET:
                 raise LinkError(f"a message {frame.kind.name} before a start")
             plant.begin(start_of(frame.payload, plant.joints))
-            while True:
-                link.send(Kind.STATE, state_bytes(plant.state()), PATIENCE)
-                end = self._answer(link, stopped)
-                if end is not None:
-                    return Served(plant.time, why_of(end.payload), in_order=True)
-                plant.advance()
+            end = (self._paced if self._real_time else self._in_step)(link, stopped)
+            return Served(plant.time, why_of(end.payload), in_order=True)
         except LinkError as fault:
             return self._let_down(link, str(fault))
 
+    def _in_step(self, link: Link, stopped: Callable[[], bool]) -> Frame:
+        """Wait for the answer to each state; gives the end."""
+        plant = self.plant
+        while not plant.damped:
+            state = plant.state()
+            if plant.tells:
+                link.send(Kind.STATE, state_bytes(state), PATIENCE)
+                if (end := self._answer(link, stopped)) is not None:
+                    return end
+            plant.advance()
+        raise LinkError(plant.damped)
+
+    def _paced(self, link: Link, stopped: Callable[[], bool]) -> Frame:
+        """Wait for nobody once the first state is answered; gives the end."""
+        plant = self.plant
+        link.send(Kind.STATE, state_bytes(plant.state()), PATIENCE)
+        if (end := self._answer(link, stopped)) is not None:
+            return end
+        begin = time.monotonic() - plant.time
+        while not (plant.damped or stopped()):
+            plant.advance()
+            due = begin + plant.time
+            while (frame := link.receive(due - time.monotonic())) is not None:
+                if frame.kind is Kind.END:
+                    return frame
+                self._take(frame, time.monotonic() - begin)
+            late = time.monotonic() - due
+            if late > MOST_LATE:
+                begin, self.late = begin + late, self.late + 1
+            state = plant.state()
+            if plant.tells:
+                link.offer(Kind.STATE, state_bytes(state))
+        raise LinkError(plant.damped or "stopped by a signal")
+
     def _answer(self, link: Link, stopped: Callable[[], bool]) -> Frame | None:
         """Take what answers a state; the end, if that is the answer."""
-        plant = self.plant
         while (frame := self._next(link, PATIENCE, stopped)).kind is Kind.PUSH:
-            plant.push(push_of(frame.payload))
+            self._take(frame)
         if frame.kind is Kind.END:
             return frame
-        if frame.kind is not Kind.COMMAND:
-            raise LinkError(f"a message {frame.kind.name} where a command is due")
-        plant.take(*command_of(frame.payload, plant.joints))
+        self._take(frame)
         return None
+
+    def _take(self, frame: Frame, now: float | None = None) -> None:
+        """Take a push or a command, which comes at an instant of the plant's clock; None for at this tick [s]."""
+        plant = self.plant
+        if frame.kind is Kind.PUSH:
+            plant.push(push_of(frame.payload))
+        elif frame.kind is Kind.COMMAND:
+            plant.take(*command_of(frame.payload, plant.joints), now)
+        else:
+            raise LinkError(f"a message {frame.kind.name} where a command is due")
 
     def _next(self, link: Link, patience: float, stopped: Callable[[], bool]) -> Frame:
         deadline = time.monotonic() + patience

@@ -107,3 +107,15 @@ def test_it_walks_and_stops_on_side_edges(tmp_path) -> None:
 def test_it_stands_without_moving_on_side_edges(tmp_path) -> None:
     verdict = run_scenario(surefoot.load("stand", {"robot": str(robot(tmp_path))}), tmp_path).verdict
     assert verdict.passed, verdict.reasons
+
+
+@pytest.mark.physics
+@pytest.mark.parametrize("seed", [0, 3])
+def test_it_stands_on_side_edges_from_sensors(tmp_path, seed) -> None:
+    """How its soles are turned about their edges is no measurement of level; the way between the edges is."""
+    keys = {"robot": str(robot(tmp_path)), "sensing.preset": "good", "seed": seed, "criteria": {}}
+    verdict = run_scenario(surefoot.load("stand", keys), tmp_path).verdict
+    assert not verdict["fell"] and verdict["ghost_force_max"] < 8.0
+    assert max(verdict["com_estimation_error_rms"]) < 0.0025
+    assert verdict["tilt_estimation_error_rms"] < math.radians(0.2)
+    assert max(verdict["zmp_error_rms"]) < 0.005

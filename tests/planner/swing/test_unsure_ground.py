@@ -31,9 +31,9 @@ def test_the_search_is_the_faster_the_less_sure_the_height_is_up_to_a_bound():
     found = [usual.unsure(deviation) for deviation in (2e-4, 1e-3, 1.0)]
     speeds, aims = [search.touchdown_speed for search, _ in found], [aim for _, aim in found]
     assert usual.touchdown_speed < speeds[0] < speeds[1] < speeds[2] < 0.3
-    assert 0.0 < aims[0] < aims[1] < aims[2] < 0.002
-    assert usual.unsure(3e-4)[0].touchdown_speed == pytest.approx(0.05, abs=0.005)
-    assert usual.unsure(3e-4)[0].acceleration == pytest.approx(2.5, abs=0.1)
+    assert 0.0 < aims[0] < aims[1] < aims[2] == pytest.approx(usual.unsure_aim * usual.most_unsure)
+    assert usual.unsure(3e-4)[0].touchdown_speed == pytest.approx(0.021, abs=0.001)
+    assert usual.unsure(3e-4)[0].acceleration == pytest.approx(2.0, abs=0.1)
 
 
 @pytest.mark.parametrize("height", [0.0, 0.1, -0.1])

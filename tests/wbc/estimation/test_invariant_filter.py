@@ -250,3 +250,41 @@ def test_a_landing_that_is_not_on_the_ground_that_is_believed_moves_nothing(step
     before = off.stand.columns.copy()
     off.land(0, y, np.eye(3), J, (height + step, 1.5e-3), 1e-3, 1e-3)
     assert np.abs(off.stand.columns - before).max() > 0.2 * abs(step)
+
+
+@pytest.mark.parametrize("leaning", [True, False])
+def test_a_sole_that_leans_tells_how_it_is_turned_but_for_about_its_line(leaning):
+    """One foot stands; a turn of its sole about an axis moves the attitude, unless it turns about that at will."""
+
+    def turned(axis):
+        stand = Stand(np.eye(3), np.zeros((4, 3)), np.stack((np.eye(3),) * 2), *np.zeros((2, 3)), np.zeros(JOINTS))
+        filter_ = InvariantFilter(stand, NOISE, GROUND, PERIOD, leaning)
+        filter_.lift(1)
+        filter_.P[TURN, TURN] += 1e-4 * np.eye(3)
+        for _ in range(5):
+            filter_.propagate(np.zeros(3), np.array([0.0, 0.0, 9.81]), PERIOD)
+        filter_.spread((1.0, 0.0))
+        filter_.weigh(np.zeros((2, 6, JOINTS)))
+        filter_.correct(np.zeros((2, 3)), np.stack((pin.exp3(1e-3 * axis),) * 2))
+        return pin.log3(filter_.stand.R)
+
+    across, along = turned(np.array([0.0, 1.0, 0.0])), turned(np.array([1.0, 0.0, 0.0]))
+    assert across[1] < -5e-4
+    assert abs(along[0]) < 2e-5 if leaning else along[0] < -5e-4
+
+
+def test_soles_that_lean_tell_the_attitude_at_the_start_by_the_heights_of_both():
+    """However they are turned about their lines, which those that do not lean take for a tilt of the robot."""
+    found = []
+    for leaning in (True, False):
+        soles = np.stack([pin.exp3(np.array([angle, 0.0, 0.0])) for angle in (-0.2, 0.1)])
+        feet = np.array([[0.0, 0.1, 0.0], [0.0, -0.1, 0.0]])
+        tilt = pin.exp3(np.array([0.02, 0.01, 0.0]))
+        stand = Stand(
+            tilt, np.vstack((np.zeros(3), [0.0, 0.0, 1.0], feet)), soles.copy(), *np.zeros((2, 3)), np.zeros(JOINTS)
+        )
+        filter_ = InvariantFilter(stand, NOISE, GROUND, PERIOD, leaning)
+        y = feet - [0.0, 0.0, 1.0]
+        filter_.begin(y, soles, np.zeros((2, 6, JOINTS)), np.tile([0.0, 0.0, 1.0], (2, 1)), 0.1)
+        found.append(float(np.abs(pin.log3(filter_.stand.R)[:2]).max()))
+    assert found[0] < 2e-3 < 0.02 < found[1]

@@ -34,7 +34,7 @@ def test_the_base_follows_from_the_imu(robot, mount):
     q, v = moving(robot)
     pose, motion = imu(robot, mount, q, v)
     body = SensedBody(robot.model, robot.frames.soles, mount)
-    body.update(q[7:])
+    body.update(q[7:], np.eye(3))
     R, p, velocity = body.base(
         pose.rotation, pose.translation, pose.rotation @ motion.linear, motion.angular, q[7:], v[6:]
     )
@@ -48,14 +48,14 @@ def test_the_base_follows_from_the_imu(robot, mount):
 def test_soles_and_their_jacobians_are_those_of_finite_differences(robot, mount):
     q, _ = moving(robot)
     body, step = SensedBody(robot.model, robot.frames.soles, mount), 1e-6
-    body.update(q[7:])
+    body.update(q[7:], np.eye(3))
     J, position, rotation = body.offset_jacobians(), body.position.copy(), body.rotation.copy()
     legs = 12
     assert len(body.chain) == legs + (mount.body is not None) * (len(body.chain) - legs)
     for column, joint in enumerate(body.chain):
         moved = q[7:].copy()
         moved[joint] += step
-        body.update(moved)
+        body.update(moved, np.eye(3))
         for k in (0, 1):
             np.testing.assert_allclose((body.position[k] - position[k]) / step, J[k, :3, column], atol=2e-6)
             turn = pin.log3(body.rotation[k] @ rotation[k].T) / step
@@ -64,7 +64,7 @@ def test_soles_and_their_jacobians_are_those_of_finite_differences(robot, mount)
     others = np.setdiff1d(np.arange(robot.nv - 6), body.chain)
     moved = q[7:].copy()
     moved[others] += 0.1
-    body.update(moved)
+    body.update(moved, np.eye(3))
     np.testing.assert_allclose(body.position, position, atol=1e-12)
 
 
@@ -74,7 +74,7 @@ def test_the_com_from_a_sole_is_that_of_finite_differences(robot):
     body, step = SensedBody(robot.model, robot.frames.soles, mount), 1e-6
 
     def placed(joints):
-        body.update(joints)
+        body.update(joints, np.eye(3))
         body.offset_jacobians()
         return body.com_jacobians(1)
 
@@ -95,7 +95,7 @@ def test_a_frame_that_is_not_there_is_refused(robot):
 @pytest.mark.parametrize("mount", MOUNTS)
 def test_a_turn_of_the_base_is_that_of_an_imu_that_no_joint_parts_from_it(robot, mount):
     body, turn = SensedBody(robot.model, robot.frames.soles, mount), np.array([0.1, -0.2, 0.3])
-    body.update(robot.standing[7:])
+    body.update(robot.standing[7:], np.eye(3))
     found = body.turned_to_imu(turn)
     behind = mount.body is not None
     assert found is None if behind else np.allclose(found, np.array(mount.rotation).T @ turn)
@@ -103,7 +103,7 @@ def test_a_turn_of_the_base_is_that_of_an_imu_that_no_joint_parts_from_it(robot,
 
 def test_turning_inertia_is_what_spinning_makes_of_moment_of_momentum(robot):
     body, data = SensedBody(robot.model, robot.frames.soles, ImuMount()), robot.model.createData()
-    body.update(robot.standing[7:])
+    body.update(robot.standing[7:], np.eye(3))
     whole, joints = body.turning_inertia()
     q = np.concatenate((pin.neutral(robot.model)[:7], robot.standing[7:]))
     spun = np.eye(robot.nv)[3:5] + 0.0
@@ -115,3 +115,30 @@ def test_turning_inertia_is_what_spinning_makes_of_moment_of_momentum(robot):
         v = np.concatenate((np.zeros(6), rng.normal(size=robot.nv - 6)))
         spins.append(pin.computeCentroidalMomentum(robot.model, data, q, v).angular[:2].copy())
     assert joints == pytest.approx(np.std(spins, axis=0).max(), rel=0.05)
+
+
+@pytest.mark.parametrize("mount", MOUNTS)
+@pytest.mark.parametrize("lean", [0.0, -0.3])
+def test_soles_that_lean_are_seen_at_their_lines_which_move_with_them(robot, mount, lean):
+    """Lines are where they are while a sole turns about them; elsewhere a sole's Jacobian is that of its centre."""
+    q, _ = moving(robot)
+    half, step = 0.04, 1e-6
+    body, centre = (SensedBody(robot.model, robot.frames.soles, mount, leaning) for leaning in (half, None))
+    pose, _ = imu(robot, mount, q, np.zeros(robot.nv))
+    attitude = pin.exp3(np.array([lean, 0.0, 0.0])) @ pose.rotation
+    body.update(q[7:], attitude)
+    centre.update(q[7:], attitude)
+    beside = np.einsum("kji,kj->ki", centre.rotation, body.position - centre.position)
+    np.testing.assert_allclose(beside[:, [0, 2]], 0.0, atol=1e-12)
+    assert (np.abs(beside[:, 1]) <= half + 1e-12).all() and np.abs(beside[:, 1]).max() > 0.9 * half
+    J, place = body.offset_jacobians(), body.position.copy()
+    lever = body.com_jacobians(0)[0]
+    centre.offset_jacobians()
+    np.testing.assert_allclose(lever - centre.com_jacobians(0)[0], centre.position[0] - place[0], atol=1e-12)
+    for column, joint in enumerate(body.chain):
+        moved = q[7:].copy()
+        moved[joint] += step
+        centre.update(moved, attitude)
+        for k in (0, 1):
+            found = (centre.position[k] + centre.rotation[k] @ beside[k] - place[k]) / step
+            np.testing.assert_allclose(J[k, :3, column], found, atol=2e-6)

@@ -3,6 +3,7 @@
 import signal
 import socket
 
+import numpy as np
 import pytest
 
 import surefoot
@@ -118,3 +119,53 @@ def test_what_cannot_be_served_is_said(bridge):
     ):
         code, out, told = bridge.end(bridge.start("serve", "walk", "--set", keys, "--port", "0"))
         assert (code, out, said in told, "Traceback" in told) == (2, "", True, False), told
+
+
+SOFT = [word for key in ("output=position", "stiffness=0.3", "damping=0.02") for word in ("--set", f"control.{key}")]
+LINES = {
+    "torques, late, uneven and lost": ((), ("--delay", "0.01", "--jitter", "0.005", "--drop", "0.05")),
+    "targets, and pauses": (
+        ("--set", "control.output=position", "--set", "control.output_rate=50"),
+        ("--delay", "0.01", "--jitter", "0.005", "--drop", "0.05", "--pause", "0.04"),
+    ),
+    "g1": (("--robot", "g1"), ("--delay", "0.01", "--jitter", "0.005", "--drop", "0.05")),
+    "g1 by soft targets, and pauses": (
+        ("--robot", "g1", *SOFT),
+        ("--delay", "0.01", "--jitter", "0.005", "--drop", "0.05", "--pause", "0.04"),
+    ),
+}
+
+
+@pytest.mark.parametrize("name", LINES)
+def test_it_walks_over_a_line_that_is_late_and_loses_some(bridge, name, tmp_path):
+    keys, how = LINES[name]
+    plant = bridge.serve("walk", "--set", "gait.steps=4", *keys, *how)
+    _, verdict, said = bridge.result(bridge.walk())
+    assert bridge.end(plant)[0] == 0
+    assert (verdict["fell"], verdict["steps_taken"]) == (False, 4), said
+    assert 0.008 < verdict["command_age"]["median"] < 0.02
+    assert verdict["states_missed"] > 50
+    log = surefoot.read(tmp_path / verdict["log"])
+    gaps = np.diff(log["/truth"].time_ns) * 1e-9
+    assert gaps.min() < gaps.max() < 0.2
+    assert not log["/link"].field("damped").any()
+
+
+def test_a_line_that_is_broken_for_longer_damps_the_joints_and_both_say_so(bridge):
+    plant = bridge.serve("walk", "--delay", "0.15")
+    code, verdict, _ = bridge.result(bridge.walk())
+    assert (code, verdict["verdict"]) == (1, "fail")
+    assert any("the plant was damped at 0.1" in reason for reason in verdict["reasons"]), verdict["reasons"]
+    code, _, said = bridge.end(plant)
+    assert (code, "no command answers a state of the last 0.150 s" in said) == (1, True), said
+
+
+def test_a_plant_in_real_time_waits_for_nobody(bridge, tmp_path):
+    plant = bridge.serve("walk", "--set", "gait.steps=0", "--set", "duration=2", "--real-time", "--watchdog", "30")
+    _, verdict, said = bridge.result(bridge.walk())
+    code, _, told = bridge.end(plant)
+    assert (code, verdict["fell"]) == (0, False), told + said
+    assert verdict["commands_missed"] is not None
+    log = surefoot.read(tmp_path / verdict["log"])
+    assert log.metadata["end"]["kind"] == "completed"
+    assert log["/truth"].time_ns[-1] > 1.9e9

@@ -8,6 +8,7 @@ page between `<!-- value: name -->` and `<!-- end -->`.
 
 import csv
 import inspect
+import json
 import math
 import re
 from collections.abc import Callable, Iterator
@@ -43,6 +44,7 @@ from surefoot.scenarios.log.spec import ChannelSpec
 from surefoot.scenarios.log.writer import CHUNK_PERIOD_NS
 from surefoot.scenarios.record import channels
 from surefoot.scenarios.record.channels import Sizes
+from surefoot.scenarios.study.tour.page import markdown
 from surefoot.sim.measurement import Measurement
 from surefoot.sim.sensor_errors import PRESETS, SensorErrors
 from surefoot.wbc.model import RobotTerms
@@ -213,6 +215,11 @@ def engines_table() -> str:
     return "\n".join("| " + " | ".join(line) + " |" for line in [heads, ["---"] * len(heads), *lines])
 
 
+def benchmark_tables() -> str:
+    """What the tour of a public benchmark says, from the result that is kept beside the page."""
+    return markdown(json.loads((FOLDER / "benchmark-g1.json").read_text(encoding="utf-8")))
+
+
 CATALOGUE = (
     ("meets every criterion", "met"),
     ("goes to the end, misses a criterion", "missed"),
@@ -249,6 +256,7 @@ TABLES: dict[str, tuple[str, Callable[[], str]]] = {
     "standing": ("standing.md", standing_table),
     "field": ("standing.md", field_table),
     "engines": ("other-simulator.md", engines_table),
+    "benchmark-g1": ("benchmark-g1.md", benchmark_tables),
 }
 
 

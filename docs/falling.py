@@ -79,8 +79,8 @@ def _health(found: inspection.Inspection) -> Iterator[str]:
     """Rows of the warnings that have a time, and of the fall."""
     told = [(one.time, f"`{one.check}`", one.cause.partition(":")[0]) for one in found.health if one.time is not None]
     told.append((found.verdict.metrics["fall_time"], "the verdict", "it fell"))
-    yield from ("| from | check | finding |", "|---|---|---|")
-    yield from (f"| {time:.3f} s | {check} | {cause} |" for time, check, cause in sorted(told))
+    yield from ("| from [s] | check | finding |", "|---|---|---|")
+    yield from (f"| {time:.3f} | {check} | {cause} |" for time, check, cause in sorted(told))
 
 
 def _at(log: Log, topic: str, field: str, time: float) -> Any:

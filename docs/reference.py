@@ -8,6 +8,7 @@ page between `<!-- value: name -->` and `<!-- end -->`.
 
 import csv
 import inspect
+import json
 import math
 import re
 from collections.abc import Callable, Iterator
@@ -24,6 +25,7 @@ from surefoot.planner.laws.law import Motion, MotionProblem, StepContext
 from surefoot.planner.plan import WalkPlan
 from surefoot.planner.references.zmp_reference import ZmpReference
 from surefoot.planner.types import CentroidalState, FeetState
+from surefoot.scenarios import catalogue
 from surefoot.scenarios.file.schema import (
     CommandSettings,
     Fault,
@@ -42,6 +44,7 @@ from surefoot.scenarios.log.spec import ChannelSpec
 from surefoot.scenarios.log.writer import CHUNK_PERIOD_NS
 from surefoot.scenarios.record import channels
 from surefoot.scenarios.record.channels import Sizes
+from surefoot.scenarios.study.tour.page import markdown
 from surefoot.sim.measurement import Measurement
 from surefoot.sim.sensor_errors import PRESETS, SensorErrors
 from surefoot.wbc.model import RobotTerms
@@ -223,7 +226,39 @@ def engines_table() -> str:
     return "\n".join("| " + " | ".join(line) + " |" for line in [heads, ["---"] * len(heads), *lines])
 
 
+def benchmark_tables() -> str:
+    """What the tour of a public benchmark says, from the result that is kept beside the page."""
+    return markdown(json.loads((FOLDER / "benchmark-g1.json").read_text(encoding="utf-8")))
+
+
+CATALOGUE = (
+    ("meets every criterion", "met"),
+    ("goes to the end, misses a criterion", "missed"),
+    ("falls", "fell"),
+    ("refused before it runs", "refused"),
+)
+"""What may become of a scenario: in words, and as docs/catalogue.yaml has it."""
+
+
+def walked() -> Any:
+    """What the robots that come along make of the catalogue, as `docs/catalogue.py` has measured it."""
+    return yaml.safe_load((FOLDER / "catalogue.yaml").read_text(encoding="utf-8"))
+
+
+def catalogue_table() -> str:
+    """How many scenarios each robot walks, and the names of those that it does not."""
+    rows = [_walked_row(name, found) for name, found in walked().items()]
+    head = "| robot | " + " | ".join(words for words, _ in CATALOGUE) + " | not met |"
+    return "\n".join([head, "|---" * (len(CATALOGUE) + 2) + "|", *rows])
+
+
+def _walked_row(name: str, found: Any) -> str:
+    lacks = ", ".join(f"`{one}`" for kind in ("missed", "fell", "refused") for one in found[kind])
+    return f"| `{name}` | {' | '.join(str(len(found[kind])) for _, kind in CATALOGUE)} | {lacks} |"
+
+
 TABLES: dict[str, tuple[str, Callable[[], str]]] = {
+    "catalogue": ("robots.md", catalogue_table),
     "keys": ("scenarios.md", keys_table),
     "metrics": ("scenarios.md", metrics_table),
     "channels": ("log.md", channels_table),
@@ -233,6 +268,7 @@ TABLES: dict[str, tuple[str, Callable[[], str]]] = {
     "standing": ("standing.md", standing_table),
     "field": ("standing.md", field_table),
     "engines": ("other-simulator.md", engines_table),
+    "benchmark-g1": ("benchmark-g1.md", benchmark_tables),
 }
 
 
@@ -308,6 +344,7 @@ TABLES["handed"] = ("extending.md", handed_tables)
 
 VALUES: dict[str, str] = {
     "chunk": f"{CHUNK_PERIOD_NS / 1e6:g} ms",
+    "scenarios": str(len(catalogue.OWN)),
 }
 
 

@@ -232,20 +232,9 @@ class WholeBodyController:
         if solution is not None:
             iterations, violation, dual = solution.iterations, solution.violation, solution.dual_residual
         return _a_report(
-            answer.torque,
-            status,
-            iterations,
-            violation,
-            dual,
-            answer.acceleration,
-            answer.wrench,
-            contacts.active,
-            contacts.felt,
-            answer.task_error,
-            built - start,
-            solved - built,
-            self.terms.load,
-        )
+            answer.torque, status, iterations, violation, dual, answer.acceleration, answer.wrench, contacts.active,
+            contacts.felt, answer.task_error, built - start, solved - built, self.terms.load,
+        )  # fmt: skip
 
     def build(self, terms: RobotTerms, reference: WbcReference, contacts: ContactState) -> QpData:
         """The QP of a state, a reference and contacts, written over the last one.

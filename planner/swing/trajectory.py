@@ -85,14 +85,9 @@ class SwingTrajectory:
         """Whether the way bends round a corner."""
         return self.bend_time < math.inf
 
+    @lru_cache(maxsize=4)  # noqa: B019  several ask for the instant of a plan; few are kept
     def coefficients(self, time: float) -> Array:
-        """Polynomials in the local time from `time` on, valid until the next of the times above, shape (6, 6).
-
-        Several ask for the instant of a plan; the array is read-only.
-        """
-        return _coefficients(self, time)
-
-    def _coefficients(self, time: float) -> Array:
+        """Polynomials in the local time from `time` on, valid until the next of the times above, shape (6, 6)."""
         result = np.zeros((6, 6))
         if time >= self.touchdown_time - TOUCHING:
             result[0] = self.target
@@ -118,11 +113,7 @@ class SwingTrajectory:
         return np.asarray(self.coefficients(time)[:3] * _FACTORIAL)
 
     def positions(self, times: Array) -> Array:
-        """Position at instants from the start on, shape (n, 6).
-
-        Args:
-            times: shape (n,) [s].
-        """
+        """Position at instants from the start on, of shape (n,) [s]; shape (n, 6)."""
         gliding = np.clip(times - self.start_time, 0.0, self.glide_end - self.start_time)
         result = np.empty((len(times), 6))
         result[:, _GLIDING] = gliding[:, None] ** _EXPONENTS @ self.level
@@ -243,13 +234,6 @@ class SwingTrajectory:
         top = np.array([[apex], [0.0], [bend]])
         rise, fall = quintic(state, top, up), quintic(top, end, down)
         return replace(self, rise_start=time, rise=rise, fall_start=self.apex_time, fall=fall)
-
-
-@lru_cache(maxsize=4)
-def _coefficients(trajectory: SwingTrajectory, time: float) -> Array:
-    made = trajectory._coefficients(time)
-    made.flags.writeable = False
-    return made
 
 
 _FACTORIAL = np.array([[1.0], [1.0], [2.0]])

@@ -192,13 +192,18 @@ def read_scenario(
     return scenario
 
 
-def key_problems(written: Written, overrides: Overrides) -> list[Problem]:
+def key_problems(written: Written, overrides: Overrides, robots: Robots) -> list[Problem]:
     """List what is wrong with single keys of a scenario, whatever the others say.
+
+    Args:
+        written: the scenario.
+        overrides: over its keys.
+        robots: that it may name, each of which they look at once for all scenarios that they are given with.
 
     Raises:
         ScenarioError: it is no scenario, or an override leads nowhere.
     """
-    return _validated(_source(written, overrides, Robots()).value)[1]
+    return _validated(_source(written, overrides, robots).value)[1]
 
 
 def for_robot(
@@ -251,10 +256,8 @@ def _size(source: Source, overrides: Overrides, robots: Robots) -> None:
     of, walk = (_sound({**one, "robot": name}, robots) for one, name in zip((before, source.value), names, strict=True))
     if of is None or walk is None:
         return
-    from surefoot.scenarios.setup.stances import bent_alike
-
     with suppress(ParameterError):
-        source.value["gait"]["com_height"] = bent_alike(of, walk)
+        source.value["gait"]["com_height"] = robots.bent_alike(of, walk)
         source.written["gait", "com_height"] = f"{of.gait.com_height:g} in the file, for {names[0]}"
 
 

@@ -11,7 +11,7 @@ import numpy as np
 from surefoot.models.facts import RobotFacts, facts_of, similar_com_height, similar_step_width, similar_tread
 from surefoot.models.names import ROBOTS, is_file
 from surefoot.scenarios.errors import Key
-from surefoot.scenarios.file.schema import BeliefErrors, RobotSettings
+from surefoot.scenarios.file.schema import BeliefErrors, RobotSettings, Scenario
 from surefoot.scenarios.file.sensing import MotorSettings
 from surefoot.streams import Stream, generator
 
@@ -36,13 +36,34 @@ class Robots:
 
     def one_foot_share(self, name: str, options: RobotSettings) -> float:
         """Greatest share of a joint's torque that standing on one foot takes, infinite where it cannot stand so [-]."""
-        from surefoot.scenarios.setup.stance import body_of, on_one_foot
+        return self._shares(name, options)
 
-        return on_one_foot(body_of(describe(name, options))).share
+    @cached_property
+    def _shares(self) -> Callable[[str, RobotSettings], float]:
+        return lru_cache(maxsize=None)(_one_foot_share)
+
+    def bent_alike(self, before: Scenario, after: Scenario) -> float:
+        """See `surefoot.scenarios.setup.stances.bent_alike`; the points of a campaign ask for the same two walks."""
+        from surefoot.scenarios.setup.stances import bent_alike
+
+        key = before.model_dump_json(), after.model_dump_json()
+        if key not in self._heights:
+            self._heights[key] = bent_alike(before, after)
+        return self._heights[key]
+
+    @cached_property
+    def _heights(self) -> dict[tuple[str, str], float]:
+        return {}
 
 
 def _registered(name: str, options: RobotSettings) -> RobotFacts:
     return facts_of(describe(name, options), options.payload_mass)
+
+
+def _one_foot_share(name: str, options: RobotSettings) -> float:
+    from surefoot.scenarios.setup.stance import body_of, on_one_foot
+
+    return on_one_foot(body_of(describe(name, options))).share
 
 
 def is_known(name: object, robots: Robots) -> bool:

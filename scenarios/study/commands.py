@@ -48,6 +48,12 @@ def sweep(
         str | None, typer.Option(metavar="ADDRESS", help="Run on the cluster of this dask scheduler instead.")
     ] = None,
     out: Annotated[Path | None, typer.Option(help="Directory of the results; runs/NAME by default.")] = None,
+    against: Annotated[
+        str | None,
+        typer.Option(
+            metavar="TABLE", help="Hold the thresholds against this table of them; `baseline` for the stored one."
+        ),
+    ] = None,
     as_json: AsJson = False,
 ) -> None:
     """Run a campaign: a grid, samples or thresholds over any key.
@@ -55,6 +61,7 @@ def sweep(
     Begun again, it goes on where it stopped.
     """
     with importing():
+        from surefoot.scenarios.study.campaigns import against as holding
         from surefoot.scenarios.study.campaigns.campaign import read_campaign
         from surefoot.scenarios.study.campaigns.sweep import InterruptedRunsError, cores
         from surefoot.scenarios.study.campaigns.sweep import sweep as run_sweep
@@ -62,6 +69,7 @@ def sweep(
     if jobs is not None and cluster is not None:
         raise typer.BadParameter("--jobs is of this machine; give it without --cluster")
     campaign = read_campaign(spec, set_ or (), seeds)
+    before = None if against is None else holding.table(campaign, against)
     folder = out or Path("runs") / campaign.spec.name
     try:
         swept = run_sweep(campaign, folder, jobs or cores(), cluster)
@@ -73,7 +81,12 @@ def sweep(
         typer.echo(json.dumps(swept.to_json(), allow_nan=False))
     else:
         typer.echo("\n".join(swept.lines()))
-    raise typer.Exit(0 if swept.complete and swept.ran else MISSED)
+    good = swept.complete and swept.ran
+    if before is not None and good:
+        held = before.against(swept.outcomes)
+        typer.echo("\n".join(held.lines()), err=as_json)
+        good = not held.worse
+    raise typer.Exit(0 if good else MISSED)
 
 
 @dataclass(frozen=True, slots=True)

@@ -28,7 +28,7 @@ def reference():
 
 
 @pytest.mark.parametrize(
-    "name", ["keys", "metrics", "channels", "robot-keys", "handed", "standing", "field", "engines"]
+    "name", ["keys", "metrics", "channels", "robot-keys", "handed", "standing", "field", "engines", "benchmark-g1"]
 )
 def test_tables_are_up_to_date(reference, name):
     page, table = reference.TABLES[name]

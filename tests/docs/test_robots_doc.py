@@ -7,6 +7,8 @@ import pytest
 import yaml
 
 from surefoot.models import RobotOptions, describe
+from surefoot.scenarios import catalogue
+from surefoot.scenarios.apps.robots.taken import rows as rows_of
 from surefoot.similarity import Similarity
 
 ROOT = Path(__file__).parents[2]
@@ -68,3 +70,28 @@ def test_what_becomes_of_a_quantity_is_that_of_the_robots(name, column):
     size = Similarity.of(robot.leg_length, robot.mass)
     shown = {cells[0]: cells[column] for cells in SIZES.values() if cells[0].startswith("`")}
     assert shown == {f"`{unit}`": f"{size.factor(unit):.2f}" for unit in ("m", "s", "m/s", "N", "N·m", "N·s/kg")}
+
+
+WALKED = yaml.safe_load((ROOT / "docs" / "catalogue.yaml").read_text(encoding="utf-8"))
+
+
+@pytest.mark.unit
+def test_the_table_of_the_catalogue_has_every_robot_and_every_scenario():
+    assert set(WALKED) == {path.stem for path in SHIPPED}
+    for found in WALKED.values():
+        assert sorted(name for names in found.values() for name in names) == sorted(catalogue.OWN)
+
+
+@pytest.mark.physics
+@pytest.mark.parametrize("name", ["g1", "talos"])
+def test_what_a_robot_is_refused_is_what_the_table_says(name, tmp_path):
+    found = rows_of(name, tuple(catalogue.OWN), False, 1, tmp_path, lambda *_: None)
+    refused = {row.scenario for row in found if row.outcome == "refused"}
+    assert refused == set(WALKED[name]["refused"]), "run python docs/catalogue.py, then python docs/reference.py"
+
+
+@pytest.mark.long
+@pytest.mark.parametrize("name", [path.stem for path in SHIPPED])
+def test_what_becomes_of_every_scenario_is_what_the_table_says(name, tmp_path):
+    found = rows_of(name, tuple(catalogue.OWN), True, 2, tmp_path, lambda *_: None)
+    assert {row.scenario for row in found if row.outcome == "walks"} == set(WALKED[name]["met"])

@@ -228,21 +228,23 @@ def _faults(campaign: Campaign) -> Iterator[Problem]:
         return
     base = next(campaign.combinations())[1]
     plain = base | _ends(campaign.spec, 0)
-    yield from _of_point(campaign, plain, {key: ("set", key) for key in campaign.spec.set} | _searched(campaign.spec))
+    yield from _of_point(
+        campaign, robots, plain, {key: ("set", key) for key in campaign.spec.set} | _searched(campaign.spec)
+    )
     for name, axis in campaign.axes.items():
         named = isinstance(campaign.spec.grid[name], dict)
         for index, one in enumerate(axis):
             at: Key = ("grid", name, str(one.label)) if named else ("grid", name, index)
             places = {key: (*at, key) if named else at for key in one.keys}
             alone = replace(campaign, axes={**campaign.axes, name: (one,)})
-            yield from _of_point(campaign, next(alone.combinations())[1] | _ends(campaign.spec, 0), places)
-    yield from _of_point(campaign, base | _ends(campaign.spec, -1), _searched(campaign.spec))
+            yield from _of_point(campaign, robots, next(alone.combinations())[1] | _ends(campaign.spec, 0), places)
+    yield from _of_point(campaign, robots, base | _ends(campaign.spec, -1), _searched(campaign.spec))
     for key, values in campaign.spec.first.items():
         for index, value in enumerate(values[1:], start=1):
-            yield from _of_point(campaign, plain | {key: value}, {key: ("first", key, index)})
+            yield from _of_point(campaign, robots, plain | {key: value}, {key: ("first", key, index)})
     for key, draw in campaign.spec.sample.items():
         for index, value in enumerate((draw.choice or ())[1:], start=1):
-            yield from _of_point(campaign, plain | {key: value}, {key: ("sample", key, "choice", index)})
+            yield from _of_point(campaign, robots, plain | {key: value}, {key: ("sample", key, "choice", index)})
 
 
 def _ends(spec: Spec, which: int) -> dict[str, Any]:
@@ -264,7 +266,9 @@ def _searched(spec: Spec) -> dict[str, Key]:
     return places
 
 
-def _of_point(campaign: Campaign, keys: Mapping[str, Any], places: Mapping[str, Key]) -> Iterator[Problem]:
+def _of_point(
+    campaign: Campaign, robots: Robots, keys: Mapping[str, Any], places: Mapping[str, Key]
+) -> Iterator[Problem]:
     """Faults of a run's keys that stand at one of these places."""
     try:
         campaign.bisect(keys)
@@ -276,7 +280,7 @@ def _of_point(campaign: Campaign, keys: Mapping[str, Any], places: Mapping[str, 
     base = campaign.bases[campaign.base(keys)]
     keys.pop(SCENARIO, None)
     try:
-        problems = key_problems(base.written, keys)
+        problems = key_problems(base.written, keys, robots)
     except ScenarioError as error:
         for message in error.problems:
             name, _, rest = message.removeprefix("--set ").partition(": ")

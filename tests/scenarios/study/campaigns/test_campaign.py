@@ -7,6 +7,7 @@ import pytest
 
 from surefoot.scenarios.errors import ScenarioError
 from surefoot.scenarios.file.schema import RobotSettings
+from surefoot.scenarios.setup import robot
 from surefoot.scenarios.setup.load import read_scenario
 from surefoot.scenarios.setup.robot import Robots
 from surefoot.scenarios.study.campaigns.campaign import read_campaign
@@ -243,3 +244,18 @@ def test_a_campaign_sized_for_nobody_is_refused(refused):
     assert refused(SIZED.replace("humanoid100", "humanoid10"))[0].startswith(
         "c.yaml:3:12: unknown robot 'humanoid10' in sized_for; did you mean 'humanoid100'"
     )
+
+
+def test_another_robot_is_looked_at_once_for_all_points(campaign, monkeypatch):
+    """Its meshes take a third of a second, and where its knees bend as the other one's another."""
+    looked = []
+    for name in ("describe", "facts_of"):
+        plain = getattr(robot, name)
+        monkeypatch.setattr(robot, name, lambda *given, plain=plain, name=name: looked.append(name) or plain(*given))
+    text = "scenario: walk\nset: {robot: g1, sized_for: humanoid100}\ngrid: {gait.steps: [%s]}\n"
+    counts = []
+    for steps in ("4", "4, 5, 6, 7"):
+        looked.clear()
+        campaign(text % steps)
+        counts.append(len(looked))
+    assert counts[0] == counts[1] > 0

@@ -163,6 +163,17 @@ STANDING: tuple[tuple[str, str, str], ...] = (
 PUSHES = ("forward", "backward", "to the swing foot", "over the stance foot")
 
 
+def sensed_table() -> str:
+    """What `benchmarks.sensed` measured of the estimator: errors, and their squares over those that it says."""
+    with (FOLDER / "sensors.csv").open() as file:
+        found = list(csv.DictReader(file))
+    rows = [
+        f"| `{row['preset']}` | {row['quantity']} | {row['error_rms']} {row['unit']} | {row['nees']} |" for row in found
+    ]
+    head = f"| preset | quantity | error, RMS of a number over {found[0]['seeds']} seeds | NEES |"
+    return "\n".join([head, "|---|---|---|---|", *rows])
+
+
 def standing_table() -> str:
     """What the baselines measured, and the pushes that the README tells."""
     rows = [
@@ -253,6 +264,7 @@ TABLES: dict[str, tuple[str, Callable[[], str]]] = {
     "channels": ("log.md", channels_table),
     "robot-keys": ("robot-files.md", robot_keys_table),
     "sensors": ("sensors.md", sensors_table),
+    "sensed": ("sensors.md", sensed_table),
     "standing": ("standing.md", standing_table),
     "field": ("standing.md", field_table),
     "engines": ("other-simulator.md", engines_table),

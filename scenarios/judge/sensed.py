@@ -4,6 +4,8 @@ Where a robot is in the world and where it looks no sensor tells. So errors are 
 the true heading, as the log has them.
 """
 
+import math
+
 import numpy as np
 
 from surefoot.planner.types import GRAVITY
@@ -13,6 +15,9 @@ from surefoot.scenarios.judge.metric import DEG, MM, OF_THE_TIME, SHARE, metric
 
 SETTLED = 0.5
 """Time after which an estimate is judged: what it starts with is told by the encoders alone [s]."""
+
+DEG_PER_MINUTE = (60.0 * math.degrees(1.0), "deg/min")
+"""How a slow turn is shown."""
 
 _TOPIC = "/estimation"
 _PARTS = ("com", "com_velocity", "tilt", "sole_height")
@@ -56,6 +61,17 @@ LEAST_WAY = 0.5
 def estimation_yaw(run: RunView) -> float | None:
     """By how much the estimated heading of the base is off in the end [rad]."""
     return abs(float(run.field(_TOPIC, "yaw_error")[-1]))
+
+
+@metric(
+    unit="rad/s", shown=DEG_PER_MINUTE, reads={_TOPIC: ("yaw_error",)}, body=True, least=0.0, tolerance=(2e-5, SHARE)
+)
+def estimation_yaw_rate(run: RunView) -> float | None:
+    """How fast the estimated heading of the base goes off, mean over the run after the estimate has settled [rad/s]."""
+    off, time = _settled(run, "yaw_error"), run.time[run.time >= SETTLED * run.constants.similarity.time]
+    if len(time) < 2:
+        return None
+    return abs(float(np.unwrap(off)[-1] - off[0])) / float(time[-1] - time[0])
 
 
 _NEES_READS = {_TOPIC: tuple(f"{name}_{kind}" for name in _PARTS for kind in ("error", "deviation"))}

@@ -104,6 +104,8 @@ class Planner(Protocol):
 _put = object.__setattr__
 
 _OMEGA = 4
+"""Place of the pendulum's rate in a point of the kernel, which is read at every tick [-]."""
+
 _IN_POINT: Mapping[str, slice | int] = {
     "com": slice(7, 10),
     "com_velocity": slice(16, 19),

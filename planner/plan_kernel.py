@@ -8,7 +8,7 @@ from surefoot.native.library import Library
 from surefoot.planner.types import Array
 
 _SIZES = (3, 3, 3, 2, 2, 1, 1, 1)
-"""Of what is given at both ends of an interval; see `PlanKernel.enter`."""
+"""Numbers of each part that is given at both ends of an interval; see `PlanKernel.enter` [-]."""
 
 COLUMNS, POINT = 34, 40
 """Of the table of an interval, and numbers of a point: these columns, pendulum ZMP, ZMP and DCM [-]."""

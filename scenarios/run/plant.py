@@ -100,6 +100,14 @@ def push_plant(plant: Plant, push: Push) -> None:
     given(push)
 
 
+def says_tick(plant: Plant) -> bool:
+    """Whether a plant says by an attribute ``control_tick`` at which control tick it measured, as a late one does."""
+    try:
+        return hasattr(plant, "control_tick")
+    except PartError:  # a guard's, in place of the missing attribute's own
+        return False
+
+
 def _measured(joints: int) -> Callable[..., Measurement]:
     """What is taken for a measurement of a plant of so many joints."""
 

@@ -24,6 +24,8 @@ NOTICED = {
     "geometry._STRAIGHT": "tests/planner/test_polygon.py",
     "laws.qp._TOLERANCE": "tests/native/test_bounded_qp.py",
     "model.jerk.BLOCK_STARTS": "tests/planner/laws/test_tvmpc.py",
+    "plan._OMEGA": "tests/planner/test_sampling.py",
+    "plan_kernel._SIZES": "tests/planner/test_sampling.py",
     "plan_kernel.COLUMNS": "tests/planner/test_sampling.py",
     "plan_kernel.POINT": "tests/planner/test_sampling.py",
     "recovery.step_adjustment._NO_GAIN": "tests/planner/recovery/test_step_adjustment.py",

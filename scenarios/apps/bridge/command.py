@@ -124,7 +124,7 @@ class WalkOptions:
 @app.command()
 @with_options(WalkOptions)
 def walk(told: WalkOptions) -> None:
-    """Walk a robot that another process serves, or in the shadow of a log; log it and judge it."""
+    """Walk a robot that another process serves, or a log's shadow."""
     if (told.on is None) == (told.shadow is None):
         raise typer.BadParameter("give one of --on ADDRESS and --shadow LOG")
     with importing():

@@ -19,7 +19,7 @@ REFUSED = {
     "{steps_taken: {equals: steps_taken}}": "criteria.steps_taken compares the metric with itself",
     "{foot_slip_max: footstep_error_max}": "criteria.foot_slip_max cannot be compared with 'footstep_error_max'",
     "{steps_taken: steps_plannd}": "cannot be compared with 'steps_plannd'; did you mean 'steps_planned'?",
-    "{steps_taken: duration}": "criteria.steps_taken cannot be compared with 'duration'; valid are deadlines_missed",
+    "{steps_taken: duration}": "cannot be compared with 'duration'; valid are commands_limited, commands_missed",
     "{planner_time.p99: wbc_time.p99}": "cannot be compared with 'wbc_time.p99'; give a bound",
     "{fell: steps_taken}": "cannot be compared with 'steps_taken'; write 'fell: false' or 'fell: true'",
     "{fell: 'no'}": "criteria.fell cannot be compared with 'no'; write 'fell: false' or 'fell: true'",

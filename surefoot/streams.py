@@ -1,10 +1,11 @@
 """Random numbers of a run, by what they are for: all follow from one seed, and none moves when another is drawn."""
 
-from enum import IntEnum
+from enum import IntEnum, unique
 
 import numpy as np
 
 
+@unique
 class Stream(IntEnum):
     """What has random numbers of its own, whatever else is drawn with the same seed.
 
@@ -25,7 +26,7 @@ class Stream(IntEnum):
     MOTOR = 12
     DRIVEN = 13
     LINE = 14
-    TOUR = 14
+    TOUR = 15
 
 
 def generator(seed: int, stream: Stream | None = None, part: int | None = None) -> np.random.Generator:

@@ -111,6 +111,11 @@ class Guard:
         if self.who and error is not None and not self._lets(error):
             raise self._blame(error) from error
 
+    def lacks(self, error: AttributeError) -> "LackingError":
+        """The error of an attribute that is not there, named as all that the part raises."""
+        blamed = self._blame(error)
+        return LackingError(blamed.what, blamed.right)
+
     def _lets(self, error: BaseException) -> bool:
         return isinstance(error, (KeyboardInterrupt, PartError, *self.through))
 
@@ -121,6 +126,10 @@ class Guard:
 
 OWN_GUARD = Guard("")
 """Around parts of Surefoot: none."""
+
+
+class LackingError(PartError, AttributeError):
+    """A part has not got what was asked of it, which `hasattr` understands."""
 
 
 class Guarded:
@@ -140,7 +149,10 @@ class Guarded:
         if name.startswith("_"):
             raise AttributeError(name)
         with self._guard:
-            found = getattr(self._part, name)
+            try:
+                found = getattr(self._part, name)
+            except AttributeError as error:
+                raise self._guard.lacks(error) from error
         return self._guard.function(found, self._take.get(name, _as_given)) if callable(found) else found
 
 

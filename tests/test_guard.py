@@ -164,3 +164,10 @@ def test_what_cannot_be_shown_is_its_type():
 def test_a_part_of_the_running_program_is_called_by_its_name():
     assert Guard.of_program("task", Part).who == "task 'Part' of this program"
     assert Guard.of_program("task", Part()).who == "task 'Part' of this program"
+
+
+def test_who_asks_whether_a_part_has_something_is_told():
+    part = Guarded(object(), GUARD)
+    assert not hasattr(part, "control_tick")
+    with pytest.raises(PartError, match=f"{WHO}: AttributeError: 'object' object has no attribute 'control_tick'"):
+        _ = part.control_tick

@@ -27,7 +27,7 @@ from surefoot.scenarios.run.assembly import Parts
 from surefoot.scenarios.run.controller import Controller
 from surefoot.scenarios.run.driven import Somebody
 from surefoot.scenarios.run.planning import FaultSchedule, Planning, RunFault
-from surefoot.scenarios.run.plant import Plant, PlantMaker, Sensors, completed, made, push_plant, says_tick
+from surefoot.scenarios.run.plant import Plant, PlantMaker, Sensors, completed, made, push_plant
 from surefoot.scenarios.run.skeleton import ClosedLoop
 from surefoot.scenarios.run.tick import Look, Spent
 from surefoot.scenarios.setup.hardware import refuse_unread
@@ -141,7 +141,7 @@ class WholeBody:
     ) -> None:
         self.mind, self.plant, self._sensors = mind, plant, sensors
         self._foreign = not isinstance(plant, World)
-        self._says_tick = self._foreign and says_tick(plant)
+        self._says_tick = self._foreign and hasattr(plant, "control_tick")
         self._recorder, self._view, self._sensed = recorder, view, sensed
         walk = mind.walk
         # The controller's terms are those of the true robot in its true state where nothing is believed or estimated.

@@ -7,7 +7,7 @@ from typing import Any, Protocol, cast
 
 import numpy as np
 
-from surefoot.errors import ParameterError, PartError
+from surefoot.errors import ParameterError
 from surefoot.forces import Push
 from surefoot.guard import Guard, Guarded, taken_for
 from surefoot.joints import JointCommand
@@ -95,17 +95,9 @@ def push_plant(plant: Plant, push: Push) -> None:
     """
     try:
         given = plant.push  # type: ignore[attr-defined]
-    except (AttributeError, PartError):
+    except AttributeError:
         raise ParameterError(("push",), "a push of a plant without a method push", "push it yourself") from None
     given(push)
-
-
-def says_tick(plant: Plant) -> bool:
-    """Whether a plant says by an attribute ``control_tick`` at which control tick it measured, as a late one does."""
-    try:
-        return hasattr(plant, "control_tick")
-    except PartError:  # a guard's, in place of the missing attribute's own
-        return False
 
 
 def _measured(joints: int) -> Callable[..., Measurement]:

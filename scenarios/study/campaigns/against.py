@@ -65,8 +65,13 @@ class Against:
 
     @property
     def worse(self) -> bool:
-        """Whether the mean has fallen by more than a twentieth, or the least by more than what the search tells."""
+        """Whether the mean has fallen by more than a twentieth, or the least by more than what the search tells.
+
+        Worse is, too, what was above the whole range and is found within it or below: no mean has both.
+        """
         mean, least = self.means, self.worst
+        if any(math.isinf(one.before) and math.isfinite(one.now) for one in self.moved):
+            return True
         return mean[1] < (1.0 - FALLEN) * mean[0] or least[1] < least[0] - 1.5 * self.tolerance
 
     def lines(self) -> Iterator[str]:

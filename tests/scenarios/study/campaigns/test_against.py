@@ -69,6 +69,12 @@ def test_ends_of_a_range_are_read_back(searched, tmp_path):
     assert list(held.lines()) == ["mean 0.150 -> 0.150, least 0.000 -> 0.000"] and not held.worse
 
 
+def test_what_was_above_its_range_and_is_within_is_worse(searched, tmp_path):
+    path = written(tmp_path, "forward,SS 0.5,,above,2", "left,SS 0.5,0.25,inside,6", "backward,SS 0.5,0.3,inside,6")
+    assert Table(path).against(outcomes(searched, 0.4, 0.25, 0.3)).worse
+    assert not Table(path).against(outcomes(searched, "above", 0.25, 0.3)).worse
+
+
 def test_thresholds_that_the_table_lacks_are_counted(searched, tmp_path):
     path = written(tmp_path, "left,SS 0.5,0.25,inside,6")
     held = Table(path).against(outcomes(searched, 0.4, 0.25, 0.3))

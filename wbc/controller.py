@@ -50,7 +50,7 @@ FADE, FADE_DAMPING = 0.05, 0.02
 
 _a_report = maker(WbcReport)
 
-_SOLVED = SolveStatus.SOLVED  # a member is looked up by its name at each access
+_IN_TURN = (SolveStatus.SOLVED, SolveStatus.SECOND_SOLVER)  # members are looked up by name at each access
 
 
 @dataclass(frozen=True, slots=True)
@@ -264,13 +264,10 @@ class WholeBodyController:
     def solve(self, qp: QpData, fail_solvers: bool = False) -> tuple[SolveStatus, QpSolution | None]:
         """A solution by the first solver whose answer holds, else by the equalities alone; None if there is none."""
         if not fail_solvers:
-            first, second = self._solvers
-            solution = first.solve(qp)
-            if solution is not None and solution.violation <= ACCEPTED_VIOLATION:
-                return _SOLVED, solution
-            solution = second.solve(qp)
-            if solution is not None and solution.violation <= ACCEPTED_VIOLATION:
-                return SolveStatus.SECOND_SOLVER, solution
+            for status, solver in zip(_IN_TURN, self._solvers, strict=True):
+                solution = solver.solve(qp)
+                if solution is not None and solution.violation <= ACCEPTED_VIOLATION:
+                    return status, solution
         solution = equalities_only(qp)
         return (SolveStatus.HELD if solution is None else SolveStatus.EQUALITIES_ONLY), solution
 

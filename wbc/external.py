@@ -239,9 +239,9 @@ class LoadObserver:
 
     def _tell(self) -> None:
         """The estimate as a load."""
-        self.load = NO_LOAD
-        if any(self._estimate.tolist()):
-            x, y, *moment, more = self._estimate.tolist()
+        self.load, estimate = NO_LOAD, self._estimate.tolist()
+        if any(estimate):
+            x, y, *moment, more = estimate
             self.load = ExternalLoad(np.array([x, y, 0.0]), np.array(moment), 1.0 + more)
 
 

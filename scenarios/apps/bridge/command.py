@@ -2,6 +2,7 @@
 
 import json
 import math
+from functools import partial
 from pathlib import Path
 from typing import TYPE_CHECKING, Annotated
 
@@ -125,7 +126,11 @@ class WalkOptions:
 @with_options(WalkOptions)
 def walk(told: WalkOptions) -> None:
     """Walk a robot that another process serves, or a log's shadow."""
-    if (told.on is None) == (told.shadow is None):
+    if told.on is not None and told.shadow is None:
+        walked = partial(_on, told.on)
+    elif told.shadow is not None and told.on is None:
+        walked = partial(_in_shadow, told.shadow)
+    else:
         raise typer.BadParameter("give one of --on ADDRESS and --shadow LOG")
     with importing():
         from surefoot.scenarios.setup.load import locate
@@ -134,7 +139,7 @@ def walk(told: WalkOptions) -> None:
     asked = overrides(told.set_, told.seed)
     reference = told.scenario or (None if told.shadow is None else str(told.shadow))
     try:
-        name, result = _on(told.on, told, asked) if told.shadow is None else _in_shadow(told.shadow, told, asked)
+        name, result = walked(told, asked)
     except SetupError as refusal:
         if reference is None:
             raise ScenarioError([str(refusal)]) from None
@@ -149,7 +154,7 @@ def walk(told: WalkOptions) -> None:
     raise typer.Exit(0 if result.verdict.passed else MISSED)
 
 
-def _on(address: str | None, told: WalkOptions, asked: list[str]) -> "tuple[str, Result]":
+def _on(address: str, told: WalkOptions, asked: list[str]) -> "tuple[str, Result]":
     """Walk on the plant at an address: the user's scenario, else that of the plant."""
     from surefoot.scenarios.apps.bridge.remote import Remote
     from surefoot.scenarios.apps.bridge.walk import walk_on
@@ -158,7 +163,7 @@ def _on(address: str | None, told: WalkOptions, asked: list[str]) -> "tuple[str,
 
     loaded = None if told.scenario is None else load(told.scenario, asked)
     hello = {} if loaded is None else {"robot": loaded.robot, "rate": loaded.rates.control}
-    remote = Remote(address or "", hello)
+    remote = Remote(address, hello)
     ended = "refused"
     try:
         said = remote.welcome

@@ -3,8 +3,6 @@
 import math
 from dataclasses import replace
 
-import numpy as np
-
 from surefoot.errors import ParameterError
 from surefoot.forces import Push
 from surefoot.joints import JointCommand
@@ -16,7 +14,7 @@ from surefoot.scenarios.file.registries import DEFAULTS
 from surefoot.scenarios.setup.walk import Walk
 from surefoot.sim.drives import IDEAL, Drives
 from surefoot.sim.errors import SimulationDiverged
-from surefoot.sim.measurement import Array, Measurement
+from surefoot.sim.measurement import Measurement
 from surefoot.sim.readings import SensorSuite
 from surefoot.sim.world import World
 from surefoot.values import dataclass
@@ -162,11 +160,6 @@ class Host:
         if self.time < self._care.soft_start:
             return blended(self._held, command, self.time / self._care.soft_start)
         return command
-
-    @property
-    def joint_velocity(self) -> Array:
-        """Speeds of the joints now, shape (nj,) [rad/s]."""
-        return np.asarray(self._world.data.qvel[6:])
 
 
 def _refuse_undivided(walk: Walk) -> None:

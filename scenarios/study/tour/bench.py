@@ -2,6 +2,7 @@
 
 import hashlib
 import json
+import math
 from collections.abc import Callable, Iterator, Sequence
 from dataclasses import asdict
 from functools import lru_cache
@@ -187,7 +188,7 @@ def _line(row: dict[str, Any]) -> Iterator[str]:
     interval = f"{survival['value']:.1f} ({survival['low']:.1f} to {survival['high']:.1f})"
     yield f"{interval:<19} {100 * done['kept'] / done['count']:.0f} %".ljust(32)
     yield _number(row["position_error"]["value"], 100.0)
-    yield _number(row["heading_error"]["value"], 57.29578)
+    yield _number(row["heading_error"]["value"], math.degrees(1.0))
     yield _number(row["energy"]["value"], 1.0)
 
 

@@ -2,10 +2,12 @@
 
 import math
 from collections.abc import Callable, Sequence
+from dataclasses import asdict
 from typing import Any
 
 import numpy as np
 
+from surefoot.scenarios.judge.metrics import plain
 from surefoot.scenarios.study.campaigns.table import wilson
 from surefoot.scenarios.study.tour.ride import PunchTaken, TourResult
 from surefoot.scenarios.study.tour.rules import DURATION, SLOT
@@ -190,14 +192,5 @@ def cause(result: TourResult) -> str:
 
 def to_json(result: RowResult) -> dict[str, Any]:
     """For `json`, what is nothing as None."""
-    from dataclasses import asdict
-
-    def plain(value: Any) -> Any:
-        if isinstance(value, dict):
-            return {name: plain(one) for name, one in value.items()}
-        if isinstance(value, list | tuple):
-            return [plain(one) for one in value]
-        return None if isinstance(value, float) and not math.isfinite(value) else value
-
     told: dict[str, Any] = plain(asdict(result))
     return told

@@ -1,7 +1,7 @@
 """One tour: the harness around a controller, and what is written down of it."""
 
 import math
-from typing import Any
+from dataclasses import replace
 
 import numpy as np
 from numpy.typing import NDArray
@@ -12,7 +12,7 @@ from surefoot.planner.types import PhaseKind
 from surefoot.scenarios.run.planning import RunFault
 from surefoot.scenarios.study.tour.robot import ARM_JOINTS, TourRobot, tour_robot
 from surefoot.scenarios.study.tour.rows import COMMAND_RATE, ROWS, Row, command_to
-from surefoot.scenarios.study.tour.rules import DURATION, LOWEST, SLOT, ArmWalk, Punch, Tour, drawn
+from surefoot.scenarios.study.tour.rules import DURATION, LOWEST, SLOT, ArmWalk, Punch, drawn
 from surefoot.scenarios.study.tour.world import RATE, TourWorld
 from surefoot.values import dataclass
 
@@ -103,7 +103,7 @@ class Ride:
         self.world.reset(q)
         self.controller.reset(q)
         self._anchor = (*self.world.pelvis[:2].tolist(), self.world.heading)
-        self._punches: list[dict[str, Any]] = []
+        self._punches: list[PunchTaken] = []
         self._errors: list[tuple[float, float]] = []
         self._energy: list[float] = []
         self._fault, self._unsolved, self._warned = "", 0, math.nan
@@ -117,8 +117,8 @@ class Ride:
         time, fell = self._tick / self.row.rate, bool(self.world.pelvis[2] < LOWEST)
         if not fell:
             self._close_slots(time)
-        last = len(self._punches) - 1
-        taken = (PunchTaken(**punch, survived=not (fell and k == last)) for k, punch in enumerate(self._punches))
+        if fell and self._punches:
+            self._punches[-1] = replace(self._punches[-1], survived=False)
         return TourResult(
             row=self.row.name,
             seed=self.tour.seed,
@@ -127,7 +127,7 @@ class Ride:
             position_errors=tuple(position for position, _ in self._errors),
             heading_errors=tuple(heading for _, heading in self._errors),
             energy=tuple(self._energy),
-            punches=tuple(taken),
+            punches=tuple(self._punches),
             fault=self._fault,
             unsolved=self._unsolved,
             warned=time - self._warned if fell and math.isfinite(self._warned) else None,
@@ -142,7 +142,7 @@ class Ride:
         for k in range(RATE // rate):
             punch = self.tour.punch(time + k / RATE)
             if punch is not None and len(self._punches) <= self.tour.slot(time):
-                self._punches.append(self._described(punch, time))
+                self._punches.append(self._described(punch))
             self.world.advance(command, 1.0 / RATE, punch)
         self._tick += 1
 
@@ -190,23 +190,24 @@ class Ride:
             self._errors.append((math.hypot(x, y), abs(turn)))
             self._energy.append(float(self.world.energy.sum()) - sum(self._energy))
 
-    def _described(self, punch: Punch, time: float) -> dict[str, Any]:
-        """What is so as a punch begins."""
+    def _described(self, punch: Punch) -> PunchTaken:
+        """What is so as a punch begins, which counts as survived until the robot falls."""
         heading, phase = self.world.heading, self.controller.planning.plan.phase
         cos, sin = math.cos(heading), math.sin(heading)
         x, y, z = self.world.direction(punch).tolist()
         impulse, single = punch.impulse / self._mass, phase.kind is PhaseKind.SINGLE
         fraction = phase.elapsed / phase.duration if math.isfinite(phase.duration) else 0.0
-        return {
-            "time": punch.time,
-            "joint": self._names[punch.joint],
-            "impulse": impulse,
-            "level": impulse * math.hypot(x, y),
-            "direction": (cos * x + sin * y, cos * y - sin * x, z),
-            "phase": "single" if single else "double",
-            "stance": phase.stance.name.lower() if single and phase.stance is not None else "none",
-            "fraction": min(max(fraction, 0.0), 1.0),
-        }
+        return PunchTaken(
+            time=punch.time,
+            joint=self._names[punch.joint],
+            impulse=impulse,
+            level=impulse * math.hypot(x, y),
+            direction=(cos * x + sin * y, cos * y - sin * x, z),
+            phase="single" if single else "double",
+            stance=phase.stance.name.lower() if single and phase.stance is not None else "none",
+            fraction=min(max(fraction, 0.0), 1.0),
+            survived=True,
+        )
 
 
 class _Arms:
@@ -247,6 +248,3 @@ def run_tour(row: str, seed: int, duration: float = DURATION) -> TourResult:
         duration: after which it is over, shorter than a whole one in tests [s].
     """
     return Ride(ROWS[row], seed).run(duration)
-
-
-__all__ = ["PunchTaken", "Ride", "Tour", "TourResult", "run_tour"]

@@ -2,8 +2,8 @@
 
     python -m benchmarks.sensed --seeds 20 --out docs/sensors.csv
 
-Each run is a walk of three steps. Each error is divided by the deviation that the estimator says. The mean of the squares
-over seeds and instants is the NEES per number: 1 of an estimator that knows how wrong it is.
+Each run is a walk of three steps. Each error is divided by the deviation that the estimator says. The mean of the
+squares over seeds and instants is the NEES per number: 1 of an estimator that knows how wrong it is.
 """
 
 import argparse

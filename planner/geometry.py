@@ -162,16 +162,21 @@ def points_seen_from(poses: Array, points: Array) -> Array:
 
 def signed_distance(polygon: Array, point: Array) -> float:
     """Distance to the nearest edge's line, positive inside [m]; outside it is a lower bound of the true distance."""
-    edge = np.roll(polygon, -1, axis=0) - polygon
-    offset = point - polygon
-    return float(np.min((edge[:, 0] * offset[:, 1] - edge[:, 1] * offset[:, 0]) / np.hypot(edge[:, 0], edge[:, 1])))
+    edge, offset = _edges(polygon), point - polygon
+    distances = (edge[:, 0] * offset[:, 1] - edge[:, 1] * offset[:, 0]) / np.hypot(edge[:, 0], edge[:, 1])
+    return float(np.minimum.reduce(distances))
+
+
+def _edges(polygon: Array) -> Array:
+    """From each corner to the next, shape (n, 2); `numpy.roll` takes ten times as long."""
+    return np.concatenate((polygon[1:], polygon[:1])) - polygon
 
 
 def nearest_point(polygon: Array, point: Array) -> Array:
     """The point of a convex anticlockwise polygon nearest to another one, shape (2,) [m]."""
     if signed_distance(polygon, point) >= 0.0:
         return point
-    edge = np.roll(polygon, -1, axis=0) - polygon
+    edge = _edges(polygon)
     along = np.einsum("ij,ij->i", point - polygon, edge) / np.einsum("ij,ij->i", edge, edge)
     candidates = polygon + np.clip(along, 0.0, 1.0)[:, None] * edge
     return np.asarray(candidates[np.argmin(np.sum((candidates - point) ** 2, axis=1))])

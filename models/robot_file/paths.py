@@ -3,6 +3,7 @@
 import os
 import re
 import sys
+from collections.abc import Iterator
 from importlib.util import find_spec
 from pathlib import Path
 
@@ -45,27 +46,28 @@ def resolve(reference: str, beside: Path, key: str = "model") -> Path:
     if not _NAME.fullmatch(name) or rest.partition("/")[0] == os.pardir:
         what = f"{key} {reference} {'leads out of its' if _NAME.fullmatch(name) else 'names no'} package"
         raise RobotError((key,), what, f"write {SCHEME}NAME/PATH, with a path inside of the package")
-    roots = [root for root in _roots(name, beside) if root.is_dir()]
-    for root in roots:
+    first = None
+    for root in _roots(name, beside):
         if is_file(root / rest):
             return root / rest
-    if roots:
-        return roots[0] / rest
+        if first is None and root.is_dir():
+            first = root
+    if first is not None:
+        return first / rest
     what = f"{key} {reference}: package '{name}' is not installed"
     if name in _EXTRA:
         raise RobotError((key,), what, "pip install 'surefoot[robots]'")
     raise RobotError((key,), what, f"install it, or name in ROS_PACKAGE_PATH the folder that holds '{name}'")
 
 
-def _roots(name: str, beside: Path) -> list[Path]:
+def _roots(name: str, beside: Path) -> Iterator[Path]:
     """Folders that may be the package of that name, the nearest first."""
-    above = [folder / name if folder.name != name else folder for folder in (beside, *beside.parents)]
-    ros = [Path(place) / name for place in os.environ.get("ROS_PACKAGE_PATH", "").split(os.pathsep) if place]
-    ros += [
-        Path(place) for place in os.environ.get("ROS_PACKAGE_PATH", "").split(os.pathsep) if Path(place).name == name
-    ]
-    shares = [Path(place) / share / name for place in sys.path for share in _SHARES]
-    return [*above, *ros, *shares, *_module(name)]
+    yield from (folder / name if folder.name != name else folder for folder in (beside, *beside.parents))
+    ros = [Path(place) for place in os.environ.get("ROS_PACKAGE_PATH", "").split(os.pathsep) if place]
+    yield from (place / name for place in ros)
+    yield from (place for place in ros if place.name == name)
+    yield from (Path(place) / share / name for place in sys.path for share in _SHARES)
+    yield from _module(name)
 
 
 def _module(name: str) -> list[Path]:

@@ -11,12 +11,17 @@ import numpy as np
 from surefoot.models.facts import RobotFacts, facts_of, similar_com_height, similar_step_width, similar_tread
 from surefoot.models.names import ROBOTS, is_file
 from surefoot.scenarios.errors import Key
-from surefoot.scenarios.file.schema import BeliefErrors, RobotSettings, Scenario
+from surefoot.scenarios.file.schema import BeliefErrors, RecoverySettings, RobotSettings, Scenario
 from surefoot.scenarios.file.sensing import MotorSettings
 from surefoot.streams import Stream, generator
 
 if TYPE_CHECKING:
     from surefoot.models.types import RobotDescription
+
+_NO_STANCE: dict[str, Any] = dict.fromkeys(("name", "pushes", "faults", "criteria"), True) | {
+    "planner": {"recovery": set(RecoverySettings.model_fields) - {"sole_gap"}}
+}
+"""Of a scenario: what moves none of the stances that its gait goes through."""
 
 
 class Robots:
@@ -46,7 +51,7 @@ class Robots:
         """See `surefoot.scenarios.setup.stances.bent_alike`; the points of a campaign ask for the same two walks."""
         from surefoot.scenarios.setup.stances import bent_alike
 
-        key = before.model_dump_json(), after.model_dump_json()
+        key = before.model_dump_json(exclude=_NO_STANCE), after.model_dump_json(exclude=_NO_STANCE)
         if key not in self._heights:
             self._heights[key] = bent_alike(before, after)
         return self._heights[key]

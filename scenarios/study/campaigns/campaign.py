@@ -70,9 +70,9 @@ class Campaign:
         bisect = self.spec.bisect
         return bisect if bisect is None or not own else Bisect.model_validate({**bisect.model_dump(), **own})
 
-    def combinations(self) -> Iterator[tuple[dict[str, Any], dict[str, Any]]]:
-        """Labels and settings of every combination of the grid, the last axis fastest."""
-        robots = Robots()
+    def combinations(self, robots: Robots | None = None) -> Iterator[tuple[dict[str, Any], dict[str, Any]]]:
+        """Labels and settings of every combination of the grid, the last axis fastest; robots are looked at once."""
+        robots = robots or Robots()
         for chosen in itertools.product(*self.axes.values()):
             labels = {name: one.label for name, one in zip(self.axes, chosen, strict=True)}
             keys = dict(self.spec.set)
@@ -226,7 +226,7 @@ def _faults(campaign: Campaign) -> Iterator[Problem]:
     if origin is not None and not is_known(origin, robots):
         yield Problem(("sized_for",), f"unknown robot '{origin}' in sized_for", nearest(origin, robots.names()))
         return
-    base = next(campaign.combinations())[1]
+    base = next(campaign.combinations(robots))[1]
     plain = base | _ends(campaign.spec, 0)
     yield from _of_point(
         campaign, robots, plain, {key: ("set", key) for key in campaign.spec.set} | _searched(campaign.spec)
@@ -237,7 +237,9 @@ def _faults(campaign: Campaign) -> Iterator[Problem]:
             at: Key = ("grid", name, str(one.label)) if named else ("grid", name, index)
             places = {key: (*at, key) if named else at for key in one.keys}
             alone = replace(campaign, axes={**campaign.axes, name: (one,)})
-            yield from _of_point(campaign, robots, next(alone.combinations())[1] | _ends(campaign.spec, 0), places)
+            yield from _of_point(
+                campaign, robots, next(alone.combinations(robots))[1] | _ends(campaign.spec, 0), places
+            )
     yield from _of_point(campaign, robots, base | _ends(campaign.spec, -1), _searched(campaign.spec))
     for key, values in campaign.spec.first.items():
         for index, value in enumerate(values[1:], start=1):

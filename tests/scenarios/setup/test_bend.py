@@ -3,6 +3,7 @@
 import pytest
 
 from surefoot.scenarios.setup.load import load
+from surefoot.scenarios.setup.robot import Robots
 from surefoot.scenarios.setup.stance import body_of
 from surefoot.scenarios.setup.stances import bent_alike, least_bend
 from surefoot.scenarios.setup.walk import resolve
@@ -47,3 +48,17 @@ def test_a_walk_whose_steps_are_not_known_beforehand_keeps_its_height() -> None:
     of, walk = load("commanded"), load("commanded", {"robot": "talos"})
     assert least_bend(resolve(of), body_of(resolve(of).robot)) is None
     assert bent_alike(of, walk) == walk.gait.com_height
+
+
+def test_what_befalls_a_walk_and_how_it_recovers_move_no_stance() -> None:
+    """So the campaigns that vary it ask for one height."""
+    pushes = [{"step": 2, "phase": "single", "fraction": 0.5, "duration": 0.1, "impulse": 0.3, "direction": 1.0}]
+    numbers = {"planner.recovery.second_weight": 0.5, "planner.recovery.landing_share": 1.0}
+    assert bend("walk", robot="talos", pushes=pushes, criteria={"fell": False}, **numbers) == bend(
+        "walk", robot="talos"
+    )
+    robots, of = Robots(), load("walk")
+    plain, pushed = load("walk", {"robot": "talos"}), load("walk", {"robot": "talos", "pushes": pushes, **numbers})
+    assert robots.bent_alike(of, pushed) is robots.bent_alike(of, plain)
+    wider = load("walk", {"robot": "talos", "planner.recovery.sole_gap": 0.02})
+    assert robots.bent_alike(of, wider) is not robots.bent_alike(of, plain)

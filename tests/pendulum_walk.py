@@ -5,8 +5,8 @@ from dataclasses import dataclass
 import numpy as np
 
 from surefoot.forces import Push
-from surefoot.planner.geometry import signed_distance
 from surefoot.native.library import library
+from surefoot.planner.geometry import signed_distance
 from surefoot.planner.plan import PlanSampler, WalkPlan
 from surefoot.planner.plan_kernel import PlanKernel
 from surefoot.planner.planner import WalkingPlanner

@@ -11,7 +11,8 @@ import numpy as np
 from surefoot.models.facts import RobotFacts, facts_of, similar_com_height, similar_step_width, similar_tread
 from surefoot.models.names import ROBOTS, is_file
 from surefoot.scenarios.errors import Key
-from surefoot.scenarios.file.schema import BeliefErrors, RecoverySettings, RobotSettings, Scenario
+from surefoot.scenarios.file.group import RecoverySettings
+from surefoot.scenarios.file.schema import BeliefErrors, RobotSettings, Scenario
 from surefoot.scenarios.file.sensing import MotorSettings
 from surefoot.streams import Stream, generator
 

@@ -58,7 +58,8 @@ def test_what_befalls_a_walk_and_how_it_recovers_move_no_stance() -> None:
         "walk", robot="talos"
     )
     robots, of = Robots(), load("walk")
-    plain, pushed = load("walk", {"robot": "talos"}), load("walk", {"robot": "talos", "pushes": pushes, **numbers})
+    plain = load("walk", {"robot": "talos", "planner.recovery.cross_factor": 2.0})
+    pushed = load("walk", {"robot": "talos", "pushes": pushes, **numbers})
     assert robots.bent_alike(of, pushed) is robots.bent_alike(of, plain)
     wider = load("walk", {"robot": "talos", "planner.recovery.sole_gap": 0.02})
     assert robots.bent_alike(of, wider) is not robots.bent_alike(of, plain)

@@ -153,8 +153,9 @@ def hull_of(corners: Array, *others: Array) -> Array:
     """Convex hull of the corners of one sole or several, as `convex_hull` tells it."""
     if others:
         return convex_hull(np.concatenate((corners, *others)))
-    first = corners.tolist()
-    return np.roll(corners, -first.index(min(first)), axis=0)
+    told = corners.tolist()
+    first = told.index(min(told))
+    return np.concatenate((corners[first:], corners[:first]))
 
 
 @dataclass(frozen=True, slots=True)

@@ -227,8 +227,9 @@ class ClosedLoop:
             self._last = min(self._last, tick + round(AFTER_FALL * rate))
         self.tick = tick + 1
         self.done = self.tick >= self._last
-        if self.done and not self.fell and (broken := self._broken_promise()):
-            self.end = End("fault", self.tick / rate, broken)
+        if self.done and not self.fell:
+            broken = self._broken_promise()
+            self.end = End("fault" if broken else "completed", self.tick / rate, broken)
         return sample
 
     def _broken_promise(self) -> str:

@@ -6,7 +6,11 @@ import pytest
 import surefoot
 from surefoot.planner.laws.law import Motion
 from surefoot.planner.laws.profiles import PROFILES, Profile
+from surefoot.scenarios.log import NoLog
+from surefoot.scenarios.run.run import closed_loop
 from surefoot.scenarios.run.sensing import TrueState
+from surefoot.scenarios.setup.load import load
+from surefoot.scenarios.setup.walk import resolve
 from surefoot.wbc.controller import WholeBodyController
 from surefoot.wbc.types import RobotState
 
@@ -224,3 +228,13 @@ def test_a_part_that_leaves_ends_the_run_in_the_log_and_for_the_program(tmp_path
     log = surefoot.read(tmp_path / "left.mcap")
     assert "SystemExit" in log.metadata["end"]["traceback"]
     assert not surefoot.judge(log).passed
+
+
+def test_a_walk_whose_last_states_got_lost_ends_when_its_data_do(monkeypatch):
+    loop = closed_loop(resolve(load("walk", {"fidelity": "pendulum", "duration": 0.1})), NoLog())
+    sense, last = loop.walker.sense, round(loop.duration * loop.rate) - 1
+    monkeypatch.setattr(loop.walker, "sense", lambda tick, now: sense(tick, now) + 2 * (tick == last))
+    while not loop.done:
+        loop.step()
+    assert (loop.end.kind, loop.end.time) == ("completed", loop.time)
+    assert loop.time == pytest.approx(0.1 + 2 / loop.rate)

@@ -11,6 +11,7 @@ import inspect
 import json
 import math
 import re
+import sys
 from collections.abc import Callable, Iterator
 from dataclasses import dataclass
 from pathlib import Path
@@ -51,7 +52,12 @@ from surefoot.wbc.model import RobotTerms
 from surefoot.wbc.tasks.task import Task
 from surefoot.wbc.types import RobotState, WbcReference
 
+sys.path.insert(0, str(Path(__file__).parent))
+import measured
+import standing
+
 FOLDER = Path(__file__).parent
+
 CHANNELS = (
     *(
         channels.measurement,
@@ -149,20 +155,6 @@ def _of_preset(name: str, errors: SensorErrors) -> str:
     return "none" if value == math.inf else f"{value:.3g}"
 
 
-STANDING: tuple[tuple[str, str, str], ...] = (
-    ("steady walk", "walk-fast", "speed_mean"),
-    ("stairs of the tallest risers, edge under the sole", "stairs-tall", "stair_edge_margin_min"),
-    ("stairs of the tallest risers, worst torque", "stairs-tall", "torque_ratio_max"),
-    ("natural walk, ZMP against its reference", "walk", "zmp_error_rms"),
-    ("natural walk, footsteps against the plan", "walk", "footstep_error_max"),
-    ("natural walk, cost of transport", "walk", "cost_of_transport"),
-    ("natural walk, bend of the knees", "walk", "knee_angle_mean"),
-)
-"""What is told of where it stands: in words, the scenario, and the metric of its baseline."""
-
-PUSHES = ("forward", "backward", "to the swing foot", "over the stance foot")
-
-
 def sensed_table() -> str:
     """What `benchmarks.sensed` measured of the estimator: errors, and their squares over those that it says."""
     with (FOLDER / "sensors.csv").open() as file:
@@ -172,41 +164,6 @@ def sensed_table() -> str:
     ]
     head = f"| preset | quantity | error, RMS of a number over {found[0]['seeds']} seeds | NEES |"
     return "\n".join([head, "|---|---|---|---|", *rows])
-
-
-def standing_table() -> str:
-    """What the baselines measured, and the pushes that the README tells."""
-    rows = [
-        f"| {what} | {_measured(scenario, metric)} | `{scenario}`, `{metric}` |" for what, scenario, metric in STANDING
-    ]
-    terrain = read_scenario_file("stairs-tall")["terrain"]
-    rows.append(
-        f"| stairs, one foot per tread | {terrain['riser']} m risers on {terrain['tread']} m treads | `stairs-tall` |"
-    )
-    for phase, cells in push_rows().items():
-        told = ", ".join(f"{value} {where}" for where, value in zip(PUSHES, cells, strict=True))
-        rows.append(f"| push of 0.1 s {phase} [N·s/kg] | {told} | [README](../README.md) |")
-    return "\n".join(["| what | value | from |", "|---|---|---|", *rows])
-
-
-def push_rows() -> dict[str, tuple[str, ...]]:
-    """Impulses of the README's table of pushes, by phase, in the order of `PUSHES` [N·s/kg]."""
-    text = (FOLDER.parent / "README.md").read_text(encoding="utf-8")
-    found = re.findall(r"(?m)^\| (in mid-swing|at any time) \| (.*) \|$", text)
-    return {phase: tuple(cells.split(" | ")) for phase, cells in found}
-
-
-def read_scenario_file(name: str) -> Any:
-    """A scenario of the catalogue as its file has it."""
-    return yaml.safe_load((FOLDER.parent / "scenarios" / "catalogue" / f"{name}.yaml").read_text(encoding="utf-8"))
-
-
-def _measured(scenario: str, name: str) -> str:
-    """A metric of a baseline as it is shown."""
-    path = FOLDER.parent / "scenarios" / "baselines" / f"{scenario}.baseline.yaml"
-    value, metric = yaml.safe_load(path.read_text(encoding="utf-8"))["metrics"][name], OWN[name]
-    numbers = value if isinstance(value, list) else [value]
-    return f"{', '.join(f'{metric.scale * number:.3g}' for number in numbers)} {metric.shown}".strip(" -")
 
 
 def field_table() -> str:
@@ -265,7 +222,7 @@ TABLES: dict[str, tuple[str, Callable[[], str]]] = {
     "robot-keys": ("robot-files.md", robot_keys_table),
     "sensors": ("sensors.md", sensors_table),
     "sensed": ("sensors.md", sensed_table),
-    "standing": ("standing.md", standing_table),
+    "standing": ("standing.md", standing.table),
     "field": ("standing.md", field_table),
     "engines": ("other-simulator.md", engines_table),
     "benchmark-g1": ("benchmark-g1.md", benchmark_tables),
@@ -339,6 +296,13 @@ def _taken_out(text: str, pattern: str) -> tuple[str, str]:
     return (text[: found.start()] + text[found.end() :]).strip(), found[1]
 
 
+TABLES |= {
+    "push-map-pendulum": ("campaigns.md", lambda: measured.push_table("push-map-pendulum")),
+    "push-map": ("campaigns.md", lambda: measured.push_table("push-map")),
+    "push-gains": ("campaigns.md", lambda: measured.gains_table("push-map-pendulum")),
+    "pythons": ("how-to/install.md", measured.pythons_table),
+    "made": ("campaigns.md", measured.made_table),
+}
 TABLES["handed"] = ("extending.md", handed_tables)
 
 

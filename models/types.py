@@ -77,8 +77,8 @@ class JointRoles:
         knees: left and right.
         waist: between pelvis and torso, in the order of the chain.
         arm_swing: left and right joint that swings the arm; None without such arms.
-        knee_bend: sign of the angles that bend the left and the right knee.
-        arm_back: sign of the angles that swing the left and the right arm back.
+        knee_bend: sign of the angles that bend the left and the right knee [-].
+        arm_back: sign of the angles that swing the left and the right arm back [-].
     """
 
     left_leg: tuple[str, ...]

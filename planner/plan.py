@@ -44,8 +44,8 @@ class WalkPlan:
         stiffness: λ of c'' = λ (c - (zmp - zmp_offset)), shape (N + 1,) [1/s^2].
         omega: ω of the DCM, ω' = ω² - λ, shape (N + 1,) [1/s].
         phase: where the plan stands in the gait.
-        contacts: planned contacts (left, right) from each sample on, shape (N + 1, 2).
-        load_left: planned share of the weight on the left foot, shape (N + 1,); the right one has the rest.
+        contacts: planned contacts (left, right) from each sample on, shape (N + 1, 2) [-].
+        load_left: planned share of the weight on the left foot, shape (N + 1,) [-]; the right one has the rest.
         support_polygon: hull of the planned soles now, anticlockwise, shape (v, 2) [m].
         inner_polygon: the same of the soles shrunk to the ZMP margin (90 %), shape (v, 2) [m].
         footholds: where the left and the right foot stand now, or stood last.
@@ -145,7 +145,7 @@ class PlanSample:
         swing: swing sole x, y, z [m], yaw, pitch, roll [rad], shape (6,).
         swing_velocity: shape (6,) [m/s, rad/s].
         swing_acceleration: shape (6,) [m/s^2, rad/s^2].
-        point: the numbers above as the kernel gives them, shape (POINT,); None of plain Python.
+        point: the numbers above as the kernel gives them, shape (POINT,) [SI]; None of plain Python.
     """
 
     time: float
@@ -168,7 +168,7 @@ class PlanSample:
 
     @classmethod
     def of_point(cls, time: float, point: Array, contacts: tuple[bool, bool], swing_foot: Foot | None) -> "PlanSample":
-        """A sample out of the numbers of the kernel, shape (POINT,), which become fields when they are first read."""
+        """A sample out of the numbers of the kernel, shape (POINT,) [SI], which become fields when first read."""
         sample = _OpenSample()
         sample.time, sample.contacts, sample.swing_foot, sample.point = time, contacts, swing_foot, point
         sample.omega = point.item(_OMEGA)  # which is read at every tick

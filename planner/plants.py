@@ -119,7 +119,7 @@ class IdealFeet:
         self.state = feet
 
     def follow(self, sampler: PlanSampler, time: float) -> None:
-        """Move to where the plan has the feet at an instant, which may be the planned touchdown."""
+        """Move to where the plan has the feet at an instant [s], which may be the planned touchdown."""
         position, yaw = self.state.position.copy(), self.state.yaw.copy()
         swing = sampler.plan.swing
         if swing is not None:

@@ -28,7 +28,7 @@ class Foot(IntEnum):
 
     @property
     def side(self) -> float:
-        """+1 for the left foot, -1 for the right one: which way is outward, to the left counted positive."""
+        """+1 for the left foot, -1 for the right one [-]: which way is outward, to the left counted positive."""
         return 1.0 - 2.0 * self
 
 
@@ -99,7 +99,7 @@ class Twist(NamedTuple):
         return {"v_x": self.x, "v_y": self.y, "yaw_rate": self.yaw}
 
     def scaled(self, factor: float) -> "Twist":
-        """The same direction, so many times as fast or far."""
+        """The same direction, so many times [-] as fast or far."""
         return Twist(factor * self.x, factor * self.y, factor * self.yaw, self.width)
 
     def stride(self, duration: float, width: float) -> "Twist":

@@ -88,8 +88,8 @@ class World:
         """Start at tick 0 from a state in Pinocchio's convention, without the pushes that were added since.
 
         Args:
-            q: configuration, shape (7 + nj,).
-            v: velocity, shape (6 + nj,); rest if None.
+            q: configuration, shape (7 + nj,) [m, -, rad].
+            v: velocity, shape (6 + nj,) [m/s, rad/s]; rest if None.
             torque: joint torques that the first measured contact forces belong to, shape (nj,) [N m]; none if None.
         """
         mujoco.mj_resetData(self.model, self.data)

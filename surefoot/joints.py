@@ -38,7 +38,7 @@ class JointCommand:
     servo: Servo | None = None
 
     def with_joints(self, chosen: NDArray[np.bool_], other: "JointCommand") -> "JointCommand":
-        """The same with another command for some joints, bool, shape (nj,)."""
+        """The same with another command for some joints, bool, shape (nj,) [-]."""
         mine, theirs = (one.servo or no_servo(len(one.torque)) for one in (self, other))
         names = ("position", "velocity", "stiffness", "damping")
         servo = Servo(*(np.where(chosen, getattr(theirs, name), getattr(mine, name)) for name in names))

@@ -76,9 +76,9 @@ class WbcAnswer:
 
     Attributes:
         torque: joint torques within their limits, shape (nj,) [N·m].
-        acceleration: planned generalised acceleration, shape (nv,).
+        acceleration: planned generalised acceleration, shape (nv,) [m/s^2, rad/s^2].
         wrench: planned contact wrenches, in the sole frames, shape (2, 6) [N, N·m].
-        task_error: residuals of all tasks before weighting, shape (rows,).
+        task_error: residuals of all tasks before weighting, shape (rows,) [m/s^2, rad/s^2, N, N m].
     """
 
     torque: Array

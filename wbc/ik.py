@@ -32,7 +32,7 @@ class PostureTarget:
     rolling: bool = False
 
     def sole_rotation(self, k: int) -> Array:
-        """Orientation of sole k, shape (3, 3)."""
+        """Orientation of sole k, shape (3, 3) [-]."""
         turned: Array = pin.utils.rotate("z", float(self.sole_yaw[k]))
         if self.sole_tilt is None:
             return turned
@@ -46,7 +46,7 @@ class PostureResult:
     """Outcome of the search.
 
     Attributes:
-        q: configuration, shape (nq,).
+        q: configuration, shape (nq,) [m, -, rad].
         error: largest remaining error over sole positions and CoM [m] and sole, pelvis and torso rotations [rad].
         reached: whether the error is within the tolerance.
         iterations: Gauss-Newton steps taken.
@@ -100,10 +100,10 @@ class PostureIk:
 
         Args:
             target: what to fulfil.
-            q: where to start, shape (nq,).
+            q: where to start, shape (nq,) [m, -, rad].
             tolerance: of the error [m, rad].
             max_iterations: bound on the steps.
-            nearness: weight μ of the posture against the tasks.
+            nearness: weight μ of the posture against the tasks [-].
 
         Returns:
             The posture found; with ``reached`` False the nearest one, e.g. for a stance beyond the legs' length.
@@ -118,7 +118,7 @@ class PostureIk:
         return PostureResult(q, error, False, max_iterations)
 
     def build_step(self, target: PostureTarget, q: Array, nearness: float = 1e-9) -> PostureStep:
-        """The QP of the step from q, shape (nq,); ``nearness`` as in ``solve``."""
+        """The QP of the step from q, shape (nq,) [m, -, rad]; ``nearness`` as in ``solve``."""
         J, e = self.linearise(target, q)
         nv = self._model.nv
         H = J.T @ J + 1e-10 * np.eye(nv)
@@ -148,7 +148,7 @@ class PostureIk:
         return np.asarray(found, dtype=np.float64)
 
     def linearise(self, target: PostureTarget, q: Array) -> tuple[Array, Array]:
-        """J, shape (rows, nv), and e, shape (rows,), of all tasks at q, shape (nq,), each in its local frame."""
+        """J, shape (rows, nv), and e, shape (rows,) [m, rad], of all tasks at q, shape (nq,), each in its own frame."""
         model, data = self._model, self._data
         pin.computeJointJacobians(model, data, q)
         pin.updateFramePlacements(model, data)

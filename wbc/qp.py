@@ -84,10 +84,10 @@ class QpData:
     The first ``EQUALITY_ROWS`` rows are equalities (both bounds equal). With n variables and m rows:
 
     Attributes:
-        H: shape (n, n), positive definite.
-        g: shape (n,).
-        A: shape (m, n).
-        bounds_lower, bounds_upper: shape (n + m,): the variables' bounds, then the rows'.
+        H: shape (n, n), positive definite [cost / x^2].
+        g: shape (n,) [cost / x].
+        A: shape (m, n) [of a row / x].
+        bounds_lower, bounds_upper: shape (n + m,): the variables' bounds, then the rows' [m/s^2, rad/s^2, N, N m].
     """
 
     H: Array
@@ -106,7 +106,7 @@ class QpData:
         return math.isfinite(sum(float(part.sum()) for part in parts))
 
     def violation(self, x: Array) -> float:
-        """Largest violation of any bound or row at x, shape (n,); 0 when feasible, NaN when x is not a number."""
+        """Largest violation [of its row] of any bound or row at x, shape (n,); 0 when feasible, NaN of no number."""
         values = np.concatenate((x, self.A @ x))
         excess = float(np.maximum(self.bounds_lower - values, values - self.bounds_upper).max())
         return excess if not excess < 0.0 else 0.0

@@ -110,7 +110,7 @@ class WbcReference:
         heading: yaw of pelvis and torso [rad].
         heading_rate: its rate [rad/s].
         planned_contact: which feet the plan has on the ground, (left, right).
-        load_share: share of the weight the plan puts on each foot, (left, right), sums to 1.
+        load_share: share of the weight the plan puts on each foot, (left, right), sums to 1 [-].
         time_to_switch: time until the plan's next contact change [s]; infinite when standing.
         lifting_foot: index of the foot that the plan lifts at that change, -1 for none.
         swing_foot: index of the swing foot, -1 when both feet stand.
@@ -118,14 +118,14 @@ class WbcReference:
         swing_position: sole centre of the swing foot, shape (3,) [m].
         swing_velocity: its velocity, shape (3,) [m/s].
         swing_acceleration: its acceleration, shape (3,) [m/s^2].
-        swing_rotation: orientation of its sole, shape (3, 3).
+        swing_rotation: orientation of its sole, shape (3, 3) [-].
         swing_angular_velocity: of its sole, shape (3,) [rad/s].
         swing_angular_acceleration: of its sole, shape (3,) [rad/s^2].
         ground_normal: unit normals of the ground on which the soles stand, or will land, shape (2, 3) [-].
         rolling_foot: index of the foot that rolls about its toe edge, -1 for none; its `swing_position` is that of the
             sole as if it lay flat.
         roll: (pitch, rate, acceleration) of that foot, heel up positive [rad, rad/s, rad/s^2].
-        numbers: the kernels' struct ``Reference`` that says the same; None of one that was not made by a kernel.
+        numbers: the kernels' struct ``Reference`` that says the same [SI]; None of one that was not made by a kernel.
     """
 
     com: Array
@@ -165,7 +165,7 @@ class WbcReference:
         swing_progress: float,
         rolling_foot: int,
     ) -> "WbcReference":
-        """A reference out of the numbers of the kernels' struct ``Reference``, and what they do not know of it.
+        """A reference out of the numbers [SI] of the kernels' struct ``Reference``, and what they do not know of it.
 
         Those numbers become fields when they are first read.
         """
@@ -201,12 +201,12 @@ class WbcReport:
         iterations: iterations of the solver that answered.
         primal_residual: largest violation of the QP's constraints [-].
         dual_residual: largest violation of stationarity, NaN where the solver does not tell [-].
-        acceleration: planned generalised acceleration, shape (nv,).
+        acceleration: planned generalised acceleration, shape (nv,) [m/s^2, rad/s^2].
         wrench: planned contact wrenches, shape (2, 6) [N, N·m].
         active: contacts held by the QP, (left, right).
         felt: contacts felt by the feet, (left, right).
-        task_error: residuals of all tasks before weighting, shape (rows,); names and sizes of the tasks are
-            ``WholeBodyController.task_layout``.
+        task_error: residuals of all tasks before weighting, shape (rows,) [m/s^2, rad/s^2, N, N m]; names and sizes of
+            the tasks are ``WholeBodyController.task_layout``.
         build_time: wall-clock time of terms and assembly [s].
         solve_time: wall-clock time of the solve [s].
         load: with which it counted.

@@ -24,10 +24,10 @@ from sources import KEY, digest
 import surefoot
 from surefoot.planner.geometry import sole_corners
 from surefoot.planner.types import Foot, Footstep
+from surefoot.scenarios.palette import BLUE, COM_PLANNED, FEET
 
 PICTURE = Path(__file__).with_name("courses.png")
 COURSES, PLACES = 10, 5
-COLOURS = ("#3f7cac", "#c8452f")
 
 Place = dict[str, float]
 Array = NDArray[np.float64]
@@ -81,29 +81,29 @@ def draw(axis: Axes, seed: int, found: Walked) -> None:
     """Draw soles, CoM and places from above."""
     for foot, (x, y, _, yaw) in found.footsteps:
         corners = sole_corners(Footstep(Foot(foot), np.array([x, y, 0.0]), yaw), np.array([0.11, 0.055]))
-        axis.fill(*corners[:, :2].T, color=COLOURS[foot], alpha=0.35, linewidth=0)
-    axis.plot(*found.com.T, color="#444444", linewidth=0.8)
+        axis.fill(*corners[:, :2].T, color=FEET[foot], alpha=0.6, linewidth=0)
+    axis.plot(*found.com.T, color=COM_PLANNED, linewidth=0.8)
     for number, place in enumerate(found.places, 1):
         way = 0.25 * np.array([math.cos(place["yaw"]), math.sin(place["yaw"])])
         axis.annotate("", (place["x"] + way[0], place["y"] + way[1]), (place["x"], place["y"]), arrowprops=ARROW)
         axis.annotate(
-            f"{number}", (place["x"], place["y"]), color="white", ha="center", va="center", bbox=DOT, fontsize=6
+            f"{number}", (place["x"], place["y"]), color="white", ha="center", va="center", bbox=DOT, fontsize=8
         )
     verdict = "" if found.passed else ", criteria missed"
-    axis.set_title(f"{seed}: {1e3 * found.error:.1f} mm, {math.degrees(found.turned):.2f}°{verdict}", fontsize=8)
+    axis.set_title(f"{seed}: {1e3 * found.error:.1f} mm, {math.degrees(found.turned):.2f}°{verdict}", fontsize=9)
     axis.set_aspect("equal", "datalim")
-    axis.tick_params(labelsize=6)
+    axis.tick_params(labelsize=8)
 
 
-ARROW = {"arrowstyle": "-|>", "color": "#2a9d5c", "linewidth": 1.6}
-DOT = {"boxstyle": "circle,pad=0.25", "color": "#2a9d5c"}
+ARROW = {"arrowstyle": "-|>", "color": BLUE, "linewidth": 1.6}
+DOT = {"boxstyle": "circle,pad=0.25", "color": BLUE}
 
 
 def main(_: Sequence[str] = ()) -> None:
     """Walk the courses and write the picture."""
     with ProcessPoolExecutor() as pool:
         found = list(pool.map(walked, range(1, COURSES + 1)))
-    figure, axes = plt.subplots(2, COURSES // 2, figsize=(12.0, 5.2), layout="constrained")
+    figure, axes = plt.subplots(2, COURSES // 2, figsize=(10.0, 4.8), layout="constrained")
     for seed, axis in enumerate(axes.flat, 1):
         draw(axis, seed, found[seed - 1])
         print(seed, found[seed - 1].passed, found[seed - 1].error, found[seed - 1].turned)

@@ -6,11 +6,13 @@
 from dataclasses import dataclass
 from html import escape
 
+from surefoot.scenarios.palette import BLACK, DARK, GREEN, ORANGE, PURPLE, SKY, WHITE, hexadecimal, paler
+
 WIDTH, BOX_HEIGHT, GAP, MARGIN = 880, 74, 46, 16
 """Of a drawing, a box, the room between rows, and the rim [px]."""
 
-INK, LINE, PAPER = "#1b1f24", "#4b5563", "#ffffff"
-FILLS = ("#e6effb", "#fdf0dc", "#e5f4ea", "#f3e8fa")
+INK, LINE, PAPER = hexadecimal(BLACK), hexadecimal(DARK), hexadecimal(WHITE)
+FILLS = tuple(hexadecimal(paler(color, 0.8)) for color in (SKY, ORANGE, GREEN, PURPLE))
 
 
 @dataclass(frozen=True)

@@ -1,13 +1,11 @@
 """Draw docs/images/gait-map.png: where the robot walks, step length x step time x riser, and what stops it elsewhere.
 
-    surefoot sweep gait-map
-    python docs/images/gait_map.py [runs/gait-map/table.csv]
+    python docs/images/gait_map.py
 
-The campaign takes about five minutes on two cores.
+The result of the campaign is kept by `docs/measured.py`.
 """
 
-import argparse
-import csv
+import sys
 from collections.abc import Mapping, Sequence
 from pathlib import Path
 
@@ -17,11 +15,16 @@ matplotlib.use("Agg")
 import matplotlib.pyplot as plt
 import numpy as np
 from matplotlib.colors import ListedColormap
-from sources import KEY, digest
+from sources import FOLDER, KEY, digest
+
+from surefoot.scenarios.palette import FAIL, GREY, ORANGE, PASS, PURPLE, paler
+
+sys.path.insert(0, str(FOLDER.parent))
+from measured import rows
 
 OUTCOMES = ("walks", "refused", "torque", "ZMP", "fall")
-COLOURS = ("#2a9d5c", "#b9c0c9", "#e9a23b", "#8f6bb5", "#c8452f")
-NAMES = ("walks", "refused (reach, sole on tread, swing)", "stopped by torque", "by ZMP", "by a fall")
+COLOURS = (PASS, paler(GREY, 0.6), ORANGE, PURPLE, FAIL)
+NAMES = ("walks", "refused (reach, tread, swing)", "stopped by torque", "by ZMP", "by a fall")
 PICTURE = Path(__file__).with_name("gait-map.png")
 
 Row = Mapping[str, str]
@@ -29,11 +32,9 @@ Cell = tuple[float, float, float]
 """Riser [m], step length [m] and step time [s]."""
 
 
-def cells(table: Path) -> dict[Cell, Row]:
+def cells() -> dict[Cell, Row]:
     """The run that counts of every cell: the last, which is the first that was not refused, if there is one."""
-    with table.open(newline="", encoding="utf-8") as file:
-        rows = [{name.partition(" [")[0]: value for name, value in row.items()} for row in csv.DictReader(file)]
-    return {(float(row["riser"]), float(row["step_length"]), float(row["step_time"])): row for row in rows}
+    return {(float(row["riser"]), float(row["step_length"]), float(row["step_time"])): row for row in rows("gait-map")}
 
 
 def outcome(row: Row) -> str:
@@ -50,7 +51,7 @@ def outcome(row: Row) -> str:
 def draw(found: Mapping[Cell, Row]) -> None:
     """Write the picture."""
     risers, lengths, times = (sorted({cell[axis] for cell in found}) for axis in range(3))
-    figure, axes = plt.subplots(1, len(risers), figsize=(11.0, 3.9), sharey=True, layout="constrained")
+    figure, axes = plt.subplots(1, len(risers), figsize=(9.0, 4.2), sharey=True, layout="constrained")
     for axis, riser in zip(axes, risers, strict=True):
         table = [[OUTCOMES.index(outcome(found[riser, length, time])) for length in lengths] for time in times]
         axis.imshow(table, origin="lower", aspect="auto", cmap=ListedColormap(COLOURS), vmin=-0.5, vmax=4.5)
@@ -62,20 +63,27 @@ def draw(found: Mapping[Cell, Row]) -> None:
             for column, length in enumerate(lengths):
                 cell = found[riser, length, time]
                 if cell["status"] != "refused":
-                    text = f"{length / time:.2f} m/s\n{100 * float(cell['torque_ratio_max']):.0f} %"
-                    axis.text(column, row, text, ha="center", va="center", fontsize=6.5, color="white")
+                    text = f"{100 * float(cell['torque_ratio_max']):.0f}"
+                    axis.text(column, row, text, ha="center", va="center", fontsize=11)
     axes[0].set_ylabel("step time [s]")
     patches = [plt.Rectangle((0, 0), 1, 1, color=colour) for colour in COLOURS]
-    figure.legend(patches, NAMES, loc="outside lower center", ncols=5, frameon=False, fontsize=9)
-    figure.suptitle("Where the robot walks (speed, and largest torque in % of its limit)", fontsize=11)
-    figure.savefig(PICTURE, dpi=110, metadata={KEY: digest(PICTURE.name)})
+    figure.legend(
+        patches,
+        NAMES,
+        loc="outside lower center",
+        ncols=5,
+        frameon=False,
+        fontsize=10,
+        handlelength=1.0,
+        columnspacing=1.2,
+    )
+    figure.suptitle("Where the robot walks, with the largest torque in % of its limit", fontsize=12)
+    figure.savefig(PICTURE, dpi=130, metadata={KEY: digest(PICTURE.name)})
 
 
-def main(arguments: Sequence[str] | None = None) -> None:
-    """Draw the table of a campaign."""
-    parser = argparse.ArgumentParser(description=__doc__.splitlines()[0])
-    parser.add_argument("table", type=Path, nargs="?", default=Path("runs/gait-map/table.csv"))
-    draw(cells(parser.parse_args(arguments).table))
+def main(_: Sequence[str] = ()) -> None:
+    """Draw the result that is kept."""
+    draw(cells())
 
 
 if __name__ == "__main__":

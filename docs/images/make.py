@@ -3,10 +3,10 @@
     pip install pillow
     python docs/images/make.py [NAME]... [--campaigns]
 
-Names are those of the files. By default all are drawn but those of campaigns, which take hours and come with
-`--campaigns`. Pictures of the robot need off-screen OpenGL (see `sim.gl`), that of the page to drive a Chromium. Most
-take seconds or a minute, courses and gait map some five minutes on two cores. What else than its run a picture follows
-from goes into it as a digest (`sources.py`), which the tests compare with the code.
+Names are those of the files. By default all are drawn. Those of campaigns are drawn from the results in docs/results;
+with `--campaigns` the campaigns are run before, which takes an hour or more. Pictures of the robot need off-screen
+OpenGL (see `sim.gl`), that of the page to drive a Chromium. Most take seconds or a minute. What else than its run a
+picture follows from goes into it as a digest (`sources.py`), which the tests compare with the code.
 """
 
 import argparse
@@ -47,13 +47,13 @@ def walk() -> None:
 
 def animation() -> None:
     """A stretch of the walk with its marks."""
-    from animate import WALK, palette, pictures, save
+    from animate import WALK, pictures
+    from webp import save_webp
 
     from surefoot.scenarios.log import read
 
     with run("walk") as log:
-        images, period = pictures(read(log), WALK)
-    save(FOLDER / "walk.gif", images, period, palette(images), comment=digest("walk.gif").encode())
+        save_webp(FOLDER / "walk.webp", *pictures(read(log), WALK))
 
 
 def figures() -> None:
@@ -78,20 +78,16 @@ def _balance(log: Path, name: str, start: float | None = None, end: float | None
         save_png(picture.convert("RGB").resize((SIZE[0], height), Image.Resampling.LANCZOS), name)
 
 
-def gait_map() -> None:
-    """Where the robot walks, by a campaign of some minutes."""
-    with campaign("gait-map") as folder:
-        import_module("gait_map").main([str(folder / "table.csv")])
-
-
-@contextmanager
-def campaign(name: str, *settings: str) -> Iterator[Path]:
-    """The folder of a campaign that is run."""
+def run_anew(name: str) -> None:
+    """Run the campaign of a picture and keep its result."""
     from surefoot.scenarios.study.campaigns.campaign import read_campaign
     from surefoot.scenarios.study.campaigns.sweep import cores, sweep
 
+    measured = import_module("measured")
+    made = measured.MADE[name]
     with tempfile.TemporaryDirectory() as folder:
-        yield sweep(read_campaign(name, settings), Path(folder) / name, cores()).folder
+        campaign = read_campaign(made.campaign, made.settings, made.seeds)
+        measured.keep(name, sweep(campaign, Path(folder) / name, cores()).folder)
 
 
 def drawing(name: str) -> Callable[[], None]:
@@ -110,20 +106,9 @@ def by(module: str, *arguments: str) -> Callable[[], None]:
     return lambda: import_module(module).main(list(arguments))
 
 
-def of_campaign(name: str, *settings: str) -> Callable[[], None]:
-    """A picture of a campaign that takes hours."""
-
-    def draw() -> None:
-        spec = name.removesuffix("-pendulum")
-        with campaign(spec, *settings) as folder:
-            import_module("campaigns").main([name, str(folder)])
-
-    return draw
-
-
 PICTURES: dict[str, Callable[[], None]] = {
     "walk.png": walk,
-    "walk.gif": animation,
+    "walk.webp": animation,
     "figures.png": figures,
     "falling.png": falling,
     **{name: drawing(name) for name in DRAWINGS},
@@ -132,39 +117,36 @@ PICTURES: dict[str, Callable[[], None]] = {
     **{f"robot-{name}.webp": by("gallery", name) for name in ROBOTS},
     "drive.webp": by("drive"),
     "courses.png": by("courses"),
-    "gait-map.png": gait_map,
+    "gait-map.png": by("gait_map"),
+    **{f"{name}.png": by("campaigns", name) for name in ("push-map", "push-map-pendulum", "robustness")},
 }
 """What draws a picture."""
 
-OF_CAMPAIGNS: dict[str, Callable[[], None]] = {
-    "push-map.png": of_campaign("push-map", "fidelity=full"),
-    "push-map-pendulum.png": of_campaign("push-map-pendulum", "fidelity=pendulum"),
-    "robustness.png": of_campaign("robustness"),
-}
-"""Likewise, in hours."""
+OF_CAMPAIGNS = ("gait-map.png", "push-map-pendulum.png", "push-map.png", "robustness.png")
+"""Drawn from the results of campaigns in docs/results."""
 
-GIVEN = ("robot-h1.webp", "push-map-as-it-was.png")
-"""Not drawn here: a robot whose model does not come along, by `gallery.py FILE`, and a map of earlier code."""
-
-WITHOUT_DIGEST = ("gait-map.png", *OF_CAMPAIGNS, "push-map-as-it-was.png")
-"""Of campaigns that were run before their pictures had digests."""
+WITHOUT_DIGEST = ("robustness.png",)
+"""Of a campaign that was run before its result was kept."""
 
 
 def main() -> None:
     """Draw the pictures that are asked for."""
     parser = argparse.ArgumentParser(description=__doc__, formatter_class=argparse.RawDescriptionHelpFormatter)
-    parser.add_argument("names", nargs="*", metavar="NAME", help=", ".join((*PICTURES, *OF_CAMPAIGNS)))
-    parser.add_argument("--campaigns", action="store_true", help="also those of campaigns that take hours")
+    parser.add_argument("names", nargs="*", metavar="NAME", help=", ".join(PICTURES))
+    parser.add_argument("--campaigns", action="store_true", help="run the campaigns anew, for an hour or more")
     told = parser.parse_args()
-    every = {**PICTURES, **OF_CAMPAIGNS}
-    names = told.names or [*PICTURES, *(OF_CAMPAIGNS if told.campaigns else ())]
-    if unknown := set(names) - set(every):
-        parser.error(f"no picture {', '.join(sorted(unknown))}; there are {', '.join(every)}")
+    names = told.names or [*PICTURES]
+    if unknown := set(names) - set(PICTURES):
+        parser.error(f"no picture {', '.join(sorted(unknown))}; there are {', '.join(PICTURES)}")
     for name in names:
-        every[name]()
+        if name in OF_CAMPAIGNS and (
+            told.campaigns or not (FOLDER.parent / "results" / f"{Path(name).stem}.csv").exists()
+        ):
+            run_anew(Path(name).stem)
+        PICTURES[name]()
         print(FOLDER / name)
 
 
 if __name__ == "__main__":
-    sys.path.insert(0, str(ROOT))
+    sys.path[:0] = [str(ROOT), str(FOLDER.parent)]
     main()

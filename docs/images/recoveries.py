@@ -22,7 +22,8 @@ from surefoot.scenarios.show.replay.content import ReplayWindow
 from surefoot.sim.render import Camera
 
 FOLDER = Path(__file__).parent
-SIZE = (300, 240)
+SIZE, LOWER = (400, 320), 0.2
+"""Of a picture [px], and of its middle below the base [m]."""
 
 NATURAL = (
     "robot_options.foot_length=0.22",
@@ -33,7 +34,7 @@ NATURAL = (
 )
 WALK = (*NATURAL, "gait.steps=6", "gait.step_length=0.36")
 SIDE, FRONT = (
-    Camera(distance=3.2, azimuth=azimuth, elevation=elevation)
+    Camera(distance=2.8, azimuth=azimuth, elevation=elevation)
     for azimuth, elevation in ((105.0, -10.0), (165.0, -12.0))
 )
 
@@ -101,7 +102,7 @@ def main(arguments: Sequence[str] | None = None) -> None:
             result = run_scenario(scenario, Path(folder))
             if result.verdict.metrics["fell"]:
                 raise SystemExit(f"{name}: the robot fell")
-            images, period = pictures(read(result.log), Shot(recovery.window, SIZE, recovery.camera))
+            images, period = pictures(read(result.log), Shot(recovery.window, SIZE, recovery.camera, LOWER))
         save_webp(FOLDER / name, images, period)
         print(f"written: {FOLDER / name}")
 

@@ -15,30 +15,37 @@ PALETTE = "scenarios/palette.py"
 _FIGURES = tuple(
     f"scenarios/show/{name}.py" for name in ("figures/motion", "figures/page", "kit/shading", "kit/figures")
 )
-_CAMPAIGNS = (f"{_OWN}/campaigns.py", "scenarios/study/campaigns/thresholds.py", "scenarios/show/kit/figures.py")
-_MOVING = (PALETTE, f"{_OWN}/animate.py")
+_RESULTS = "docs/results"
+_CAMPAIGNS = (f"{_OWN}/campaigns.py", "scenarios/show/kit/figures.py")
+_MAPS = (PALETTE, *_CAMPAIGNS, "scenarios/study/campaigns/thresholds.py")
+_MOVING = (PALETTE, f"{_OWN}/animate.py", f"{_OWN}/webp.py")
 
 RECOVERIES = tuple(
     f"recovery-{name}.webp" for name in ("forward", "crossing", "standing", "sideways", "stairs", "lasting")
 )
-ROBOTS = ("talos", "g1", "alexander", "jvrc1", "gr3")
+ROBOTS = ("humanoid100", "talos", "g1", "alexander", "jvrc1", "gr3")
 DRAWINGS = tuple(f"{name}.svg" for name in ("tick", "planner", "qp", "recovery", "estimation"))
 
 SOURCES: dict[str, tuple[str, ...]] = {
     "walk.png": (PALETTE, f"{_OWN}/poses.py"),
-    "walk.gif": _MOVING,
+    "walk.webp": _MOVING,
     "figures.png": (PALETTE, *_FIGURES),
     "falling.png": (PALETTE, *_FIGURES),
-    **dict.fromkeys(DRAWINGS, (f"{_OWN}/drawings.py",)),
+    **dict.fromkeys(DRAWINGS, (PALETTE, f"{_OWN}/drawings.py")),
     "front.webp": (*_MOVING, f"{_OWN}/front.py", f"{_OWN}/recoveries.py"),
     **dict.fromkeys(RECOVERIES, (*_MOVING, f"{_OWN}/recoveries.py")),
-    **dict.fromkeys([f"robot-{name}.webp" for name in (*ROBOTS, "h1")], (*_MOVING, f"{_OWN}/gallery.py")),
+    **dict.fromkeys([f"robot-{name}.webp" for name in ROBOTS], (*_MOVING, f"{_OWN}/gallery.py")),
     "drive.webp": (f"{_OWN}/drive.py",),
-    "courses.png": (f"{_OWN}/courses.py",),
-    "gait-map.png": (f"{_OWN}/gait_map.py",),
-    **dict.fromkeys(("push-map.png", "push-map-pendulum.png", "robustness.png"), (PALETTE, *_CAMPAIGNS)),
+    "courses.png": (
+        PALETTE,
+        f"{_OWN}/courses.py",
+    ),
+    "gait-map.png": (PALETTE, f"{_OWN}/gait_map.py", f"{_RESULTS}/gait-map.csv"),
+    "push-map.png": (*_MAPS, f"{_RESULTS}/push-map.csv"),
+    "push-map-pendulum.png": (*_MAPS, f"{_RESULTS}/push-map-pendulum.csv"),
+    "robustness.png": (PALETTE, *_CAMPAIGNS, "scenarios/study/campaigns/success.py", f"{_RESULTS}/robustness.csv"),
 }
-"""What else than its run a picture follows from: colours, camera, and how it is drawn."""
+"""What else than its run a picture follows from: colours, camera, how it is drawn, and results that are kept."""
 
 
 def digest(name: str) -> str:

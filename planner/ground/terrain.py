@@ -28,7 +28,7 @@ class Box:
     Attributes:
         center: box centre in the world frame, shape (3,) [m].
         half_size: half extents along the box axes, shape (3,) [m].
-        rotation: box-to-world rotation matrix, shape (3, 3).
+        rotation: box-to-world rotation matrix, shape (3, 3) [-].
         friction: Coulomb coefficient of its surface; None for that of the terrain [-].
     """
 
@@ -152,7 +152,7 @@ class Terrain:
         return margins
 
     def carries(self, soles: Array, half: Array, number: int) -> bool:
-        """Whether a sole has a part over a box, and other ground does not bury the box there; as of `Box.touched`."""
+        """Whether a sole [m] has a part over a box that other ground does not bury there; as of `Box.touched`."""
         box = self.boxes[number]
         over = soles[box.touched(soles, half)]
         ahead = np.stack([np.cos(over[:, 2]), np.sin(over[:, 2])], axis=-1)
@@ -208,7 +208,7 @@ _KEPT = 0.01
 
 
 def flat(friction: float = 0.8) -> Terrain:
-    """The bare ground plane."""
+    """The bare ground plane, with a friction [-]."""
     return Terrain(boxes=(), friction=friction)
 
 

@@ -54,7 +54,7 @@ class MotionProblem:
         last_jerk: jerk applied until now, u(-1), shape (2,) [m/s^3].
         fallback: the previous jerk sequence shifted by one sample, to go on with when no solver answers, shape (N, 2)
             [m/s^3].
-        rotation: plan frame to world, for a law that remembers something from tick to tick, shape (2, 2).
+        rotation: plan frame to world, for a law that remembers something from tick to tick, shape (2, 2) [-].
     """
 
     state: Array

@@ -32,12 +32,12 @@ class Qp:
     """min ½ zᵀ P z + qᵀ z subject to G z <= h and lower <= z <= upper.
 
     Attributes:
-        P: cost matrix, symmetric positive definite, shape (n, n).
-        q: cost vector, shape (n,).
-        G: inequality matrix, shape (m, n).
-        h: inequality vector, shape (m,).
-        lower: lower bounds, shape (n,).
-        upper: upper bounds, shape (n,).
+        P: cost matrix, symmetric positive definite, shape (n, n) [cost / z^2].
+        q: cost vector, shape (n,) [cost / z].
+        G: inequality matrix, shape (m, n) [h / z].
+        h: inequality vector, shape (m,) [of each row].
+        lower: lower bounds, shape (n,) [of z].
+        upper: upper bounds, shape (n,) [of z].
     """
 
     P: Array
@@ -60,7 +60,7 @@ class QpSolution:
 
     Attributes:
         qp: the problem that it belongs to, which may be a softened one.
-        z: optimum, shape (n,), or None when every solver failed.
+        z: optimum, shape (n,) [of the law: jerk, m/s^3, and slack, m], or None when every solver failed.
         attempt: index of the solver that succeeded, or the number of solvers.
     """
 

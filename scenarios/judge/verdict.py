@@ -22,6 +22,7 @@ from surefoot.scenarios.file.translate import without
 from surefoot.scenarios.judge.acted import contradictions, idle_commands, not_there, unmet_ground
 from surefoot.scenarios.judge.digest import Digest, RunView
 from surefoot.scenarios.judge.metrics import digest, known, measure
+from surefoot.scenarios.judge.walking import steps_added
 from surefoot.scenarios.log import Log
 from surefoot.scenarios.output import write_whole
 from surefoot.scenarios.record.provenance import END_RECORD, SCENARIO_FILE, Agenda, Event
@@ -93,7 +94,9 @@ def asked(criteria: Mapping[str, Bound], fidelity: str) -> dict[str, Bound]:
     return {name: criteria[name] for name, metric in metrics.items() if metric is None or metric.applies(fidelity)}
 
 
-def _degraded(metrics: Mapping[str, Any]) -> Iterator[str]:
+def _degraded(metrics: Mapping[str, Any], added: int) -> Iterator[str]:
+    if added > 0:
+        yield f"{added} step{'s were' if added > 1 else ' was'} added by a recovery"
     softened = metrics.get("planner_infeasible_fraction")
     if softened:
         yield f"the planner's hard constraints had no solution in {100 * softened:.1f} % of the plans and were softened"
@@ -201,7 +204,7 @@ def judge(log: Log, gathered: Digest | None = None) -> Verdict:
     skipped = [name for name in scenario.criteria if name not in criteria]
     idle_keys = [note for note in agenda.notes if note not in agenda.standing or not run.has("/command")]
     unasked = (f"criterion {name} is not asked: a pendulum has no such metric" for name in skipped)
-    said = (*unasked, *idle_keys, *_degraded(measured.values), *measured.notes)
+    said = (*unasked, *idle_keys, *_degraded(measured.values, steps_added(run)), *measured.notes)
     return Verdict(not reasons, reasons, said, measured.values, criteria)
 
 

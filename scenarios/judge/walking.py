@@ -55,9 +55,17 @@ def duration(run: RunView) -> float:
 @metric(needs=(), reads={"/command": ("yaw_rate", "heading"), "/reference": ("step", "phase")}, least=0.0)
 def steps_planned(run: RunView) -> int:
     """Footsteps asked for, with those that a recovery added; those begun of a walk that is told where to go."""
-    asked = 0 if run.has("/command") and _led(run) else run.constants.steps_planned
+    return _begun(run) if _led(run) else max(run.constants.steps_planned, _begun(run))
+
+
+def steps_added(run: RunView) -> int:
+    """Footsteps begun beyond those asked for, by a recovery; none of a walk that is told where to go."""
+    return 0 if _led(run) else max(0, _begun(run) - run.constants.steps_planned)
+
+
+def _begun(run: RunView) -> int:
     begun = run.field("/reference", "step")[run.single_support] if run.has("/reference") else np.zeros(0)
-    return max(asked, int(begun.max(initial=0)))
+    return int(begun.max(initial=0))
 
 
 _PLACE_READS: Reads = {"/truth": ("left_sole", "right_sole"), "/command": ("place", "heading")}
@@ -118,6 +126,8 @@ def _stands_at(run: RunView, place: tuple[float, float, float]) -> Mask:
 
 def _led(run: RunView) -> bool:
     """Whether the robot was told where to go."""
+    if not run.has("/command"):
+        return False
     log = run.log["/command"]
     return not bool(np.isnan([log.field("yaw_rate"), log.field("heading")]).all())
 

@@ -83,6 +83,52 @@ def test_every_field_has_a_meaning_and_every_array_a_shape(name, thing):
             assert "shape" in meaning or "of `" in meaning, f"{name}.{field.name}: {meaning}"
 
 
+UNIT = r"\[[^\[\]]*\]"
+"""Of a docstring; a pure number has [-], and what is of many units [SI]."""
+NUMBER = re.compile(r"\bfloat\b|\bArray\b|NDArray|ndarray")
+
+
+@pytest.mark.parametrize(("name", "thing"), DATA, ids=[name for name, _ in DATA])
+def test_every_field_that_is_a_number_has_a_unit(name, thing):
+    told = entries(inspect.getdoc(thing))
+    for field in fields(thing):
+        if not field.name.startswith("_") and NUMBER.search(str(field.type)):
+            unit = field.metadata.get("unit") or re.search(UNIT, told.get(field.name) or field.metadata.get("doc", ""))
+            assert unit, f"{name}.{field.name}"
+
+
+def unitless(function, told):
+    """Arguments and the return of a function that are numbers without a unit; told of its class by attribute."""
+    text, signature = inspect.getdoc(function) or "", inspect.signature(function)
+    own = entries(text)
+    for argument in signature.parameters.values():
+        meaning = own.get(argument.name) or told.get(argument.name) or text
+        if NUMBER.search(str(argument.annotation)) and not re.search(UNIT, meaning):
+            yield argument.name
+    if NUMBER.search(str(signature.return_annotation)) and not re.search(UNIT, text):
+        yield "return"
+
+
+@pytest.mark.parametrize(("name", "thing"), PUBLIC, ids=[name for name, _ in PUBLIC])
+def test_every_argument_and_return_that_is_a_number_has_a_unit(name, thing):
+    told = entries(inspect.getdoc(thing)) if inspect.isclass(thing) else {}
+    for part, function in callables(name, thing):
+        assert not list(unitless(function, told)), part
+
+
+def test_a_number_without_a_unit_is_found():
+    def silent(length: float, width: float) -> float:
+        """An area.
+
+        Args:
+            length: of it [m].
+            width: across it.
+        """
+        return length * width
+
+    assert list(unitless(silent, {})) == ["width"]
+
+
 def test_what_says_nothing_is_found():
     def silent(value):
         raise ValueError(value)

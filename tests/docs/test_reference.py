@@ -28,7 +28,11 @@ def reference():
 
 
 @pytest.mark.parametrize(
-    "name", ["keys", "metrics", "channels", "robot-keys", "handed", "standing", "field", "engines", "benchmark-g1"]
+    "name",
+    [
+        *("keys", "metrics", "channels", "robot-keys", "handed", "standing", "field", "engines", "benchmark-g1"),
+        *("push-map", "push-map-pendulum", "push-gains", "made", "pythons"),
+    ],
 )
 def test_tables_are_up_to_date(reference, name):
     page, table = reference.TABLES[name]

@@ -60,6 +60,7 @@ def test_who_stands_steps_and_stands_again_with_its_feet_side_by_side(direction,
     result = pushed("stand", STANDING, 0.5, direction, "time: 0.5", tmp_path)
     metrics, log = assert_recovered(result)
     assert metrics["steps_taken"] >= 2
+    assert f"{metrics['steps_taken']} steps were added by a recovery" in result.verdict.notes
     truth = log["/truth"]
     way = truth.field("left_sole")[-1][:2] - truth.field("right_sole")[-1][:2]
     np.testing.assert_allclose(way, (0.0, 0.2), atol=0.02)

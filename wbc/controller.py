@@ -25,7 +25,7 @@ from surefoot.wbc.model import BodyFrames, RobotTerms
 from surefoot.wbc.parameters import WbcParameters
 from surefoot.wbc.qp import UNBOUNDED, WRENCH_UNIT, QpData, QpLayout, allocate
 from surefoot.wbc.separation import Separation
-from surefoot.wbc.solvers import Daqp, EqualityFirst, QpSolution, equalities_only, make_solver
+from surefoot.wbc.solvers import EqualityFirst, QpSolution, equalities_only, in_turn
 from surefoot.wbc.tasks.default import default_tasks
 from surefoot.wbc.tasks.diagonal import ForceDistribution, Posture, Regularisation
 from surefoot.wbc.tasks.registry import TaskLayout
@@ -50,7 +50,8 @@ FADE, FADE_DAMPING = 0.05, 0.02
 
 _a_report = maker(WbcReport)
 
-_IN_TURN = (SolveStatus.SOLVED, SolveStatus.SECOND_SOLVER)  # members are looked up by name at each access
+# Members are looked up by name at each access.
+_IN_TURN = (SolveStatus.SOLVED, SolveStatus.SOFTENED, SolveStatus.SECOND_SOLVER)
 
 
 @dataclass(frozen=True, slots=True)
@@ -163,7 +164,7 @@ class WholeBodyController:
         cones, ankles = _cones(sole, size), stops[0].columns
         self._tick = CompiledTick(self.terms.compiled) if self.terms.compiled else None
         self._hard = HardConstraints(
-            self.qp, self.layout, cones, limits, parameters.contact, ankles, self._tick, leaning
+            self.qp, self.layout, cones, limits, parameters.contact, ankles, stops[0].rolling, self._tick, leaning
         )
         self._region = SupportRegion(sole.half_length, sole.half_width, parameters.balance.polygon_share)
         self._region_contacts: tuple[tuple[bool, bool], int] | None = None
@@ -182,11 +183,9 @@ class WholeBodyController:
         self.tasks = TaskStack(self.qp, (*default, *tasks), diagonal, self._tick)
         self.schedule = ContactSchedule(parameters.schedule, self.terms.mass * GRAVITY, control_period)
         self._observer = LoadObserver(self.terms.mass, control_period, size, self.terms.compiled)
-        self._solvers = (make_solver(parameters.solver), make_solver(parameters.second_solver))
-        self.driven: DrivenRows | None = None
-        if driven is not None and driven.any():
-            self.driven = DrivenRows(self.layout, driven, control_period)
-            self._solvers = (Daqp(fixed=self.driven.fixed), self._solvers[1])
+        self.driven = None if driven is None or not driven.any() else DrivenRows(self.layout, driven, control_period)
+        fixed = None if self.driven is None else self.driven.fixed
+        self._solvers = in_turn(parameters.solver, parameters.second_solver, self.layout.soft, fixed)
         if isinstance(self._solvers[0], EqualityFirst):
             self._solvers[0].prepare(self.qp)
         self._limits, self._toe = limits, toe
@@ -262,12 +261,16 @@ class WholeBodyController:
         return self.qp
 
     def solve(self, qp: QpData, fail_solvers: bool = False) -> tuple[SolveStatus, QpSolution | None]:
-        """A solution by the first solver whose answer holds, else by the equalities alone; None if there is none."""
+        """A solution by the first solver whose answer holds, else by the equalities alone; None if there is none.
+
+        What holds no limits at all throws the robot. So before that some of the soft ones are broken.
+        """
         if not fail_solvers:
             for status, solver in zip(_IN_TURN, self._solvers, strict=True):
                 solution = solver.solve(qp)
                 if solution is not None and solution.violation <= ACCEPTED_VIOLATION:
-                    return status, solution
+                    whole = status is _IN_TURN[1] and qp.violation(solution.x) <= ACCEPTED_VIOLATION
+                    return _IN_TURN[2] if whole else status, solution
         solution = equalities_only(qp)
         return (SolveStatus.HELD if solution is None else SolveStatus.EQUALITIES_ONLY), solution
 

@@ -10,7 +10,7 @@ from surefoot.wbc.leaning import FREE
 from surefoot.wbc.limits import AccelerationBounds, JointLimits
 from surefoot.wbc.model import RobotTerms
 from surefoot.wbc.parameters import ContactGains
-from surefoot.wbc.qp import FOOT_ROWS, QpData, QpLayout
+from surefoot.wbc.qp import FOOT_ROWS, UNBOUNDED, QpData, QpLayout
 from surefoot.wbc.types import Array
 
 
@@ -22,7 +22,9 @@ class HardConstraints:
     Floating base: M_b q̈ + h_b = Σ J_bᵀ w (first six rows of the equations of motion).
     Torque: τ = M_a q̈ + h_a - Σ J_aᵀ w within the limits, with the torque itself eliminated.
     Joints: within their limits, where a foot that is held counts as at rest. What it turns is a ripple of its contact,
-    micrometres high, which the ground ends; to stop it at an ankle near its end would take the whole body.
+    micrometres high, which the ground ends; to stop it at an ankle near its end would take the whole body. So would the
+    end of the range of an ankle that rolls a held foot: on the narrow side of its sole the joint's stop tips it over
+    its edge, where the CoP is by then, and the shank goes on as before. No row knows of that end while a foot is held.
     """
 
     def __init__(
@@ -33,6 +35,7 @@ class HardConstraints:
         limits: JointLimits,
         gains: ContactGains,
         ankles: Sequence[Sequence[int]] = ((), ()),
+        tipping: tuple[int, ...] = (-1, -1),
         compiled: CompiledTick | None = None,
         leaning: bool = False,
     ) -> None:
@@ -45,11 +48,13 @@ class HardConstraints:
             limits: of the joints.
             gains: of the contacts.
             ankles: columns of the generalised velocity that belong to the left and to the right ankle.
+            tipping: of these, that of the joint that rolls each foot; -1 for none.
             compiled: on which the kernel works; None for plain Python.
             leaning: whether the kernel's feet lean.
         """
         self._gains = gains
         self._joints, self._ankles = AccelerationBounds(limits), [list(columns) for columns in ankles]
+        self._tipping = tipping
         self._rates = np.zeros(layout.nv)
         self._torque_span = np.concatenate([np.zeros(6), limits.torque])
         self._target, self._active = np.zeros((2, 6)), (False, False)
@@ -78,6 +83,8 @@ class HardConstraints:
             free_row=FREE,
             ankle_joints=len(self._ankles[0]),
             ankle_columns=np.array(self._ankles, dtype=np.int64),
+            tipping_columns=np.array(self._tipping, dtype=np.int64),
+            unbounded=UNBOUNDED,
             torque_span=self._torque_span,
             reach_time=bounds.reach_time,
             position_rate=bounds.position_rate,
@@ -128,10 +135,14 @@ class HardConstraints:
         self._motion(terms)
         self._contacts(terms, contacts, ground_normal, roll)
         np.copyto(self._rates, v)
+        held = [contacts.active[k] and k != contacts.rolling for k in (0, 1)]
         for k, columns in enumerate(self._ankles):
-            if contacts.active[k] and k != contacts.rolling:
+            if held[k]:
                 self._rates[columns] -= terms.sole_velocity[k, 3:] @ terms.sole_jacobian[k, 3:, columns].T
         self._joints.write(q[7:], self._rates[6:], self._joint_lower, self._joint_upper)
+        for k, column in enumerate(self._tipping):
+            if held[k] and column >= 0:
+                self._joint_lower[column - 6], self._joint_upper[column - 6] = -UNBOUNDED, UNBOUNDED
 
     def _motion(self, terms: RobotTerms) -> None:
         self._mass[:] = terms.mass_matrix

@@ -3,6 +3,7 @@
 import math
 
 import numpy as np
+from numpy.typing import NDArray
 
 from surefoot.values import dataclass
 from surefoot.wbc.types import Array
@@ -68,6 +69,15 @@ class QpLayout:
         first = self.torque_rows.stop + 2 * self.cone_rows
         return slice(first, first + self.separation_rows)
 
+    @property
+    def soft(self) -> NDArray[np.intp]:
+        """Numbers of the bounds and rows that stops of joints and contacts of limbs hold as well, of all of them [-].
+
+        Those of the joints' accelerations come first, those of the distances between limbs last.
+        """
+        gaps = self.variables + np.arange(self.separation.start, self.separation.stop)
+        return np.concatenate((np.arange(6, self.nv), gaps))
+
     def wrench(self, foot: int) -> slice:
         """Variables of one sole wrench."""
         return slice(self.nv + 6 * foot, self.nv + 6 * foot + 6)
@@ -105,10 +115,18 @@ class QpData:
         parts = (self.H, self.g, self.A, self.bounds_lower, self.bounds_upper)
         return math.isfinite(sum(float(part.sum()) for part in parts))
 
-    def violation(self, x: Array) -> float:
-        """Largest violation [of its row] of any bound or row at x, shape (n,); 0 when feasible, NaN of no number."""
+    def violation(self, x: Array, soft: NDArray[np.intp] | None = None) -> float:
+        """Largest violation [of its row] of any bound or row at x, shape (n,); 0 when feasible, NaN of no number.
+
+        Args:
+            x: a solution [as of the QP].
+            soft: numbers of bounds and rows that do not count; None for none [-].
+        """
         values = np.concatenate((x, self.A @ x))
-        excess = float(np.maximum(self.bounds_lower - values, values - self.bounds_upper).max())
+        beyond = np.maximum(self.bounds_lower - values, values - self.bounds_upper)
+        if soft is not None:
+            beyond[soft] = 0.0
+        excess = float(beyond.max())
         return excess if not excess < 0.0 else 0.0
 
 

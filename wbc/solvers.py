@@ -101,19 +101,33 @@ class ProxQp:
         return solver
 
 
+_EQUALITY, _SOFT = 5, 8
+"""DAQP's kinds of rows: those that hold with equality, and those that may be broken."""
+
+_OPTIMAL = (1, 2)
+"""Its answers that are optimal, the second one with soft rows that are broken."""
+
+
 class Daqp:
     """DAQP, a dense dual active-set solver (Arnström, Bemporad and Axehill, IEEE TAC 2022), started from cold."""
 
     name = "daqp"
 
-    def __init__(self, accuracy: float = 1e-9, fixed: NDArray[np.intp] | None = None) -> None:
-        """What counts as an equality.
+    def __init__(
+        self,
+        accuracy: float = 1e-9,
+        fixed: NDArray[np.intp] | None = None,
+        soft: NDArray[np.intp] | None = None,
+    ) -> None:
+        """What counts as an equality, and what may be broken.
 
         Args:
             accuracy: largest violation of a normalised row that counts as none [-].
             fixed: numbers of bounds that are equalities where both of them are the same; None for none.
+            soft: numbers of bounds and rows that are broken, at a cost of the squared violations beside which all
+                others are small, where there is no solution that holds them; None for none.
         """
-        self._accuracy, self._fixed = accuracy, fixed
+        self._accuracy, self._fixed, self._soft = accuracy, fixed, soft
         self._sense = np.zeros(0, dtype=np.intc)
 
     def solve(self, qp: QpData) -> QpSolution | None:
@@ -123,16 +137,19 @@ class Daqp:
         n, total = qp.g.shape[0], qp.bounds_lower.shape[0]
         if self._sense.shape[0] != total:
             self._sense = np.zeros(total, dtype=np.intc)
-            self._sense[n : n + EQUALITY_ROWS] = 5
+            self._sense[n : n + EQUALITY_ROWS] = _EQUALITY
+            if self._soft is not None:
+                self._sense[self._soft] = _SOFT
+            self._usual = self._sense.copy()
         if self._fixed is not None:
             same = qp.bounds_lower[self._fixed] == qp.bounds_upper[self._fixed]
-            self._sense[self._fixed] = np.where(same, 5, 0)
+            self._sense[self._fixed] = np.where(same, _EQUALITY, self._usual[self._fixed])
         x, _, flag, info = daqp.solve(
             qp.H, qp.g, qp.A, qp.bounds_upper, qp.bounds_lower, self._sense, primal_tol=self._accuracy
         )
-        if flag != 1:
+        if flag not in _OPTIMAL:
             return None
-        return QpSolution(x, qp.violation(x), int(info["iterations"]))
+        return QpSolution(x, qp.violation(x, self._soft), int(info["iterations"]))
 
 
 class EqualityFirst:
@@ -263,3 +280,24 @@ def make_solver(name: str) -> QpSolver:
     if name not in SOLVERS:
         raise ValueError(f"unknown QP solver '{name}'; choose one of {', '.join(sorted(SOLVERS))}")
     return SOLVERS[name]()
+
+
+def in_turn(
+    first: str, second: str, soft: NDArray[np.intp], fixed: NDArray[np.intp] | None = None
+) -> tuple[QpSolver, QpSolver, QpSolver]:
+    """Solvers in the order in which a controller asks them.
+
+    Args:
+        first: name of the first one.
+        second: of the one that is asked when all others fail.
+        soft: what the one between them may break, as of ``Daqp``.
+        fixed: bounds that may be equalities, as of ``Daqp``, which then is the first one; None for none.
+
+    Raises:
+        ValueError: for an unknown name.
+    """
+    return (
+        make_solver(first) if fixed is None else Daqp(fixed=fixed),
+        Daqp(fixed=fixed, soft=soft),
+        make_solver(second),
+    )

@@ -27,11 +27,13 @@ class SolveStatus(IntEnum):
     SOLVED = 0
     """The default solver solved the QP."""
     SECOND_SOLVER = 1
-    """The default solver failed and the second one solved it."""
+    """The default solver failed and another one solved it."""
     EQUALITIES_ONLY = 2
-    """Both failed: dynamics and contacts hold, inequalities are dropped and the torque is clipped."""
+    """All failed: dynamics and contacts hold, inequalities are dropped and the torque is clipped."""
     HELD = 3
     """Nothing could be solved: the last torque is held and faded into damping."""
+    SOFTENED = 4
+    """Nothing holds all limits: some are broken, of those of the joints' motion and of the distances between limbs."""
 
 
 @dataclass(frozen=True, slots=True)

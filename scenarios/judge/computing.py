@@ -114,7 +114,7 @@ def qp_failures(run: RunView) -> int:
 
 @metric(reads={"/wbc": ("fallback",)}, body=True, least=0.0)
 def wbc_fallbacks(run: RunView) -> int:
-    """Ticks at which no solver succeeded and the fallback torque was used."""
+    """Ticks at which nothing held all limits and the fallback torque was used."""
     return int(np.count_nonzero(run.field("/wbc", "fallback")))
 
 

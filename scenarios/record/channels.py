@@ -254,7 +254,7 @@ def wbc(n: Sizes) -> ChannelSpec:
         _int("status", "0 solved"),
         _int("solver", "0 default, 1 second solver"),
         _int("iterations", "of the solver"),
-        _int("fallback", "1: no solution, the fallback torque is used"),
+        _int("fallback", "1: nothing holds all limits, the fallback torque is used"),
         _scalar("primal_residual", "-", "of the constraints"),
         _scalar("dual_residual", "-", "of stationarity"),
         _real("acceleration", n.nv, "m/s^2, rad/s^2", "base", "planned"),

@@ -223,6 +223,8 @@ typedef struct {
     int64_t free_row;
     int64_t ankle_joints;
     const int64_t *ankle_columns;
+    const int64_t *tipping_columns;
+    double unbounded;
     const double *torque_span;
     double reach_time;
     double position_rate;

@@ -68,6 +68,11 @@ static void joint_bounds(const HardRows *rows, const int64_t *held) {
         rows->lower[6 + j] = lower < highest ? lower : highest;
         rows->upper[6 + j] = upper > lowest ? upper : lowest;
     }
+    for (int64_t foot = 0; foot < 2; foot++)
+        if (held[foot] && rows->tipping_columns[foot] >= 0) {
+            rows->lower[rows->tipping_columns[foot]] = -rows->unbounded;
+            rows->upper[rows->tipping_columns[foot]] = rows->unbounded;
+        }
 }
 
 /* Counterpart of `HardConstraints.write`, but for the wrench cones, which change with the contacts only. */

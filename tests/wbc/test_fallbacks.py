@@ -4,6 +4,7 @@ import numpy as np
 import pytest
 
 from surefoot.wbc.qp import EQUALITY_ROWS, WRENCH_UNIT
+from surefoot.wbc.solvers import Daqp, ProxQp, equalities_only
 from surefoot.wbc.types import RobotState, SolveStatus
 
 pytestmark = pytest.mark.unit
@@ -24,7 +25,7 @@ def controller(robot, rng):
 
 
 def break_first(controller, solver):
-    controller._solvers = (solver, controller._solvers[1])
+    controller._solvers = (solver, *controller._solvers[1:])
 
 
 def test_the_second_solver_answers_for_the_first(controller, reference, loaded):
@@ -33,6 +34,52 @@ def test_the_second_solver_answers_for_the_first(controller, reference, loaded):
     report = controller.update(reference, loaded)
     assert report.status is SolveStatus.SECOND_SOLVER
     np.testing.assert_allclose(report.torque, good, atol=1e-3)
+
+
+def test_so_does_the_last_one_for_both_before_it(controller, reference, loaded):
+    good = controller.update(reference, loaded).torque.copy()
+    controller._solvers = (Failing(), Failing(), controller._solvers[2])
+    report = controller.update(reference, loaded)
+    assert report.status is SolveStatus.SECOND_SOLVER
+    np.testing.assert_allclose(report.torque, good, atol=1e-3)
+
+
+@pytest.fixture
+def contradicted(controller, reference, loaded):
+    """A QP whose joints may not move but for a knee, which must, while both feet are held."""
+    controller.update(reference, loaded)
+    qp, layout = controller.qp.copy(), controller.layout
+    qp.bounds_lower[6 : layout.nv] = qp.bounds_upper[6 : layout.nv] = 0.0
+    knee = controller.terms.model.joints[controller.terms.model.getJointId("left_knee")].idx_v
+    qp.bounds_lower[knee], qp.bounds_upper[knee] = 20.0, 30.0
+    return qp
+
+
+def test_limits_that_contradict_each_other_are_broken_and_no_others(controller, contradicted):
+    status, solution = controller.solve(contradicted)
+    assert status is SolveStatus.SOFTENED
+    assert contradicted.violation(solution.x) > 0.1
+    assert contradicted.violation(solution.x, controller.layout.soft) <= 1e-6
+    torque = contradicted.A[controller.layout.torque_rows] @ solution.x + controller.terms.bias[6:]
+    assert (np.abs(torque) <= controller._limits.torque + 1e-6).all()
+
+
+def test_the_equalities_alone_would_break_others_as_well(controller, contradicted):
+    """Negative control."""
+    assert contradicted.violation(equalities_only(contradicted).x, controller.layout.soft) > 0.1
+
+
+def test_where_all_can_hold_none_is_broken(controller, reference, loaded):
+    controller.update(reference, loaded)
+    usual, softened = (controller._solvers[k].solve(controller.qp).x for k in (0, 1))
+    assert controller.qp.violation(softened) <= 1e-3
+    np.testing.assert_allclose(softened, usual, atol=1e-3)
+
+
+def test_without_what_may_be_broken_there_is_no_solution(contradicted):
+    """Negative control."""
+    assert Daqp().solve(contradicted) is None
+    assert ProxQp().solve(contradicted) is None
 
 
 def test_a_solver_that_lies_is_not_believed(controller, reference, loaded):

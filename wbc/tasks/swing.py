@@ -38,6 +38,7 @@ class AnkleStops:
     Attributes:
         ankles: from the centres of the soles, in their frames: forward and up, shape (2, 3) [m].
         columns: of the generalised velocity, those of the joints of each ankle.
+        rolling: of these, that of the joint of each ankle which rolls its foot; -1 for none.
         lower, upper: ends of the ranges of all joints, shape (nj,) [rad].
         ahead: time by which a joint is looked at before it comes to its end [s].
     """
@@ -48,6 +49,7 @@ class AnkleStops:
         self.ankles = np.array([sole.placement.inverse().translation for sole in soles]) * (1.0, 0.0, 1.0)
         joints = 2 if frames.leaning is None else 1
         self.columns = tuple(tuple(model.joints[j].idx_v for j in list(chain)[-joints:]) for chain in supports)
+        self.rolling = tuple(_rolling(model, name, of) for name, of in zip(frames.soles, self.columns, strict=True))
         self.lower, self.upper, self.ahead = limits.lower, limits.upper, 2.0 * limits.position_horizon
 
     def yielding(self, terms: RobotTerms, k: int, desired: Array) -> list[tuple[Array, float]]:
@@ -73,6 +75,14 @@ class AnkleStops:
             if share > 0.0:
                 found.append((axis, share))
         return found
+
+
+def _rolling(model: pin.Model, sole: str, columns: tuple[int, ...]) -> int:
+    """Of the columns of an ankle, that of the joint whose axis is nearest to the length of its sole; -1 for none."""
+    data, frame, local = model.createData(), model.getFrameId(sole), pin.ReferenceFrame.LOCAL
+    axes = np.abs(pin.computeFrameJacobian(model, data, pin.neutral(model), frame, local)[3:, columns])
+    along = [column for column, (x, y, z) in zip(columns, axes.T.tolist(), strict=True) if x > max(y, z)]
+    return max(along, key=lambda column: axes[0, columns.index(column)], default=-1)
 
 
 class SwingFoot:

@@ -15,7 +15,7 @@ pytestmark = pytest.mark.unit
 
 NJ = 4
 LIMIT = np.array([100.0, 80.0, 50.0, 200.0])
-STATUSES = (SolveStatus.SOLVED, SolveStatus.SECOND_SOLVER, SolveStatus.EQUALITIES_ONLY)
+STATUSES = (SolveStatus.SOLVED, SolveStatus.SECOND_SOLVER, SolveStatus.SOFTENED, SolveStatus.HELD)
 
 
 def tick(rng, status):
@@ -58,9 +58,9 @@ def test_derived_fields_follow_their_definitions(tmp_path):
     log = read(tmp_path / "log.mcap")
 
     assert log["/wbc"].field("status").tolist() == [int(status) for status in STATUSES]
-    assert log["/wbc"].field("solver").tolist() == [0, 1, 0]
-    assert log["/wbc"].field("fallback").tolist() == [0, 0, 1]
-    assert log["/contact"].field("felt").tolist() == [[0, 1]] * 3
+    assert log["/wbc"].field("solver").tolist() == [0, 1, 0, 0]
+    assert log["/wbc"].field("fallback").tolist() == [0, 0, 1, 1]
+    assert log["/contact"].field("felt").tolist() == [[0, 1]] * len(STATUSES)
     for n, (*_, report, _) in enumerate(ticks):
         estimate = log["/estimate"]
         assert estimate.field("mass")[n] == pytest.approx(100.0 * report.load.mass_scale)

@@ -1,0 +1,33 @@
+"""A small robot that marches with quick steps is pushed hard at its torso, and goes on.
+
+The campaign `march-ladder` finds the largest pushes in all directions and phases. Here are some that fell it while its
+whole-body QP took the end of an ankle's range for a wall, with some to spare.
+"""
+
+import pytest
+
+import surefoot
+from surefoot.scenarios.study.campaigns.campaign import read_campaign
+
+pytestmark = pytest.mark.physics
+
+
+def falls(direction, phase, fraction, impulse):
+    """Whether it falls."""
+    keys = {**read_campaign("march-ladder").spec.set, "duration": 3.0}
+    push = {**keys["pushes"][0], "phase": phase, "fraction": fraction, "impulse": impulse, "direction": direction}
+    with surefoot.Simulation(surefoot.load("walk", {**keys, "pushes": [push]})) as simulation:
+        while not simulation.done:
+            tick = simulation.step()
+            if tick.fell:
+                return True
+    return False
+
+
+@pytest.mark.parametrize(
+    ("direction", "phase", "fraction", "impulse"),
+    [(0.785, "single", 0.5, 0.35), (-1.571, "double", 0.5, 0.3)],
+    ids=["forward left, SS 0.5", "right, DS 0.5"],
+)
+def test_it_goes_on_after_a_push_that_takes_an_ankle_to_its_end(direction, phase, fraction, impulse):
+    assert not falls(direction, phase, fraction, impulse)

@@ -17,8 +17,9 @@ import pinocchio as pin
 from numpy.typing import NDArray
 
 from benchmarks.table import Section
-from surefoot.wbc.estimation.invariant_filter import TURN, VELOCITY, InvariantFilter, Stand
+from surefoot.wbc.estimation.invariant_filter import InvariantFilter
 from surefoot.wbc.estimation.parameters import GroundNoise, SensorNoise
+from surefoot.wbc.estimation.stand import TURN, VELOCITY, Stand
 
 Array = NDArray[np.float64]
 

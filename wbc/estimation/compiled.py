@@ -1,15 +1,11 @@
 """The compiled ticks of the invariant filter, on the arrays of its state."""
 
-from typing import TYPE_CHECKING
-
 import numpy as np
 
 from surefoot.native.library import Library
 from surefoot.similarity import GRAVITY
+from surefoot.wbc.estimation.stand import Stand
 from surefoot.wbc.types import Array
-
-if TYPE_CHECKING:
-    from surefoot.wbc.estimation.invariant_filter import Stand
 
 POSE, FEET = 6, 2
 
@@ -23,7 +19,7 @@ class FilterKernels:
         size: numbers of its error.
     """
 
-    def __init__(self, kernels: Library, stand: "Stand", size: int) -> None:
+    def __init__(self, kernels: Library, stand: Stand, size: int) -> None:
         rows = POSE * FEET
         self._rate, self._force, self._acceleration = np.zeros(3), np.zeros(3), np.zeros(3)
         self._position, self._rotation = np.zeros((FEET, 3)), np.zeros((FEET, 3, 3))

@@ -133,6 +133,25 @@ class SoleContact:
             self._tare[k] += (1.0 - math.exp(-self._period / self._parameters.tare_time)) * self.wrench[k]
 
 
+def sprung(changed: Array, half_size: tuple[float, float], give: float) -> Array:
+    """How soles on springs under their corners move under a change of their wrenches.
+
+    Springs that give by a depth g under a force of 1 N turn under a moment M by M g / h², with h the half size across
+    its axis: the corners are at plus and minus h.
+
+    Args:
+        changed: wrenches now less those before, of the ground on the soles in their axes, shape (2, 6) [N, N·m].
+        half_size: half of the sole's length and width [m].
+        give: g, of a sole [m/N].
+
+    Returns:
+        roll and pitch of each sole, and how far it rises, shape (2, 3) [rad, rad, m].
+    """
+    length, width = half_size
+    # Where the ground presses more, the sole sinks.
+    return changed[:, [3, 4, 2]] * (-give * np.array([width**-2, length**-2, 1.0]))
+
+
 def _low_pass(cut: float, period: float) -> tuple[float, float]:
     """Share of a new value in a low pass of first order, and what it leaves of white noise [-]."""
     share = 1.0 - math.exp(-math.tau * cut * period) if cut < math.inf else 1.0

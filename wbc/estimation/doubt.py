@@ -7,9 +7,10 @@ import pinocchio as pin
 
 from surefoot.wbc.estimation.contact import SoleContact
 from surefoot.wbc.estimation.estimate import Deviation
-from surefoot.wbc.estimation.invariant_filter import OFFSETS, POSITION, TURN, VELOCITY, InvariantFilter
+from surefoot.wbc.estimation.invariant_filter import InvariantFilter
 from surefoot.wbc.estimation.kinematics import SensedBody
 from surefoot.wbc.estimation.parameters import SensorNoise
+from surefoot.wbc.estimation.stand import OFFSETS, POSITION, TURN, VELOCITY
 from surefoot.wbc.external import SPAN
 from surefoot.wbc.types import GRAVITY, Array
 

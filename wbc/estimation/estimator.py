@@ -9,14 +9,15 @@ import pinocchio as pin
 
 from surefoot.readings import Reading, Readings
 from surefoot.values import dataclass
-from surefoot.wbc.estimation.contact import SoleContact
+from surefoot.wbc.estimation.contact import SoleContact, sprung
 from surefoot.wbc.estimation.doubt import Doubt
 from surefoot.wbc.estimation.estimate import Deviation, Estimate, Planned
-from surefoot.wbc.estimation.invariant_filter import InvariantFilter, Stand
+from surefoot.wbc.estimation.invariant_filter import InvariantFilter
 from surefoot.wbc.estimation.joints import KEPT, JointObserver
 from surefoot.wbc.estimation.kinematics import ImuMount, SensedBody
 from surefoot.wbc.estimation.parameters import EstimatorParameters
 from surefoot.wbc.estimation.rates import RateFilter
+from surefoot.wbc.estimation.stand import Stand
 from surefoot.wbc.estimation.torques import TorqueWrench
 from surefoot.wbc.types import GRAVITY, Array, RobotState
 
@@ -94,6 +95,7 @@ class SensedState:
         self._doubt = Doubt(self._body, sensors, self._joints.rate_noise)
         self._rate: RateFilter
         self._above = [0.0, 0.0]
+        self._load = np.zeros((2, 6))
 
     @property
     def filter(self) -> InvariantFilter:
@@ -122,6 +124,7 @@ class SensedState:
             self._rate = RateFilter(gyro, self._period, parameters.sensors.gyro_density, parameters.ground.turning_plan)
             self._contact = self._feeling(readings)
             self._contact.update(self._wrench(readings), self._still, self._above)
+            self._load = self._contact.wrench
             self._state = self._now(readings, q, qd)
             self._deviation = self._unsure(self._body.offset_jacobians())
         elif not self._lost:
@@ -248,7 +251,7 @@ class SensedState:
         if due:
             J = body.offset_jacobians()
             force_z = contact.wrench[:, 2] / self._weight
-            filter_.spread((max(float(force_z[0]), 0.0), max(float(force_z[1]), 0.0)))
+            filter_.spread((max(float(force_z[0]), 0.0), max(float(force_z[1]), 0.0)), self._sprung())
             if changed:
                 self._change(J)
             filter_.weigh(J)
@@ -262,6 +265,12 @@ class SensedState:
         if due:
             self._deviation = self._unsure(J)
             self._above = [self._over_ground(k) for k in (0, 1)]
+
+    def _sprung(self) -> Array:
+        """How each sole moved on the springs of the ground since this was asked last, as of `sprung`."""
+        changed = self._contact.wrench - self._load
+        self._load = self._contact.wrench
+        return sprung(changed, self._footing.half_size, self._parameters.ground.depth / self._weight)
 
     def _gained(self, at: int) -> Array | None:
         """Angular velocity that the IMU was planned to gain from its last reading to that of a tick, shape (3,)."""

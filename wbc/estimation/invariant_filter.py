@@ -17,8 +17,6 @@ encoders less their offsets, gives for a foot that stands (eq. 33, with J the Ja
     R̂ y + p̂ - d̂ = ξ_d - ξ_p + R̂ J_y o,   log(R̂ Y Ẑᵀ) = ζ - ξ_R + R̂ J_Y o.
 """
 
-from dataclasses import dataclass
-
 import numpy as np
 import pinocchio as pin
 
@@ -26,12 +24,8 @@ from surefoot.native.library import library
 from surefoot.similarity import GRAVITY
 from surefoot.wbc.estimation.compiled import FilterKernels
 from surefoot.wbc.estimation.parameters import GroundNoise, SensorNoise
+from surefoot.wbc.estimation.stand import FOOT, FORCE, GYRO, OFFSETS, POSITION, SOLE, TURN, VELOCITY, Stand
 from surefoot.wbc.types import Array
-
-TURN, VELOCITY, POSITION = slice(0, 3), slice(3, 6), slice(6, 9)
-FOOT, SOLE = (slice(9, 12), slice(12, 15)), (slice(15, 18), slice(18, 21))
-GYRO, FORCE, OFFSETS = slice(21, 24), slice(24, 27), slice(27, None)
-"""Places in the error: R, v, p, d, Z, biases of gyroscope and accelerometer, offsets of the encoders."""
 
 FIXED = 27
 """Numbers of the error beside the offsets."""
@@ -49,57 +43,11 @@ LIKELY = 9.0
 """Square of the normalised height of a landing over the ground that is believed, from which on it is another ground: by
 chance in one of 370 landings, which then tells no height [-]."""
 
+UNSURE = 0.5
+"""Deviation of what springs under a sole do, over what they are believed to do [-]."""
+
 GATE = 50.0
 """Square of the normalised residual of two feet from which on one has slipped: by chance in one of 10^6 ticks [-]."""
-
-
-@dataclass(slots=True)
-class Stand:
-    """Where the filter believes that the IMU and the soles are, in arrays that stay where they are.
-
-    Attributes:
-        R: orientation of the IMU in the world, shape (3, 3).
-        columns: velocity and position of the IMU, left and right sole centre, world axes, shape (4, 3) [m/s, m].
-        Z: orientations of the soles, shape (2, 3, 3).
-        gyro_bias: shape (3,) [rad/s].
-        force_bias: of the accelerometer, shape (3,) [m/s^2].
-        offsets: of the encoders of the chain, shape (m,) [rad].
-    """
-
-    R: Array
-    columns: Array
-    Z: Array
-    gyro_bias: Array
-    force_bias: Array
-    offsets: Array
-
-    @property
-    def v(self) -> Array:
-        """Velocity of the IMU, shape (3,) [m/s]."""
-        velocity: Array = self.columns[0]
-        return velocity
-
-    @property
-    def p(self) -> Array:
-        """Position of the IMU, shape (3,) [m]."""
-        position: Array = self.columns[1]
-        return position
-
-    @property
-    def d(self) -> Array:
-        """Sole centres, shape (2, 3) [m]."""
-        return self.columns[2:]
-
-    def move(self, x: Array) -> None:
-        """Apply exp(x) from the left; of the group's V-matrix the identity is taken, for small x."""
-        E = pin.exp3(x[TURN])
-        self.R[:] = E @ self.R
-        self.columns[:] = self.columns @ E.T + x[3:15].reshape(4, 3)
-        for k in (0, 1):
-            self.Z[k] = pin.exp3(x[SOLE[k]]) @ self.Z[k]
-        self.gyro_bias += x[GYRO]
-        self.force_bias += x[FORCE]
-        self.offsets += x[OFFSETS]
 
 
 class InvariantFilter:
@@ -226,8 +174,14 @@ class InvariantFilter:
         F[VELOCITY, FORCE] = -time * s.R
         return F, B
 
-    def spread(self, loads: tuple[float, float]) -> None:
-        """Covariance of the way since it was computed last; loads are shares of the weight on the soles [-]."""
+    def spread(self, loads: tuple[float, float], sprung: Array | None = None) -> None:
+        """Covariance of the way since it was computed last.
+
+        Args:
+            loads: shares of the weight on the soles [-].
+            sprung: by how much each sole has rolled, pitched and risen on springs in that time, in its own axes, shape
+                (2, 3), with half of that as its deviation; None where nobody knows [rad, rad, m].
+        """
         dt, self._since = self._since, 0.0
         if dt <= 0.0:
             return
@@ -244,6 +198,12 @@ class InvariantFilter:
             if self.standing[k]:
                 D[FOOT[k]] += np.square(more * np.array([ground.creep, ground.creep, ground.sinking])) * dt
                 D[SOLE[k]] += (more * ground.rocking) ** 2 * dt
+                if sprung is not None:
+                    turned, risen = self.stand.Z[k, :, :2] @ sprung[k, :2], float(sprung[k, 2])
+                    D[FOOT[k].stop - 1] += (UNSURE * risen) ** 2
+                    D[SOLE[k]] += (UNSURE * turned) ** 2
+                    self.stand.columns[2 + k, 2] += risen
+                    self.stand.Z[k] = pin.exp3(turned) @ self.stand.Z[k]
                 if self._leaning:
                     line = self.stand.Z[k, :, 0]
                     P[SOLE[k], SOLE[k]] += (LEANING**2 * dt) * np.outer(line, line)

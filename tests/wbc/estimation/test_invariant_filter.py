@@ -7,26 +7,15 @@ import numpy as np
 import pinocchio as pin
 import pytest
 
-from surefoot.wbc.estimation.invariant_filter import (
-    FIXED,
-    FOOT,
-    FORCE,
-    GYRO,
-    OFFSETS,
-    POSITION,
-    SOLE,
-    TURN,
-    VELOCITY,
-    InvariantFilter,
-    Stand,
-)
+from surefoot.wbc.estimation.invariant_filter import FIXED, UNSURE, InvariantFilter
 from surefoot.wbc.estimation.parameters import GroundNoise, SensorNoise
+from surefoot.wbc.estimation.stand import FOOT, FORCE, GYRO, OFFSETS, POSITION, SOLE, TURN, VELOCITY, Stand
 
 pytestmark = pytest.mark.unit
 
 PERIOD, JOINTS = 0.002, 4
 NOISE = SensorNoise(accelerometer_density=5e-3, encoder=1e-4, encoder_offset=1e-3)
-GROUND = GroundNoise(creep=5e-4, rocking=5e-4, model=0.0, light=1.0, landing=5e-4, landing_turn=5e-4)
+GROUND = GroundNoise(creep=5e-4, sinking=5e-4, rocking=5e-4, model=0.0, light=1.0, landing=5e-4, landing_turn=5e-4)
 
 
 def somewhere(rng):
@@ -250,6 +239,23 @@ def test_a_landing_that_is_not_on_the_ground_that_is_believed_moves_nothing(step
     before = off.stand.columns.copy()
     off.land(0, y, np.eye(3), J, (height + step, 1.5e-3), 1e-3, 1e-3)
     assert np.abs(off.stand.columns - before).max() > 0.2 * abs(step)
+
+
+def test_a_standing_sole_goes_where_the_springs_let_it_and_is_unsure_by_a_share_of_that():
+    filter_, other = (InvariantFilter(somewhere(np.random.default_rng(7)), NOISE, GROUND, PERIOD) for _ in range(2))
+    filter_.lift(1), other.lift(1)
+    before, way = deepcopy(filter_.stand), np.array([[2e-3, -1e-3, 3e-4], [1.0, 1.0, 1.0]])
+    for each, sprung in ((filter_, way), (other, None)):
+        each.propagate(np.zeros(3), np.zeros(3), PERIOD)
+        each.spread((1.0, 0.0), sprung)
+    # In its own axes it has turned, the other, which does not stand, has not.
+    np.testing.assert_allclose(pin.log3(before.Z[0].T @ filter_.stand.Z[0]), [2e-3, -1e-3, 0.0], atol=1e-12)
+    np.testing.assert_array_equal(filter_.stand.Z[1], before.Z[1])
+    np.testing.assert_allclose(filter_.stand.d - before.d, [[0.0, 0.0, 3e-4], [0.0, 0.0, 0.0]], atol=1e-15)
+    more = np.diagonal(filter_.P - other.P)
+    np.testing.assert_allclose(more[SOLE[0]], (UNSURE * before.Z[0] @ [2e-3, -1e-3, 0.0]) ** 2, atol=1e-12)
+    np.testing.assert_allclose(more[FOOT[0]], [0.0, 0.0, (UNSURE * 3e-4) ** 2], atol=1e-15)
+    assert np.abs(more[SOLE[1]]).max() == 0.0
 
 
 @pytest.mark.parametrize("leaning", [True, False])

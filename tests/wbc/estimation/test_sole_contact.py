@@ -4,7 +4,7 @@ import numpy as np
 import pytest
 
 from surefoot.readings import Reading
-from surefoot.wbc.estimation.contact import SoleContact
+from surefoot.wbc.estimation.contact import SoleContact, sprung
 from surefoot.wbc.estimation.parameters import ContactDetection, SensorNoise
 
 pytestmark = pytest.mark.unit
@@ -108,3 +108,16 @@ def test_the_last_contact_stands_whatever_its_edge():
     feet = Feet()
     feet.update(1.0, 0.0, cop=0.97, rolling=0, ticks=60)
     assert feet.contact.firm == [True, False]
+
+
+def test_a_sole_on_springs_under_its_corners_moves_until_they_bear_the_change():
+    half, give, rng = (0.11, 0.05), 2.5e-7, np.random.default_rng(2)
+    changed = rng.normal(size=(2, 6)) * 100.0
+    roll, pitch, rises = sprung(changed, half, give).T
+    corners = np.array([[x * half[0], y * half[1]] for x in (-1, 1) for y in (-1, 1)])
+    for k in (0, 1):
+        # A corner at x, y of a sole that rolls and pitches rises by y times roll less x times pitch.
+        high = rises[k] + corners[:, 1] * roll[k] - corners[:, 0] * pitch[k]
+        force = -high / (4.0 * give)
+        found = [force.sum(), force @ corners[:, 1], -force @ corners[:, 0]]
+        np.testing.assert_allclose(found, changed[k, [2, 3, 4]], rtol=1e-12)

@@ -76,7 +76,7 @@ def test_an_option_that_is_unknown_or_out_of_range_is_refused():
     assert made._parameters.covariance_rate == 50.0 and made._parameters.ground.height == 0.0
     for options, words in (
         ({"speed": 1.0}, "unknown option 'speed'"),
-        ({"ground": {"depth": 1.0}}, "unknown option 'depth'"),
+        ({"ground": {"width": 1.0}}, "unknown option 'width'"),
         ({"ground": 1.0}, "give its numbers by name"),
         ({"ground": {"height": -1.0}}, "height is -1.0"),
     ):

@@ -79,6 +79,7 @@ def main(_: Sequence[str] = ()) -> None:
             post(address, kind="pace", paused=True)
             with Browser(address, Path(folder) / "profile", SIZE) as page:
                 page.wait_for(CANVAS)
+                page.wait_for(f"{TIME} >= 0")
                 page.run(PLAIN)
                 post(address, kind="pace", speed=0.1)
                 pictures = filmed(page, address)

@@ -115,6 +115,7 @@ PICTURES: dict[str, Callable[[], None]] = {
     "front.webp": by("front"),
     **{name: by("recoveries", name) for name in RECOVERIES},
     **{f"robot-{name}.webp": by("gallery", name) for name in ROBOTS},
+    "tour.webp": by("tour"),
     "drive.webp": by("drive"),
     "courses.png": by("courses"),
     "gait-map.png": by("gait_map"),

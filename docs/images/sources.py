@@ -35,6 +35,7 @@ SOURCES: dict[str, tuple[str, ...]] = {
     "front.webp": (*_MOVING, f"{_OWN}/front.py", f"{_OWN}/recoveries.py"),
     **dict.fromkeys(RECOVERIES, (*_MOVING, f"{_OWN}/recoveries.py")),
     **dict.fromkeys([f"robot-{name}.webp" for name in ROBOTS], (*_MOVING, f"{_OWN}/gallery.py")),
+    "tour.webp": (PALETTE, f"{_OWN}/tour.py", f"{_OWN}/webp.py"),
     "drive.webp": (f"{_OWN}/drive.py",),
     "courses.png": (
         PALETTE,

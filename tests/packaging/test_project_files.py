@@ -1,5 +1,6 @@
 """Files about the project: workflows that only call make, fragments of the changelog, the citation."""
 
+import csv
 import importlib.util
 import re
 import tomllib
@@ -43,7 +44,12 @@ def test_every_scenario_has_a_job():
 def test_a_release_is_tried_on_every_python_that_it_names():
     (job,) = WORKFLOWS["release"]["jobs"].values()
     least = tomllib.loads((ROOT / "pyproject.toml").read_text())["project"]["requires-python"].removeprefix(">=")
-    assert job["strategy"]["matrix"]["python"][0] == least
+    versions = job["strategy"]["matrix"]["python"]
+    assert versions[0] == least
+    named = re.findall(r"Python :: (3\.\d+)", (ROOT / "pyproject.toml").read_text())
+    with (ROOT / "docs" / "results" / "pythons.csv").open(encoding="utf-8") as file:
+        tried = [row["python"].rpartition(".")[0] for row in csv.DictReader(file)]
+    assert versions == named == list(dict.fromkeys(tried))
 
 
 def test_the_citation_is_of_this_version():

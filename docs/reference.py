@@ -306,9 +306,20 @@ TABLES |= {
 TABLES["handed"] = ("extending.md", handed_tables)
 
 
+_LIMITS = json.loads((FOLDER.parent / "benchmarks" / "limits.json").read_text(encoding="utf-8"))
+_CALLS = {"": "diagonal-walk, compiled kernels", "plain_": "diagonal-walk, plain Python"}
+_COMMANDS = {"help": "--help", "list": "list", "show": "show walk", "schema": "schema", "run": "run diagonal-walk"}
+
+
 VALUES: dict[str, str] = {
     "chunk": f"{CHUNK_PERIOD_NS / 1e6:g} ms",
     "scenarios": str(len(catalogue.OWN)),
+    **{f"{kind}calls": str(_LIMITS[name]["calls of a tick without a plan"]) for kind, name in _CALLS.items()},
+    **{f"{kind}calls_plan": str(_LIMITS[name]["calls of a tick with a plan"]) for kind, name in _CALLS.items()},
+    **{
+        f"modules_{word}": str(_LIMITS["surefoot's modules that a command imports"][command])
+        for word, command in _COMMANDS.items()
+    },
 }
 
 

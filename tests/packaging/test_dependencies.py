@@ -11,6 +11,7 @@ from types import SimpleNamespace
 
 import pytest
 from packaging.requirements import Requirement
+from packaging.specifiers import SpecifierSet
 from packaging.utils import canonicalize_name
 
 from surefoot.scenarios import errors
@@ -152,3 +153,17 @@ def test_the_install_command_of_a_clone_is_that_of_the_readme(monkeypatch, tmp_p
     assert install_command("video") == f"pip install -c {ROOT}/constraints.txt -e '{ROOT}[video]'"
     monkeypatch.setattr(errors.shutil, "which", lambda name: "/usr/bin/pip")
     assert install_command("video").startswith(f"{sys.executable} -m pip install -c ")
+
+
+def test_a_version_that_is_pinned_takes_every_release_of_the_oldest_python():
+    """One needed 3.11.5, so that `make docs` failed on the 3.11.2 of Debian 12."""
+    pinned = [line.partition("==")[0] for line in (ROOT / "constraints.txt").read_text().splitlines() if "==" in line]
+    oldest, checked = f"{PROJECT['requires-python'].removeprefix('>=')}.0", 0
+    for name in pinned:
+        try:
+            takes = distribution(name).metadata.get("Requires-Python")
+        except PackageNotFoundError:  # of an extra that is not installed
+            continue
+        assert oldest in SpecifierSet(takes or ""), f"{name} needs Python {takes}"
+        checked += 1
+    assert checked > 60

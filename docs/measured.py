@@ -40,6 +40,7 @@ class Made(NamedTuple):
 
 
 _NATURAL = "gait=natural"
+_ENDS = "planner.step_adaptation=[none, crossing]"
 _STOPPED = ("torque_at_limit_fraction", "cop_ratio_p99", "torque_ratio_max")
 _DRAWN = ("terrain.friction", *(f"errors.torso_com.{axis}" for axis in range(3)), "errors.payload.mass")
 _PUSHED = ("errors.payload.body", "pushes.0.impulse", "pushes.0.direction", "pushes.0.time")
@@ -50,7 +51,8 @@ MADE = {
         columns=("riser", "step_length", "step_time", "status", *_STOPPED),
     ),
     "push-map-pendulum": Made("push-map", ("fidelity=pendulum", _NATURAL), 1),
-    "push-map": Made("push-map", ("fidelity=full", _NATURAL, "planner.step_adaptation=[none, crossing]"), 1),
+    "push-map": Made("push-map", ("fidelity=full", _NATURAL), 1),
+    "push-map-mid-swing": Made("push-map", ("fidelity=full", _NATURAL, _ENDS, "phase=[SS 0.5]"), 1),
     "robustness": Made("robustness", columns=("gait", "status", *_DRAWN, *_PUSHED)),
 }
 """By the name of the result."""

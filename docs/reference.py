@@ -299,6 +299,7 @@ def _taken_out(text: str, pattern: str) -> tuple[str, str]:
 TABLES |= {
     "push-map-pendulum": ("campaigns.md", lambda: measured.push_table("push-map-pendulum")),
     "push-map": ("campaigns.md", lambda: measured.push_table("push-map")),
+    "push-map-mid-swing": ("campaigns.md", lambda: measured.push_table("push-map-mid-swing")),
     "push-gains": ("campaigns.md", lambda: measured.gains_table("push-map-pendulum")),
     "pythons": ("how-to/install.md", measured.pythons_table),
     "made": ("campaigns.md", measured.made_table),

@@ -31,7 +31,7 @@ def reference():
     "name",
     [
         *("keys", "metrics", "channels", "robot-keys", "handed", "standing", "field", "engines", "benchmark-g1"),
-        *("push-map", "push-map-pendulum", "push-gains", "made", "pythons"),
+        *("push-map", "push-map-pendulum", "push-map-mid-swing", "push-gains", "made", "pythons"),
     ],
 )
 def test_tables_are_up_to_date(reference, name):

@@ -169,15 +169,21 @@ class Senses:
             self._told(Planned(report.acceleration.copy(), report.torque.copy(), report.active, reference.rolling_foot))
 
 
-def foot_sensing(estimate: Estimate, wrench: Array, wanted: bool) -> FootSensing:
+def foot_sensing(
+    estimate: Estimate, wrench: Array, wanted: bool, inferred: tuple[float, float] | None = None
+) -> FootSensing:
     """What the feet feel.
 
     Args:
         estimate: of this tick.
         wrench: of the soles, shape (2, 6) [N, N·m].
         wanted: whether a lasting force is to be found.
+        inferred: deviations of force and moment where the wrenches follow from the joints' torques beside a state that
+            says of no deviation; they put forces that are none on the body while it is taken for sure [N, N·m].
     """
     forces, sure = (wrench.item(2), wrench.item(8)), estimate.deviation
+    if sure is None and inferred is not None:
+        return FootSensing(forces, wrench if wanted else None, estimate.contact, inferred)
     if sure is None:
         return _a_sensing(forces, wrench if wanted else None, estimate.contact)
     return FootSensing(forces, wrench if wanted else None, estimate.contact, (sure.force, sure.moment))

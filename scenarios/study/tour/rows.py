@@ -70,6 +70,7 @@ TARGETS = (
     ("control.output_rate", 50),
     ("control.feed_forward", False),
     ("control.gains", GAINS),
+    ("sensing.force_estimate", False),  # wrenches 20 ms apart are no means, and nothing pushes for long in a tour
 )
 
 

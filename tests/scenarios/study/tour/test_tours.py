@@ -1,9 +1,12 @@
 """The tour in full physics, ten seconds of it."""
 
+from dataclasses import replace
+
 import pytest
 
 from surefoot.scenarios.study.tour.ride import run_tour
 from surefoot.scenarios.study.tour.rows import ROWS
+from surefoot.scenarios.study.tour.rules import Tour
 
 pytestmark = pytest.mark.physics
 
@@ -15,6 +18,16 @@ def test_the_first_ten_seconds_are_survived_and_places_are_reached(seed):
     assert len(result.punches) == len(result.position_errors) == 2
     assert max(result.position_errors) < 0.1 and max(result.heading_errors) < 0.1
     assert 50.0 < sum(result.energy) < 2000.0
+
+
+def test_wrenches_that_follow_from_torques_push_nobody(monkeypatch):
+    """At 50 Hz they are of instants: taken for sure they told of 95 N, and robots ran past their places and fell."""
+    monkeypatch.setattr(Tour, "punch", lambda *_: None)
+    row = ROWS["contract"]
+    monkeypatch.setitem(ROWS, "contract", replace(row, keys=(*row.keys, ("sensing.force_estimate", True))))
+    result = run_tour("contract", 1, 11.0)
+    assert result.completed
+    assert max(result.position_errors) < 0.06
 
 
 def test_a_controller_that_gives_up_falls(monkeypatch):

@@ -266,8 +266,13 @@ class SensedState:
             self._deviation = self._unsure(J)
             self._above = [self._over_ground(k) for k in (0, 1)]
 
-    def _sprung(self) -> Array:
-        """How each sole moved on the springs of the ground since this was asked last, as of `sprung`."""
+    def _sprung(self) -> Array | None:
+        """How each sole moved on the springs of the ground since this was asked last, as of `sprung`.
+
+        None of soles that lean: which springs bear them changes with how they do.
+        """
+        if self._footing.leaning is not None:
+            return None
         changed = self._contact.wrench - self._load
         self._load = self._contact.wrench
         return sprung(changed, self._footing.half_size, self._parameters.ground.depth / self._weight)

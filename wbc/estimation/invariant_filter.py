@@ -186,6 +186,8 @@ class InvariantFilter:
         if dt <= 0.0:
             return
         sensors, ground = self._sensors, self._ground
+        # Springs under one edge give twice as much.
+        sinking = (2.0 if self._leaning else 1.0) * ground.sinking
         F, B = self.transition(dt)
         P = F @ self.P @ F.T
         P[:15, :15] += (sensors.gyro_density**2 * dt) * (B @ B.T)
@@ -196,7 +198,7 @@ class InvariantFilter:
         for k in (0, 1):
             more = 1.0 + (ground.light - 1.0) * (1.0 - min(2.0 * loads[k], 1.0))
             if self.standing[k]:
-                D[FOOT[k]] += np.square(more * np.array([ground.creep, ground.creep, ground.sinking])) * dt
+                D[FOOT[k]] += np.square(more * np.array([ground.creep, ground.creep, sinking])) * dt
                 D[SOLE[k]] += (more * ground.rocking) ** 2 * dt
                 if sprung is not None:
                     turned, risen = self.stand.Z[k, :, :2] @ sprung[k, :2], float(sprung[k, 2])

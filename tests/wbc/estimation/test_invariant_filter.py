@@ -258,6 +258,23 @@ def test_a_standing_sole_goes_where_the_springs_let_it_and_is_unsure_by_a_share_
     assert np.abs(more[SOLE[1]]).max() == 0.0
 
 
+def test_a_sole_on_its_edge_sinks_twice_as_much():
+    found = []
+    for leaning in (True, False):
+        filter_ = InvariantFilter(somewhere(np.random.default_rng(8)), NOISE, GROUND, PERIOD, leaning)
+        filter_.P[:] = 0.0
+        filter_.propagate(np.zeros(3), np.zeros(3), PERIOD)
+        filter_.spread((1.0, 1.0))
+        found.append(np.diagonal(filter_.P)[FOOT[0]] - NOISE.gyro_density**2 * PERIOD * _beside(filter_.stand.d[0]))
+    np.testing.assert_allclose(found[1], np.full(3, GROUND.sinking**2 * PERIOD), rtol=1e-9)
+    np.testing.assert_allclose(found[0], found[1] * [1.0, 1.0, 4.0], rtol=1e-9)
+
+
+def _beside(place):
+    """Squares of how far a place is from each axis."""
+    return place @ place - place**2
+
+
 @pytest.mark.parametrize("leaning", [True, False])
 def test_a_sole_that_leans_tells_how_it_is_turned_but_for_about_its_line(leaning):
     """One foot stands; a turn of its sole about an axis moves the attitude, unless it turns about that at will."""

@@ -31,7 +31,7 @@ class ContactSchedule:
     - A planned contact becomes active when the foot feels the ground: a late foot goes on searching downwards.
     - A swing foot that feels the ground after ``early_progress`` becomes active at once and stays so, with a small load
       until its planned touchdown, whether or not it feels it: lifting and landing again would only shake the ZMP. The
-      plan's clock does not move.
+      plan's clock does not move, but for a step that catches the body.
     - A foot is released when the plan lifts it, unless it would be the last contact.
     - A foot that the plan rolls keeps its toe edge on the ground, while the other foot carries as well.
     - Allowed loads grow after touchdown and shrink before lift-off, so that no contact appears or ends with a jump in

@@ -60,7 +60,7 @@ class TimeScaling:
 
     @property
     def course(self) -> Course:
-        """The last quintic, by which two scalings are told apart."""
+        """The last quintic, by which two scalings are told apart; without coefficients of a clock that was set."""
         return self.begun, self.coefficients
 
     def at(self, ahead: Array) -> tuple[Array, Array, Array]:
@@ -115,6 +115,10 @@ class TimeScaling:
         """The clock one tick later."""
         quintic = self.way, self.length, self.coefficients
         return TimeScaling(self.sample_time, self.after(1.0), self.ticks + 1, self.begun, self.elapsed + 1.0, *quintic)
+
+    def showing(self, instant: float) -> "TimeScaling":
+        """The clock that shows an instant and goes on from there at its own rate [samples]; its course is another."""
+        return TimeScaling(self.sample_time, instant, self.ticks, begun=instant)
 
     def _followed(self, time: Array) -> tuple[Array, Array, Array]:
         """Way, rate and its derivative at times since the quintic began; after it the clock goes at its own rate."""

@@ -225,7 +225,7 @@ class ReferencePreview:
         return samples, reference, height, stiffness, omega, load_left(samples, support)[1 : count + 1]
 
     def _transferred(self, execution: Execution, height: Array) -> Array:
-        """The height where a step that is adapted has changed how the clock goes, or is too long for it.
+        """The height where a step that is adapted has changed how the clock goes or set it, or is too long for it.
 
         Args:
             execution: the clock and the steps in sight.
@@ -234,7 +234,8 @@ class ReferencePreview:
         clock, lower, leaves, numbers = execution.clock, execution.lowering, False, self._numbers
         if self._before is not None:
             tick, course, before, low = self._before
-            leaves = course != clock.course and (execution.adapted or self._transition is not None)
+            pushed = execution.adapted or self._transition is not None or not clock.coefficients
+            leaves = course != clock.course and pushed
             leaves |= abs(lower - low) > numbers.same_height or (low > 0.0) is not (lower > 0.0)
             lower = lower if leaves else low
         height[0] -= lower

@@ -15,6 +15,7 @@ from surefoot.planner.planner import WalkingPlanner
 from surefoot.planner.references.com_height import SmoothHeight
 from surefoot.planner.steps.footsteps import plan_footsteps
 from surefoot.planner.steps.gait import Bout, GaitParameters
+from surefoot.planner.swing.leg_reach import LegReach
 from surefoot.planner.types import CentroidalState, FeetState, Foot, PhaseKind, SolverStatus, Twist
 
 pytestmark = pytest.mark.unit
@@ -177,6 +178,44 @@ def test_early_touchdown_fixes_the_footstep_and_never_moves_the_clock(stand):
     assert plans[49].phase.kind is PhaseKind.SINGLE
     assert plans[50].phase.kind is PhaseKind.DOUBLE
     assert len({plan.footsteps[0].position.tobytes() for plan in plans[46:50]}) == 1
+
+
+def landed_early(kick, adaptation=StepAdaptation.CROSSING, kicked=30):
+    """Plans until a step has touched down early, in whose swing the CoM gets a speed to the left [m/s] at a tick."""
+    gait = GaitParameters(initial_stand=0.0, single_support=0.6, double_support=0.2)
+    legs = LegReach(0.36, 0.2, 0.115, 0.12, 0.24, (60.0, 50.0))
+    feet = FeetState(np.array([[0.0, 0.1, 0.0], [0.0, -0.1, 0.0]]), np.zeros(2), (True, True))
+    parameters = PlannerParameters(step_adaptation=adaptation)
+    planner = WalkingPlanner(gait, feet, *HUMAN, legs=legs, parameters=parameters)
+    com, velocity, plans = np.array([0.0, 0.0, 1.0]), np.zeros(3), []
+    for tick in range(90):
+        plan = planner.update(CentroidalState(0.02 * tick, com, velocity), feet)
+        plans.append(plan)
+        com, velocity = plan.com[1], plan.com_velocity[1] + np.array([0.0, kick if tick == kicked else 0.0, 0.0])
+        if plan.swing is None and any(one.swing is not None for one in plans):
+            break
+        position, contact = feet.position.copy(), [True, True]
+        if plan.swing is not None:
+            position[plan.swing.foot] = plan.swing.evaluate(0.02 * (tick + 1))[0, :3]
+            contact[plan.swing.foot] = plan.phase.elapsed > 0.65 * plan.phase.duration
+        feet = FeetState(position, feet.yaw, (contact[0], contact[1]))
+    return plans
+
+
+def test_a_step_that_catches_the_body_ends_its_phase_where_its_foot_lands():
+    *_, before, after = landed_early(0.3)
+    assert before.phase.kind is PhaseKind.SINGLE and after.phase.kind is PhaseKind.DOUBLE
+    assert before.phase.left > 0.06 and not before.status.early_touchdown
+    assert after.phase.elapsed == 0.0 and after.phase.landed == before.phase.step
+    np.testing.assert_allclose(after.zmp_reference[0], before.zmp_reference[0], atol=1e-9)
+    assert abs(after.com[0, 2] - before.com[1, 2]) < 1e-6
+
+
+def test_one_that_catches_nothing_does_not():
+    """Negative control: the clock of a walk that is not disturbed goes on as it goes."""
+    *_, before, after = landed_early(0.0)
+    assert before.status.early_touchdown and before.phase.left < 0.03
+    assert after.phase.kind is PhaseKind.DOUBLE
 
 
 def test_measured_foothold_replaces_the_planned_one_and_carries_the_next(stand):

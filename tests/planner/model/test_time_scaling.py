@@ -31,6 +31,12 @@ def test_a_clock_goes_by_one_a_tick():
         clock = clock.advanced()
 
 
+def test_a_clock_that_is_set_goes_on_from_there_by_one_a_tick():
+    clock = going(0.7, 0.01).showing(107.5)
+    assert clock.steady and clock.now == 107.5 and clock.course != TimeScaling(T).course
+    assert clock.advanced().now == 108.5 and clock.until(110.0) == 2.5
+
+
 @given(
     st.floats(0.5, 60.0), st.floats(0.5, 2.0), st.floats(0.2, 2.0), st.floats(-0.02, 0.02),
 )  # fmt: skip

@@ -181,7 +181,7 @@ class WalkingPlanner:
         if not all(map(math.isfinite, measured)):
             raise ValueError(f"The measured CoM or feet are not finite at {state.time:g} s.")
         execution, time = self._execution, state.time
-        execution.advance(feet)
+        execution.advance(feet, self._dcm(state))
         self._obey(time)
         execution.fix_imminent(time)
         support, local, window = self._sight(state)
@@ -210,6 +210,12 @@ class WalkingPlanner:
             execution.swing_to(footsteps[0], time, feet, motion.solver is SolverStatus.HELD)
         self._plan = self._world_plan(time, support, window, local, motion, footsteps, balance)
         return self._plan
+
+    def _dcm(self, state: CentroidalState) -> Array | None:
+        """DCM in the world frame by the ω of the last plan, shape (2,) [m]; None without one."""
+        if self._plan is None:
+            return None
+        return np.asarray(state.com[:2] + state.com_velocity[:2] / self._plan.omega[0])
 
     @staticmethod
     def _unsure(state: CentroidalState, window: Window) -> float:

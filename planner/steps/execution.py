@@ -5,7 +5,7 @@ from dataclasses import replace
 
 import numpy as np
 
-from surefoot.planner.geometry import greatest, sole_pose, wrap_angle
+from surefoot.planner.geometry import frame_rotation, greatest, sole_pose, wrap_angle
 from surefoot.planner.model.time_scaling import CLOCK_ROUNDING, TimeScaling
 from surefoot.planner.steps.adaptation import aligned, with_heel_lifted
 from surefoot.planner.steps.gait import GaitParameters
@@ -38,7 +38,8 @@ class Execution:
 
     A touchdown that is late holds the clock at the end of single support; an early one fixes its footstep where it was
     felt and does not move the clock (moving it was measured to cost 17 to 28 mm of DCM error). A step that catches the
-    body ends its single support with its touchdown, early or not: by waiting the DCM error would grow by more.
+    body ends its single support with its touchdown, early or not: by waiting the DCM error would grow by more. A foot
+    that lands short of the DCM on its own side goes on: its single support begins anew.
 
     Args:
         schedule: the steps in sight.
@@ -138,14 +139,23 @@ class Execution:
             return self.schedule.samples(np.maximum(clock, 0.0))
         return self.schedule.samples(clock, (rate, bend / self._parameters.sample_time))
 
-    def advance(self, feet: FeetState) -> None:
-        """Go on by one tick, with the measured feet."""
+    def advance(self, feet: FeetState, dcm: Array | None = None) -> None:
+        """Go on by one tick.
+
+        Args:
+            feet: as measured.
+            dcm: likewise, in the world frame, shape (2,) [m]; None where it is not known yet.
+        """
         clock = self.clock.advanced()
         phase, swing = self.phase, self.phase.swing_foot
         over = clock.now >= phase.end - CLOCK_ROUNDING
         if swing is not None and self.clock.now >= 0.0:
             contact = feet.contact[swing]
             felt = contact and not self.early and 2.0 * (clock.now - phase.start) > phase.samples
+            if (over or felt) and contact and self._lands_short(feet, dcm):
+                self.clock = clock.showing(phase.start)
+                self.swing, self.waited, self.early, self.fixed = None, 0, False, False
+                return
             if over:
                 if not contact and self.waited < self._patience:
                     self.waited += 1
@@ -165,6 +175,18 @@ class Execution:
             self.follow(self.schedule)
         if self.phase.swing_foot is None:
             self.swing = None
+
+    def _lands_short(self, feet: FeetState, dcm: Array | None) -> bool:
+        """Whether the DCM is beyond the swing foot on its own side as it lands; nothing is on it yet, so it goes on.
+
+        The other foot would have to cross that one to catch the body.
+        """
+        foot = self.phase.swing_foot
+        if dcm is None or foot is None or not self._times:
+            return False
+        across = frame_rotation(self.schedule.step(self.landed).place.yaw)[:, 1]
+        beyond = foot.side * float(across @ (dcm - feet.position[foot, :2]))
+        return beyond > float(self.schedule.ground.half_size[1])
 
     def change(self, gait: GaitParameters, source: StepSource | None, time: float) -> None:
         """Walk on otherwise; what is left of the present phase changes in proportion to its duration.

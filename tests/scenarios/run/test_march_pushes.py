@@ -1,7 +1,7 @@
 """A small robot that marches with quick steps is pushed hard at its torso, and goes on.
 
-The campaign `march-ladder` finds the largest pushes in all directions and phases. Here are some that fell it while its
-whole-body QP took the end of an ankle's range for a wall, with some to spare.
+The campaign `march-ladder` finds the largest pushes in all directions and phases. Here are some of which it would fall
+without a part of its recovery, with some to spare.
 """
 
 import pytest
@@ -31,3 +31,9 @@ def falls(direction, phase, fraction, impulse):
 )
 def test_it_goes_on_after_a_push_that_takes_an_ankle_to_its_end(direction, phase, fraction, impulse):
     assert not falls(direction, phase, fraction, impulse)
+
+
+@pytest.mark.parametrize("fraction", [0.5, 0.8], ids=["SS 0.5", "SS 0.8"])
+def test_a_foot_that_lands_short_of_a_push_to_its_side_goes_on(fraction):
+    """To the left, at which the left foot swings; it lands before it can be far enough out."""
+    assert not falls(1.571, "single", fraction, 0.4)

@@ -40,7 +40,7 @@ FOURIER = "package://fourier_robot_descriptions/assets/urdf"
 
 
 _PROPOSAL = re.compile(r"take for example ([^;(]+)")
-_SETTING = re.compile(r"(\w+\.\w+) (-?[\d.]+|\[[^\]]*\])")
+_SETTING = re.compile(r"--set '?(\w+\.\w+)=(-?[\d.]+|\[[^\]]*\])")
 """What a refusal proposes, and a key and its value in that."""
 
 

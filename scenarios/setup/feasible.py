@@ -6,6 +6,7 @@ What a refusal proposes has been tried: the scenario with it goes through every 
 import math
 from dataclasses import replace
 from functools import lru_cache
+from shlex import quote
 from typing import TYPE_CHECKING, Any, ClassVar
 
 import numpy as np
@@ -34,9 +35,6 @@ Proposal = dict[str, Any]
 
 _STRIDE = ("step_length", "lateral_step", "turn")
 _GROUND = ("riser", "angle", "height_noise")
-_UNITS = {"turn": "rad", "angle": "rad", "single_support": "s", "double_support": "s"}
-"""Of keys that are no lengths."""
-
 _STEPS = ("gait", "step_length")
 _TRIES = 8
 _LESS = 0.8
@@ -65,13 +63,13 @@ def made_ready(walk: Walk, body: Body) -> "tuple[NDArray[np.float64], LegInertia
 
 
 def told(proposal: Proposal) -> str:
-    """A proposal in words."""
-    return " and ".join(f"{key} {_value(key, value)}" for key, value in proposal.items())
+    """A proposal as options of a command line, to be copied as they stand."""
+    return " ".join(f"--set {quote(f'{key}={_value(value)}')}" for key, value in proposal.items())
 
 
-def _value(key: str, value: Any) -> str:
+def _value(value: Any) -> str:
     if isinstance(value, float):
-        return f"{value:g} {_UNITS.get(key.partition('.')[2], 'm')}"
+        return f"{value:g}"
     return yaml.safe_dump(value, default_flow_style=True, width=math.inf).strip()
 
 

@@ -7,6 +7,7 @@ import time
 from collections.abc import Callable, Iterable, Iterator, Mapping, Sequence
 from contextlib import contextmanager
 from pathlib import Path
+from shlex import quote
 from types import TracebackType
 from typing import Any, Self
 
@@ -81,11 +82,13 @@ class ProgressLine(TerminalLine):
 
 
 def print_result(name: str, verdict: Verdict, log: Path) -> None:
-    """Print verdict, reasons, the first metrics and the path of the log."""
+    """Print verdict, reasons, the first metrics, the path of the log, and of a failure what says why."""
     console = plain_console()
     _print_verdict(console, name, verdict)
     console.print(_metric_table(verdict, FIRST_METRICS))
     console.print(f"log: {log}")
+    if not verdict.passed:
+        console.print(f"why: surefoot inspect {quote(str(log))}")
 
 
 def print_inspection(found: Inspection) -> None:

@@ -42,8 +42,8 @@ def test_lines_that_are_added_replace_those_of_the_same_key(robots) -> None:
 
 def test_what_a_refusal_proposes_is_followed_until_it_is_accepted(robots, monkeypatch, tmp_path) -> None:
     told = [
-        "x.yaml:3:1: fast; take for example gait.step_length 0.138 m and gait.single_support 0.66 s (0.5 in x.yaml)",
-        "x.yaml:3:1: too low; take for example gait.com_height 0.7 m",
+        "x.yaml:3:1: fast; take for example --set gait.step_length=0.138 --set gait.single_support=0.66 (0.5 in y)",
+        "x.yaml:3:1: too low; take for example --set gait.com_height=0.7",
     ]
     given = []
 
@@ -60,13 +60,15 @@ def test_what_a_refusal_proposes_is_followed_until_it_is_accepted(robots, monkey
 
 
 def test_a_list_that_is_proposed_is_followed_too(robots) -> None:
-    told = "too slow; take for example gait.velocity [{time: 0.0, yaw_rate: 0.118}, {time: 12.1}] (0.5 in x.yaml)"
+    told = (
+        "too slow; take for example --set 'gait.velocity=[{time: 0.0, yaw_rate: 0.118}, {time: 12.1}]' (0.5 in x.yaml)"
+    )
     proposed = " ".join(robots._PROPOSAL.findall(told))
     assert robots._SETTING.findall(proposed) == [("gait.velocity", "[{time: 0.0, yaw_rate: 0.118}, {time: 12.1}]")]
 
 
 def test_a_refusal_without_a_proposal_or_with_the_same_ends_it(robots, monkeypatch, tmp_path) -> None:
-    refusal = robots._Walked(refused=("too weak; take for example gait.com_height 0.7 m",))
+    refusal = robots._Walked(refused=("too weak; take for example --set gait.com_height=0.7",))
     monkeypatch.setattr(robots, "_run", lambda *given: refusal)
     assert robots._followed("walk", {}, tmp_path) == (refusal, {"gait.com_height": "0.7"})
 

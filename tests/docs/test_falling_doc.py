@@ -52,6 +52,15 @@ def test_settings_that_test_a_cause_are_settings():
 
 
 @pytest.mark.unit
+def test_the_largest_pushes_are_those_of_the_readme():
+    told = re.search(r"forward in mid-swing\n?\s*([\d.]+) N·s/kg, at any time ([\d.]+)\.", TEXT).groups()
+    readme = (FOLDER.parent / "README.md").read_text(encoding="utf-8")
+    assert told == tuple(
+        re.search(rf"(?m)^\| {when} \| ([\d.]+) \|", readme)[1] for when in ("in mid-swing", "at any time")
+    )
+
+
+@pytest.mark.unit
 def test_figures_and_metrics_of_the_tables_are_there():
     assert set(re.findall(r"plot --what ([\w-]+)", TEXT)) <= set(FIGURES)
     rows = TEXT.split("Some symptoms have no check")[1].split("## Test")[0]

@@ -9,6 +9,11 @@ from pathlib import Path
 
 import pytest
 
+from surefoot.models.robot_file.draft import draft
+from surefoot.scenarios.errors import SetupError
+from surefoot.scenarios.run.simulation import Simulation
+from surefoot.scenarios.setup.load import load
+
 ROOT = Path(__file__).parents[2]
 FOLDER = ROOT / "docs" / "tutorials"
 PAGES = sorted(path.stem for path in FOLDER.glob("*.md"))
@@ -54,7 +59,7 @@ SAID = {
     "own-task": r"walked with the neck turned by 0\.[45]",
     "own-estimator": r"0 mm: walked estimation error 0\.0 mm\n2 mm: walked estimation error 2\.0 mm",
     "own-loop": r"walked 1\.\d\d m in 8\.00 s(?s:.*)fell (?s:.*)s: a foot that bears the robot slides\n(?s:.*)slips",
-    "own-robot": r"(?s:verdict pass.*){3}report\.html",
+    "own-robot": r"(?s:verdict pass.*){4}report\.html",
     "push-map": r"pushes\.0\.impulse \[N·s/kg\]\n(?s:.*)report\.html(?s:.*)table\.csv",
     "ci": r"two-steps(?s:.*)found, exit code 1",
     "logs": r"largest torques: \{",
@@ -84,6 +89,17 @@ def test_a_tutorial_does_what_it_says(page, tmp_path, program):
 def test_a_command_that_fails_is_found(tmp_path, program):
     with pytest.raises(AssertionError, match="surefoot run nothing"):
         follow("```sh\nsurefoot run nothing\n```\n", tmp_path, program)
+
+
+@pytest.mark.physics
+def test_a_robot_that_is_refused_is_told_what_the_page_says(tmp_path):
+    (quoted,) = re.findall(r"```text\n(.*?)\n```", (FOLDER / "own-robot.md").read_text(encoding="utf-8"))
+    model = "package://example-robot-data/robots/romeo_description/urdf/romeo.urdf"
+    (tmp_path / "romeo.yaml").write_text(draft(model, tmp_path).text, encoding="utf-8")
+    scenario = load("walk", [f"robot={tmp_path / 'romeo.yaml'}"])
+    with pytest.raises(SetupError) as refusal:
+        Simulation(scenario)
+    assert str(refusal.value) == quoted
 
 
 @pytest.mark.physics

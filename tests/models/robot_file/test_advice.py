@@ -1,6 +1,7 @@
 """What a refusal proposes is accepted when it is followed: of robot files, of models, and of walks."""
 
 import re
+import shlex
 from dataclasses import replace
 
 import biped
@@ -13,6 +14,7 @@ from surefoot.models.robot_file.draft import draft
 from surefoot.scenarios.apps.robots.examine import examine
 from surefoot.scenarios.errors import ScenarioError, SetupError
 from surefoot.scenarios.run.simulation import Simulation
+from surefoot.scenarios.setup.feasible import told
 from surefoot.scenarios.setup.load import load
 
 pytestmark = pytest.mark.unit
@@ -116,9 +118,17 @@ def refusal_of(name: str, overrides: dict) -> str:
 
 
 def proposal_in(said: str) -> dict:
-    """Values by key of 'take for example KEY VALUE and KEY VALUE', without their units."""
-    pairs = re.findall(r"((?:gait|terrain)\.\w+) (\[.*?\]|[-\d.e]+)", said.split("take for example ")[1])
-    return {key: yaml.safe_load(value) for key, value in pairs}
+    """Values by key of 'take for example --set KEY=VALUE --set KEY=VALUE', as a shell takes its words."""
+    words = shlex.split(re.split(r" [(\[](?!\{)", said.split("take for example ")[1])[0])
+    assert words[::2] == ["--set"] * (len(words) // 2)
+    return {key: yaml.safe_load(value) for key, value in (word.split("=", 1) for word in words[1::2])}
+
+
+def test_a_proposal_is_told_as_options_that_a_shell_takes() -> None:
+    proposal = {"gait.step_length": 0.138, "gait.velocity": [{"time": 0.0, "yaw_rate": 0.118}], "gait.turn": 0.2}
+    said = told(proposal)
+    assert said.startswith("--set gait.step_length=0.138 --set 'gait.velocity=[{")
+    assert proposal_in(f"slow; take for example {said} (0.5 in the file)") == proposal
 
 
 def bounded(said: str, overrides: dict, name: str) -> dict:

@@ -297,6 +297,16 @@ def test_a_log_of_any_name_is_known_by_how_it_begins(surefoot, scenario, tmp_pat
     assert (code, out.splitlines()[0]) == (0, "two-steps: verdict pass")
 
 
+def test_a_run_that_fails_says_where_to_look(surefoot, scenario, tmp_path):
+    out = tmp_path / "my runs"
+    code, said, _ = surefoot("run", scenario, "--set", "criteria.fell=true", "--out", out)
+    assert code == 1
+    assert said.splitlines()[-1] == f"why: surefoot inspect '{out}/two-steps-0/log.mcap'"
+    assert "why:" not in surefoot("run", scenario, "--out", out)[1]
+    code, said, _ = surefoot("run", scenario, "--set", "criteria.fell=true", "--out", out, "--json")
+    assert code == 1 and json.loads(said)["verdict"] == "fail"
+
+
 def test_inspect_repeats_the_verdict(surefoot, scenario, tmp_path):
     surefoot("run", scenario, "--out", tmp_path)
     log = tmp_path / "two-steps-0" / "log.mcap"

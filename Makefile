@@ -24,7 +24,7 @@ unit: $(VENV)/.installed-dev
 	$(BIN)/pytest -m "unit and not long" -n auto --dist loadscope tests/$(AREA)
 
 physics: $(VENV)/.installed-dev
-	$(BIN)/pytest -m physics -n auto --dist loadscope
+	$(BIN)/pytest -m "physics and not long" -n auto --dist loadscope
 
 check: $(VENV)/.installed-dev
 	$(BIN)/surefoot check control-fall control-slide control-push paper-brisk stairs-tall walk-sideways walk

@@ -20,7 +20,7 @@ def bench(*words):
     )
 
 
-@pytest.mark.physics
+@pytest.mark.long
 def test_every_section_runs_and_is_told_as_a_table_and_as_json():
     done = bench("--quick", "--json", "-")
     assert done.returncode == 0, done.stderr

@@ -82,9 +82,8 @@ def test_the_table_of_the_catalogue_has_every_robot_and_every_scenario():
         assert sorted(name for names in found.values() for name in names) == sorted(catalogue.OWN)
 
 
-@pytest.mark.parametrize(
-    "name", [pytest.param("g1", marks=pytest.mark.physics), pytest.param("talos", marks=pytest.mark.long)]
-)
+@pytest.mark.long
+@pytest.mark.parametrize("name", ["g1", "talos"])
 def test_what_a_robot_is_refused_is_what_the_table_says(name, tmp_path):
     found = rows_of(name, tuple(catalogue.OWN), False, 1, tmp_path, lambda *_: None)
     refused = {row.scenario for row in found if row.outcome == "refused"}

@@ -128,7 +128,7 @@ def test_the_table_has_every_walk_and_each_keeps_its_bounds(compare):
 
 
 @pytest.mark.physics
-@pytest.mark.parametrize("robot", ["humanoid100", "g1"])
+@pytest.mark.parametrize("robot", ["humanoid100", pytest.param("g1", marks=pytest.mark.long)])
 def test_a_pushed_walk_in_dart_keeps_its_bounds(compare, tmp_path, robot):
     scenario = compare.scenario("walk, pushed left", robot, "DART")
     keys = {

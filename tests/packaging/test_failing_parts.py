@@ -284,9 +284,9 @@ def test_what_leaves_where_nobody_stands_guard_is_a_defect(at_hand, monkeypatch)
 @pytest.mark.parametrize(
     ("part", "how", "codes", "status"),
     [
-        ("law", "leaves", (1, 0), "failed"),
+        pytest.param("law", "leaves", (1, 0), "failed", marks=pytest.mark.long),
         ("metric", "leaves", (1, 0), "failed"),
-        ("terrain", "leaves", (2, 1), ""),
+        pytest.param("terrain", "leaves", (2, 1), "", marks=pytest.mark.long),
         ("law", "dies", (2, 1), "could not run"),
     ],
 )

@@ -133,7 +133,10 @@ LINES = {
 }
 
 
-@pytest.mark.parametrize("name", LINES)
+@pytest.mark.parametrize(
+    "name",
+    [name if name in ("g1", "targets, and pauses") else pytest.param(name, marks=pytest.mark.long) for name in LINES],
+)
 def test_it_walks_over_a_line_that_is_late_and_loses_some(bridge, name, tmp_path):
     keys, how = LINES[name]
     plant = bridge.serve("walk", "--set", "gait.steps=4", *keys, *how)

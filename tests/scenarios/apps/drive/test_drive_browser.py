@@ -62,6 +62,7 @@ def pass_time(page: Browser, seconds: float) -> None:
     page.wait_for(f"{TIME} > {page.run(TIME) + seconds}")
 
 
+@pytest.mark.long
 def test_a_browser_without_a_gpu_draws_less(driven: tuple[Browser, subprocess.Popen[str], Path]) -> None:
     page, *_ = driven
     assert page.run("return surefoot.software")

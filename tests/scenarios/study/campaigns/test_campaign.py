@@ -200,7 +200,7 @@ def test_the_first_runs_of_campaigns_that_come_along_are_accepted(name):
         ("recovery-numbers", ()),
     ],
 )
-@pytest.mark.parametrize("robot", ["talos", "g1"])
+@pytest.mark.parametrize("robot", [pytest.param("talos", marks=pytest.mark.long), "g1"])
 def test_runs_of_campaigns_that_come_along_are_accepted_for_other_robots(name, part, robot):
     campaign = read_campaign(name, (f"robot={robot}", *part))
     chosen = list(islice(cells(campaign), None, None, 1 if part else 32))

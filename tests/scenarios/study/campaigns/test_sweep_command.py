@@ -229,7 +229,7 @@ def test_killed_and_begun_again_nothing_is_lost_and_nothing_done_twice(tmp_path)
     assert not (tmp_path / "out" / SCRATCH).exists()
 
 
-@pytest.mark.physics
+@pytest.mark.long
 def test_a_cluster_gives_the_same_table_though_a_worker_is_killed(tmp_path):
     distributed = pytest.importorskip("distributed")
     (tmp_path / "short.yaml").write_text(CAMPAIGN % 3)

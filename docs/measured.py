@@ -43,6 +43,7 @@ _NATURAL = "gait=natural"
 _ENDS = "planner.step_adaptation=[none, crossing]"
 _STOPPED = ("torque_at_limit_fraction", "cop_ratio_p99", "torque_ratio_max")
 _DRAWN = ("terrain.friction", *(f"errors.torso_com.{axis}" for axis in range(3)), "errors.payload.mass")
+_SENSED = tuple(f"{name}.{axis}" for name in ("velocity_estimation_error_rms", "zmp_error_rms") for axis in (0, 1))
 _PUSHED = ("errors.payload.body", "pushes.0.impulse", "pushes.0.direction", "pushes.0.time")
 
 MADE = {
@@ -53,6 +54,9 @@ MADE = {
     "push-map-pendulum": Made("push-map", ("fidelity=pendulum", _NATURAL), 1),
     "push-map": Made("push-map", ("fidelity=full", _NATURAL), 1),
     "push-map-mid-swing": Made("push-map", ("fidelity=full", _NATURAL, _ENDS, "phase=[SS 0.5]"), 1),
+    "sensor-faults": Made(
+        "sensor-faults", columns=("fault", "status", *_SENSED, "cop_ratio_p99", "step_shift", "ghost_force_max")
+    ),
     "robustness": Made("robustness", columns=("gait", "status", *_DRAWN, *_PUSHED)),
 }
 """By the name of the result."""
@@ -191,6 +195,21 @@ def gains_table(name: str) -> str:
             ratios = [b / a for a, b in pairs if a and b]
             cells.append(f"{min(ratios):.1f} to {max(ratios):.1f}" if ratios else "")
         lines.append(f"| `{after}` | `{before}` | {' | '.join(cells)} |")
+    return "\n".join(lines)
+
+
+def faults_table() -> str:
+    """What walks with one fault of their sensors each, and how."""
+    lines = [
+        "| fault | status | velocity error x, y | ZMP error x, y | CoP at p99 | force found that nobody gave |",
+        "|---" * 6 + "|",
+    ]
+    for row in rows("sensor-faults"):
+        velocity, zmp = (
+            ", ".join(f"{1e3 * float(row[name]):.1f}" for name in pair) for pair in (_SENSED[:2], _SENSED[2:])
+        )
+        cop, ghost = float(row["cop_ratio_p99"]), float(row["ghost_force_max"])
+        lines.append(f"| {row['fault']} | {row['status']} | {velocity} mm/s | {zmp} mm | {cop:.2f} | {ghost:.0f} N |")
     return "\n".join(lines)
 
 

@@ -301,6 +301,7 @@ TABLES |= {
     "push-map": ("campaigns.md", lambda: measured.push_table("push-map")),
     "push-map-mid-swing": ("campaigns.md", lambda: measured.push_table("push-map-mid-swing")),
     "push-gains": ("campaigns.md", lambda: measured.gains_table("push-map-pendulum")),
+    "sensor-faults": ("sensors.md", measured.faults_table),
     "pythons": ("how-to/install.md", measured.pythons_table),
     "made": ("campaigns.md", measured.made_table),
 }

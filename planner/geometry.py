@@ -168,7 +168,7 @@ def signed_distance(polygon: Array, point: Array) -> float:
 
 
 def _edges(polygon: Array) -> Array:
-    """From each corner to the next, shape (n, 2); `numpy.roll` takes ten times as long."""
+    """From each corner to the next, shape (n, 2) [m]; `numpy.roll` takes five times as long."""
     return np.concatenate((polygon[1:], polygon[:1])) - polygon
 
 

@@ -51,7 +51,8 @@ FADE, FADE_DAMPING = 0.05, 0.02
 _a_report = maker(WbcReport)
 
 # Members are looked up by name at each access.
-_IN_TURN = (SolveStatus.SOLVED, SolveStatus.SOFTENED, SolveStatus.SECOND_SOLVER)
+_SOFTENED = SolveStatus.SOFTENED
+_IN_TURN = (SolveStatus.SOLVED, _SOFTENED, SolveStatus.SECOND_SOLVER)
 
 
 @dataclass(frozen=True, slots=True)
@@ -269,8 +270,10 @@ class WholeBodyController:
             for status, solver in zip(_IN_TURN, self._solvers, strict=True):
                 solution = solver.solve(qp)
                 if solution is not None and solution.violation <= ACCEPTED_VIOLATION:
-                    whole = status is _IN_TURN[1] and qp.violation(solution.x) <= ACCEPTED_VIOLATION
-                    return _IN_TURN[2] if whole else status, solution
+                    # What may break limits has broken none where it answers for a solver that failed.
+                    if status is _SOFTENED and qp.violation(solution.x) <= ACCEPTED_VIOLATION:
+                        status = SolveStatus.SECOND_SOLVER
+                    return status, solution
         solution = equalities_only(qp)
         return (SolveStatus.HELD if solution is None else SolveStatus.EQUALITIES_ONLY), solution
 

@@ -178,15 +178,14 @@ def foot_sensing(
         estimate: of this tick.
         wrench: of the soles, shape (2, 6) [N, N·m].
         wanted: whether a lasting force is to be found.
-        inferred: deviations of force and moment where the wrenches follow from the joints' torques beside a state that
-            says of no deviation; they put forces that are none on the body while it is taken for sure [N, N·m].
+        inferred: deviations of force and moment of wrenches that follow from the joints' torques, for an estimate that
+            tells none; None of wrenches that are felt [N, N·m].
     """
     forces, sure = (wrench.item(2), wrench.item(8)), estimate.deviation
-    if sure is None and inferred is not None:
-        return FootSensing(forces, wrench if wanted else None, estimate.contact, inferred)
-    if sure is None:
+    deviation = inferred if sure is None else (sure.force, sure.moment)
+    if deviation is None:
         return _a_sensing(forces, wrench if wanted else None, estimate.contact)
-    return FootSensing(forces, wrench if wanted else None, estimate.contact, (sure.force, sure.moment))
+    return FootSensing(forces, wrench if wanted else None, estimate.contact, deviation)
 
 
 def unsure(deviation: Deviation, state: CentroidalState, feet: FeetState) -> tuple[CentroidalState, FeetState]:

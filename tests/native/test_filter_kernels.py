@@ -9,9 +9,9 @@ from surefoot.scenarios.run.sensed import sensed_state
 
 pytestmark = pytest.mark.unit
 
-NEAR = 1e-10
-"""Largest difference of what both estimate, of numbers above 1 as a share: wrenches by torques turn the soles, whose
-rounding adds up."""
+NEAR, BY_TORQUES = 1e-11, 1e-10
+"""Largest difference of what both estimate, of numbers above 1 as a share, and where wrenches follow from torques: these
+move the soles, and what they follow from is known to fewer digits."""
 
 
 def numbers(estimate):
@@ -21,8 +21,11 @@ def numbers(estimate):
     return np.concatenate((*state, *told, *estimate.channels.values(), np.array(estimate.contact, dtype=float)))
 
 
-@pytest.mark.parametrize("changes", [{}, {"sensing.wrench": "none"}, {"sensing.preset": "cheap"}])
-def test_kernels_estimate_what_plain_python_does(monkeypatch, changes):
+@pytest.mark.parametrize(
+    ("changes", "near"),
+    [({}, NEAR), ({"sensing.wrench": "none"}, BY_TORQUES), ({"sensing.preset": "cheap"}, NEAR)],
+)
+def test_kernels_estimate_what_plain_python_does(monkeypatch, changes, near):
     if library() is None:
         pytest.skip("there are no compiled kernels")
     pairs = []
@@ -59,4 +62,4 @@ def test_kernels_estimate_what_plain_python_does(monkeypatch, changes):
         sim.step()
     compiled, plain = pairs[0].both
     assert compiled.filter._kernels is not None and plain.filter._kernels is None
-    assert 0.0 < pairs[0].worst < NEAR
+    assert 0.0 < pairs[0].worst < near

@@ -134,7 +134,7 @@ def page(replay: Replay, charts: Sequence[Mapping[str, Any]] = ()) -> str:
     Raises:
         MissingExtraError: viser is not installed.
     """
-    with serving() as server, server.atomic():  # or its thread is woken for each of the 100,000 changes
+    with serving() as server, server.atomic():  # or its thread is woken for each change of a frame
         scene = ViserScene(server, replay)
         recorder = server.get_scene_serializer()
         for frame in range(1, len(replay)):

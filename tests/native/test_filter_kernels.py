@@ -10,8 +10,10 @@ from surefoot.scenarios.run.sensed import sensed_state
 pytestmark = pytest.mark.unit
 
 NEAR, BY_TORQUES = 1e-11, 1e-10
-"""Largest difference of what both estimate, of numbers above 1 as a share, and where wrenches follow from torques: these
-move the soles, and what they follow from is known to fewer digits."""
+"""Largest difference of what both estimate, of numbers above 1 as a share, and where wrenches follow from torques.
+
+Those move the soles, and what they follow from is known to fewer digits.
+"""
 
 
 def numbers(estimate):

@@ -57,8 +57,8 @@ class Measurement:
             time: instant [s].
             q: configuration in Pinocchio's convention, shape (7 + nj,) [m, -, rad].
             v: velocity in Pinocchio's convention, shape (6 + nj,) [m/s, rad/s].
-            joint_torque: as of the attribute [N m]; None where it is not known.
-            wrench: likewise [N, N m].
+            joint_torque: shape (nj,) [N m]; None where it is not known.
+            wrench: of the soles in their frames, shape (2, 6) [N, N m]; likewise.
         """
         torque = np.full(len(v) - 6, np.nan) if joint_torque is None else joint_torque
         felt = np.full((2, 6), np.nan) if wrench is None else wrench

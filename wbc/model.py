@@ -209,7 +209,7 @@ class RobotTerms:
             pitch: angle by which the foot is to be turned, heel up; the frame of a foot turned so is level [rad].
 
         Returns:
-            What takes a wrench from the new frame to the sole's, shape (6, 6).
+            What takes a wrench from the new frame to the sole's, shape (6, 6) [-, m].
         """
         self.unshift(k)
         self._shifted[k] = True

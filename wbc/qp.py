@@ -71,7 +71,7 @@ class QpLayout:
 
     @property
     def soft(self) -> NDArray[np.intp]:
-        """Numbers of the bounds and rows that stops of joints and contacts of limbs hold as well, of all of them [-].
+        """Numbers of the bounds and rows that stops of joints and contacts of limbs hold as well, shape (k,) [-].
 
         Those of the joints' accelerations come first, those of the distances between limbs last.
         """
@@ -116,11 +116,11 @@ class QpData:
         return math.isfinite(sum(float(part.sum()) for part in parts))
 
     def violation(self, x: Array, soft: NDArray[np.intp] | None = None) -> float:
-        """Largest violation [of its row] of any bound or row at x, shape (n,); 0 when feasible, NaN of no number.
+        """Largest violation [of its row] of any bound or row at x; 0 when feasible, NaN of no number.
 
         Args:
-            x: a solution [as of the QP].
-            soft: numbers of bounds and rows that do not count; None for none [-].
+            x: a solution, shape (n,) [as of the QP].
+            soft: numbers of bounds and rows that do not count, shape (k,) [-]; None for none.
         """
         values = np.concatenate((x, self.A @ x))
         beyond = np.maximum(self.bounds_lower - values, values - self.bounds_upper)

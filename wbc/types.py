@@ -167,9 +167,18 @@ class WbcReference:
         swing_progress: float,
         rolling_foot: int,
     ) -> "WbcReference":
-        """A reference out of the numbers [SI] of the kernels' struct ``Reference``, and what they do not know of it.
+        """A reference out of the numbers of the kernels' struct ``Reference``, and what they do not know of it.
 
         Those numbers become fields when they are first read.
+
+        Args:
+            numbers: of the struct, shape (n,) [SI].
+            planned_contact: as of the attribute.
+            time_to_switch: likewise [s].
+            lifting_foot: likewise.
+            swing_foot: likewise.
+            swing_progress: likewise [-].
+            rolling_foot: likewise.
         """
         made = _OpenReference()
         made.numbers, made.planned_contact, made.time_to_switch = numbers, planned_contact, time_to_switch

@@ -59,6 +59,9 @@ class Box:
         Args:
             soles: places and headings, shape (n, 3) [m, rad].
             half: half length and width of a sole, shape (2,) [m].
+
+        Returns:
+            Shape (n,) [-].
         """
         centre, size, axes = self.center[:2], self.half_size[:2], self.rotation[:2, :2].T
         c, s = np.cos(soles[:, 2]), np.sin(soles[:, 2])

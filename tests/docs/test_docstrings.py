@@ -7,6 +7,7 @@ import textwrap
 from dataclasses import fields, is_dataclass
 from importlib import import_module
 
+import numpy as np
 import pytest
 
 pytestmark = pytest.mark.unit
@@ -97,28 +98,35 @@ def test_every_field_that_is_a_number_has_a_unit(name, thing):
             assert unit, f"{name}.{field.name}"
 
 
-def unitless(function, told):
-    """Arguments and the return of a function that are numbers without a unit; told of its class by attribute."""
+ARRAY = re.compile(r"\bArray\b|NDArray|ndarray")
+SHAPE = r"[Ss]hapes? \(|\([0-9a-z_]+(?:, [0-9a-z_]*)+\)|of `"
+"""Of a docstring: said, written behind a name, or that of what is named."""
+
+
+def silent_about(said, kind, function, told):
+    """Arguments and the return of a kind of which a function does not say this; told of its class by attribute."""
     text, signature = inspect.getdoc(function) or "", inspect.signature(function)
-    own = entries(text)
+    own, head = entries(text), re.split(r"\n(?:Args|Returns|Raises):", text)[0]
     for argument in signature.parameters.values():
-        meaning = own.get(argument.name) or told.get(argument.name) or text
-        if NUMBER.search(str(argument.annotation)) and not re.search(UNIT, meaning):
+        meaning = own.get(argument.name) or told.get(argument.name) or head
+        if kind.search(str(argument.annotation)) and not re.search(said, meaning):
             yield argument.name
-    if NUMBER.search(str(signature.return_annotation)) and not re.search(UNIT, text):
+    returns = "".join(re.findall(r"(?s)\nReturns:(.*?)(?=\n\S|$)", text))
+    if kind.search(str(signature.return_annotation)) and not re.search(said, head + returns):
         yield "return"
 
 
+@pytest.mark.parametrize(("said", "kind"), [(UNIT, NUMBER), (SHAPE, ARRAY)], ids=["unit", "shape"])
 @pytest.mark.parametrize(("name", "thing"), PUBLIC, ids=[name for name, _ in PUBLIC])
-def test_every_argument_and_return_that_is_a_number_has_a_unit(name, thing):
+def test_every_argument_and_return_that_is_a_number_has_a_unit_and_every_array_a_shape(name, thing, said, kind):
     told = entries(inspect.getdoc(thing)) if inspect.isclass(thing) else {}
     for part, function in callables(name, thing):
-        assert not list(unitless(function, told)), part
+        assert not list(silent_about(said, kind, function, told)), part
 
 
-def test_a_number_without_a_unit_is_found():
+def test_a_number_without_a_unit_and_an_array_without_a_shape_are_found():
     def silent(length: float, width: float) -> float:
-        """An area.
+        """An area [m^2].
 
         Args:
             length: of it [m].
@@ -126,7 +134,16 @@ def test_a_number_without_a_unit_is_found():
         """
         return length * width
 
-    assert list(unitless(silent, {})) == ["width"]
+    def shapeless(q: np.ndarray, v: np.ndarray) -> None:
+        """A state.
+
+        Args:
+            q: of the joints, shape (nj,) [rad].
+            v: of the joints [rad/s].
+        """
+
+    assert list(silent_about(UNIT, NUMBER, silent, {})) == ["width"]
+    assert list(silent_about(SHAPE, ARRAY, shapeless, {})) == ["v"]
 
 
 def test_what_says_nothing_is_found():

@@ -1,6 +1,6 @@
 """What becomes of public humanoids: read, derived, stood, walked, turned and pushed.
 
-    python benchmarks/robots.py [FOLDER]... [--only NAME]... [--jobs N] [--out DIR] [--markdown FILE]
+    python benchmarks/robots.py [FOLDER]... [--only NAME]... [--jobs N] [--out DIR] [--csv FILE]
 
 Some models come with packages, which pip installs; the others are looked for in the folders, which may be clones of
 their repositories. A robot file is drafted from each model as `surefoot robot new` does it, and the lines that somebody
@@ -9,6 +9,7 @@ had to add are counted. Then it stands, walks, turns, and is pushed in the middl
 """
 
 import argparse
+import csv
 import re
 from collections.abc import Iterable, Iterator, Mapping, Sequence
 from dataclasses import dataclass, replace
@@ -21,6 +22,7 @@ from surefoot.models.types import RobotError
 from surefoot.scenarios.apps.robots.examine import examine, known
 from surefoot.scenarios.errors import LogError, ScenarioError, SetupError
 from surefoot.scenarios.output import write_whole
+from surefoot.scenarios.record.provenance import relevant_versions
 from surefoot.scenarios.run.run import run_scenario
 from surefoot.scenarios.setup.load import load
 from surefoot.scenarios.study.campaigns.engine import side_by_side
@@ -252,6 +254,15 @@ def table(rows: Sequence[Row]) -> str:
     return "\n".join([*lines, "", f"{good} of {len(rows)} take all steps and survive every push.", ""])
 
 
+def write(rows: Sequence[Row], path: Path) -> None:
+    """The table as docs/results keeps it: by what it was made, and its rows."""
+    code = relevant_versions()
+    with write_whole(path, replace=True) as temporary, temporary.open("w", newline="", encoding="utf-8") as file:
+        file.write("# python benchmarks/robots.py FOLDER...\n")
+        file.write(f"# surefoot {code['surefoot']}, source_digest {code['source_digest']}\n")
+        csv.writer(file, lineterminator="\n").writerows([HEADINGS, *map(cells, rows)])
+
+
 def _line(cells: Iterable[str]) -> str:
     return f"| {' | '.join(cells)} |"
 
@@ -270,7 +281,7 @@ def main() -> None:
     parser.add_argument("--only", action="append", metavar="NAME", help="of the robots this one alone; repeatable")
     parser.add_argument("--jobs", type=int, default=cores(), help="robots at once")
     parser.add_argument("--out", type=Path, default=Path("runs/robots"), help="directory of robot files and logs")
-    parser.add_argument("--markdown", type=Path, help="also write the table to this file")
+    parser.add_argument("--csv", type=Path, help="also write the table to this file, as docs/results keeps it")
     given = parser.parse_args()
     chosen = [model for model in MODELS if not given.only or model.name in given.only]
     places = {model.name: found(model, given.folders) for model in chosen}
@@ -285,9 +296,8 @@ def main() -> None:
         print(" ".join(cells(row)), *(f"\n  - {told}" for told in _remarks(row)), flush=True)
     text = table([rows[model.name] for model, *_ in tasks])
     print(text)
-    if given.markdown is not None:
-        with write_whole(given.markdown, replace=True) as temporary:
-            temporary.write_text(text, encoding="utf-8")
+    if given.csv is not None:
+        write([rows[model.name] for model, *_ in tasks], given.csv)
 
 
 if __name__ == "__main__":

@@ -1,9 +1,10 @@
-"""Results of campaigns that pages and pictures show, kept in docs/results, and the tables that follow from them.
+"""Results of campaigns that pages and pictures show, kept in docs/results.
 
     surefoot sweep ... --out runs/push-map
     python docs/measured.py push-map runs/push-map
 
-The first line of a kept result is the command that made it, the second the code that it was made by.
+The first line of a kept result is the command that made it, the second the code that it was made by. Campaigns that
+serve a page alone have their specification in docs/campaigns. `result_tables.py` makes the tables of pages.
 """
 
 import argparse
@@ -15,10 +16,11 @@ from functools import lru_cache
 from pathlib import Path
 from typing import Any, NamedTuple
 
+from surefoot.scenarios.judge.metrics import OWN
 from surefoot.scenarios.log import read
 from surefoot.scenarios.study.campaigns.campaign import read_campaign
 from surefoot.scenarios.study.campaigns.capturability import Limits
-from surefoot.scenarios.study.campaigns.spec import Axis, text
+from surefoot.scenarios.study.campaigns.spec import Axis
 from surefoot.scenarios.study.campaigns.thresholds import Found, Threshold
 
 RESULTS = Path(__file__).parent / "results"
@@ -43,8 +45,20 @@ _NATURAL = "gait=natural"
 _ENDS = "planner.step_adaptation=[none, crossing]"
 _STOPPED = ("torque_at_limit_fraction", "cop_ratio_p99", "torque_ratio_max")
 _DRAWN = ("terrain.friction", *(f"errors.torso_com.{axis}" for axis in range(3)), "errors.payload.mass")
-_SENSED = tuple(f"{name}.{axis}" for name in ("velocity_estimation_error_rms", "zmp_error_rms") for axis in (0, 1))
+_ZMP = tuple(f"zmp_error_rms.{axis}" for axis in (0, 1))
+SENSED = (*(f"velocity_estimation_error_rms.{axis}" for axis in (0, 1)), *_ZMP)
+_PLANNED = ("planner_infeasible_fraction", *_ZMP, "zmp_inside_fraction")
+FEET = ("robot", "sensing.preset", "sensing.wrench")
+HEEL_OFF = ("speed_mean", "cost_of_transport", "knee_angle_mean", "knee_torque_rms", "torque_ratio_max")
+ROUGH = ("speed_mean", "cop_ratio_p99", "torque_ratio_max")
 _PUSHED = ("errors.payload.body", "pushes.0.impulse", "pushes.0.direction", "pushes.0.time")
+
+
+def _of_page(name: str, *columns: str) -> Made:
+    """A campaign that serves a page alone."""
+    at = next(index for index, column in enumerate(columns) if column.partition(".")[0] in OWN)
+    return Made(f"docs/campaigns/{name}.yaml", columns=(*columns[:at], "status", *columns[at:]))
+
 
 MADE = {
     "gait-map": Made(
@@ -52,12 +66,18 @@ MADE = {
         columns=("riser", "step_length", "step_time", "status", *_STOPPED),
     ),
     "push-map-pendulum": Made("push-map", ("fidelity=pendulum", _NATURAL), 1),
-    "push-map": Made("push-map", ("fidelity=full", _NATURAL), 1),
-    "push-map-mid-swing": Made("push-map", ("fidelity=full", _NATURAL, _ENDS, "phase=[SS 0.5]"), 1),
+    "push-map": Made("push-map", ("fidelity=full", _NATURAL, _ENDS, "phase=[SS 0.5]"), 1),
+    "recovery-numbers": Made("recovery-numbers"),
+    "abilities": Made("docs/campaigns/abilities.yaml"),
+    "profiles": _of_page("profiles", "profile", "fidelity", *_PLANNED),
+    "profiles-on-stairs": _of_page("profiles-on-stairs", "terrain.riser", "planner.profile", *_ZMP),
+    "heel-off": _of_page("heel-off", "gait.heel_off", *HEEL_OFF),
+    "rough-ground": _of_page("rough-ground", "ground", *ROUGH),
+    "feet-without-sensors": _of_page("feet-without-sensors", *FEET, *SENSED, "cop_ratio_p99", "estimation_drift"),
     "sensor-faults": Made(
-        "sensor-faults", columns=("fault", "status", *_SENSED, "cop_ratio_p99", "step_shift", "ghost_force_max")
+        "sensor-faults", columns=("fault", "status", *SENSED, "cop_ratio_p99", "step_shift", "ghost_force_max")
     ),
-    "robustness": Made("robustness", columns=("gait", "status", *_DRAWN, *_PUSHED)),
+    "robustness": Made("robustness", seeds=40, columns=("gait", "status", *_DRAWN, *_PUSHED)),
 }
 """By the name of the result."""
 
@@ -160,69 +180,6 @@ def limit_of(name: str, labels: Mapping[str, Any]) -> float | None:
         if all(row[axis] == value for axis, value in labels.items()):
             return float(row["limit"]) if row["limit"] else None
     return None
-
-
-def push_table(name: str) -> str:
-    """Thresholds of all adaptations in one cell, and the limit of the last, by phase and direction."""
-    found, axes = searches(name)
-    *_, columns, shades, groups = axes
-    cells: dict[str, dict[Any, list[str]]] = {}
-    for one in sorted(found, key=lambda one: shades.values.index(one.labels[shades.name])):
-        sign = {"below": "< ", "above": "≥ "}.get(one.threshold.side, "")
-        limit = limit_of(name, one.labels) if one.labels[shades.name] == shades.values[-1] else None
-        shown = f"{sign}{one.shown:.2f}" + ("" if limit is None else f" ({limit:.2f})")
-        cells.setdefault(text(one.labels[groups.name]), {}).setdefault(one.labels[columns.name], []).append(shown)
-    lines = ["| N·s/kg | " + " | ".join(map(text, columns.values)) + " |", "|---" * (1 + len(columns.values)) + "|"]
-    for phase, by_column in cells.items():
-        lines.append(f"| {phase} | " + " | ".join(", ".join(by_column[column]) for column in columns.values) + " |")
-    return "\n".join(lines)
-
-
-def gains_table(name: str) -> str:
-    """By how much each adaptation multiplies the threshold of the one before it, least and most, by direction."""
-    found, axes = searches(name)
-    *_, columns, shades, groups = axes
-    inside = {
-        tuple(one.labels[axis.name] for axis in (columns, shades, groups)): one.shown for one in found if not one.beyond
-    }
-    lines = ["| adaptation | over | " + " | ".join(columns.values) + " |", "|---" * (2 + len(columns.values)) + "|"]
-    for before, after in zip(shades.values, shades.values[1:], strict=False):
-        cells = []
-        for column in columns.values:
-            pairs = [
-                (inside.get((column, before, group)), inside.get((column, after, group))) for group in groups.values
-            ]
-            ratios = [b / a for a, b in pairs if a and b]
-            cells.append(f"{min(ratios):.1f} to {max(ratios):.1f}" if ratios else "")
-        lines.append(f"| `{after}` | `{before}` | {' | '.join(cells)} |")
-    return "\n".join(lines)
-
-
-def faults_table() -> str:
-    """What walks with one fault of their sensors each, and how."""
-    lines = [
-        "| fault | status | velocity error x, y | ZMP error x, y | CoP at p99 | force found that nobody gave |",
-        "|---" * 6 + "|",
-    ]
-    for row in rows("sensor-faults"):
-        velocity, zmp = (
-            ", ".join(f"{1e3 * float(row[name]):.1f}" for name in pair) for pair in (_SENSED[:2], _SENSED[2:])
-        )
-        cop, ghost = float(row["cop_ratio_p99"]), float(row["ghost_force_max"])
-        lines.append(f"| {row['fault']} | {row['status']} | {velocity} mm/s | {zmp} mm | {cop:.2f} | {ghost:.0f} N |")
-    return "\n".join(lines)
-
-
-def pythons_table() -> str:
-    """In which empty environments a walk passed, and what they take of the disk."""
-    lines = [f"| {row['python']} | {row['distribution']} | {row['MB']} | {row['largest']} |" for row in rows("pythons")]
-    return "\n".join(["| Python | from | MB | of it |", "|---|---|---|---|", *lines])
-
-
-def made_table() -> str:
-    """By what command each result was made, and by which code."""
-    lines = [f"| `{name}.csv` | `{head(name)[0]}` | {head(name)[1]} |" for name in MADE if path_of(name).exists()]
-    return "\n".join(["| result | made by | code |", "|---|---|---|", *lines])
 
 
 def main() -> None:

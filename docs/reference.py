@@ -23,6 +23,7 @@ from pydantic.fields import FieldInfo
 
 from surefoot.models.robot_file.schema import RobotFile
 from surefoot.planner.laws.law import Motion, MotionProblem, StepContext
+from surefoot.planner.laws.profiles import PROFILES, Profile
 from surefoot.planner.plan import WalkPlan
 from surefoot.planner.references.zmp_reference import ZmpReference
 from surefoot.planner.types import CentroidalState, FeetState
@@ -45,6 +46,7 @@ from surefoot.scenarios.log.spec import ChannelSpec
 from surefoot.scenarios.log.writer import CHUNK_PERIOD_NS
 from surefoot.scenarios.record import channels
 from surefoot.scenarios.record.channels import Sizes
+from surefoot.scenarios.study.checks.signs import SIGNS
 from surefoot.scenarios.study.tour.page import markdown
 from surefoot.sim.measurement import Measurement
 from surefoot.sim.sensor_errors import PRESETS, SensorErrors
@@ -53,7 +55,8 @@ from surefoot.wbc.tasks.task import Task
 from surefoot.wbc.types import RobotState, WbcReference
 
 sys.path.insert(0, str(Path(__file__).parent))
-import measured
+import asked
+import result_tables
 import standing
 
 FOLDER = Path(__file__).parent
@@ -130,6 +133,32 @@ def tolerance(metric: Metric[Any]) -> str:
     parts = [f"{little * metric.scale:.3g} {unit}".strip() if little else ""]
     parts.append(f"{100.0 * share:g} % of it" if share else "")
     return " + ".join(part for part in parts if part) or "none"
+
+
+def signs_table() -> str:
+    """What `surefoot check` compares stage by stage, and by how much it may differ."""
+    lines = ["| from lift-off to lift-off | columns | may differ by |", "|---|---|---|"]
+    for sign in SIGNS:
+        what = sign.words.format(stage="", label="the stage", foot="swing").replace(" of the stage", "").strip()
+        little, share = sign.tolerance
+        allowed = f"{sign.scale * little:.3g} {sign.unit}".strip() + (f" + {100 * share:g} %" if share else "")
+        above = " above the greatest of all stages" if sign.peak else ""
+        lines.append(f"| {what} | {', '.join(f'`{name}`' for name in sign.columns)} | {allowed}{above} |")
+    return "\n".join(lines)
+
+
+def profiles_table() -> str:
+    """The formulations of the planner, with their numbers."""
+    heads = ("profile", "what it is", "N_p", "moves", "jerk [m/s³]", "its change per sample [m/s³]")
+    rows = [_profile(profile) for profile in PROFILES.values()]
+    return "\n".join("| " + " | ".join(row) + " |" for row in (heads, ["---"] * len(heads), *rows))
+
+
+def _profile(profile: Profile) -> list[str]:
+    numbers = profile.parameters
+    moves = str(len(numbers.moves)) if profile.moves else ""
+    change = "any" if math.isinf(numbers.jerk_rate_limit) else f"{numbers.jerk_rate_limit:g}"
+    return [f"`{profile.name}`", profile.doc, str(numbers.horizon), moves, f"{numbers.jerk_limit:g}", change]
 
 
 def sensors_table() -> str:
@@ -217,6 +246,8 @@ def _walked_row(name: str, found: Any) -> str:
 TABLES: dict[str, tuple[str, Callable[[], str]]] = {
     "catalogue": ("robots.md", catalogue_table),
     "keys": ("scenarios.md", keys_table),
+    "profiles": ("profiles.md", profiles_table),
+    "signs": ("checking.md", signs_table),
     "metrics": ("scenarios.md", metrics_table),
     "channels": ("log.md", channels_table),
     "robot-keys": ("robot-files.md", robot_keys_table),
@@ -296,16 +327,7 @@ def _taken_out(text: str, pattern: str) -> tuple[str, str]:
     return (text[: found.start()] + text[found.end() :]).strip(), found[1]
 
 
-TABLES |= {
-    "push-map-pendulum": ("campaigns.md", lambda: measured.push_table("push-map-pendulum")),
-    "push-map": ("campaigns.md", lambda: measured.push_table("push-map")),
-    "push-map-mid-swing": ("campaigns.md", lambda: measured.push_table("push-map-mid-swing")),
-    "push-gains": ("campaigns.md", lambda: measured.gains_table("push-map-pendulum")),
-    "sensor-faults": ("sensors.md", measured.faults_table),
-    "pythons": ("how-to/install.md", measured.pythons_table),
-    "made": ("campaigns.md", measured.made_table),
-}
-TABLES["handed"] = ("extending.md", handed_tables)
+TABLES |= {"handed": ("extending.md", handed_tables)} | result_tables.TABLES | asked.TABLES
 
 
 _LIMITS = json.loads((FOLDER.parent / "benchmarks" / "limits.json").read_text(encoding="utf-8"))
@@ -316,6 +338,7 @@ _COMMANDS = {"help": "--help", "list": "list", "show": "show walk", "schema": "s
 VALUES: dict[str, str] = {
     "chunk": f"{CHUNK_PERIOD_NS / 1e6:g} ms",
     "scenarios": str(len(catalogue.OWN)),
+    "knees": f"{standing.measured('walk', 'knee_angle_mean'):.0f}",
     **{f"{kind}calls": str(_LIMITS[name]["calls of a tick without a plan"]) for kind, name in _CALLS.items()},
     **{f"{kind}calls_plan": str(_LIMITS[name]["calls of a tick with a plan"]) for kind, name in _CALLS.items()},
     **{

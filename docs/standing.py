@@ -7,6 +7,7 @@ from collections.abc import Iterator
 from pathlib import Path
 from typing import Any, NamedTuple
 
+import asked
 import yaml
 
 from surefoot.scenarios.judge.metrics import OWN
@@ -57,8 +58,8 @@ def _walks() -> Iterator[Row]:
 
 
 def _pushes() -> Iterator[Row]:
-    for phase, cells in push_rows().items():
-        told = ", ".join(f"{value} {where}" for where, value in zip(PUSHES, cells, strict=True))
+    for phase, most in asked.largest().items():
+        told = ", ".join(f"{value:g} {where}" for where, value in zip(PUSHES, most, strict=True))
         yield Row(f"push of 0.1 s {phase} [N·s/kg]", told, LADDER, PUSH_TEST)
 
 
@@ -93,21 +94,20 @@ def _compute() -> Iterator[Row]:
     yield Row("speed of `diagonal-walk`", f"{shown[1]} times real time", sure, "surefoot run diagonal-walk")
 
 
-def push_rows() -> dict[str, tuple[str, ...]]:
-    """Impulses of the README's table of pushes, by phase, in the order of `PUSHES` [N·s/kg]."""
-    text = (ROOT / "README.md").read_text(encoding="utf-8")
-    found = re.findall(r"(?m)^\| (in mid-swing|at any time) \| (.*) \|$", text)
-    return {phase: tuple(cells.split(" | ")) for phase, cells in found}
-
-
 def scenario_file(name: str) -> Any:
     """A scenario of the catalogue as its file has it."""
     return yaml.safe_load((ROOT / "scenarios" / "catalogue" / f"{name}.yaml").read_text(encoding="utf-8"))
 
 
+def measured(scenario: str, name: str) -> Any:
+    """A metric of a baseline in the unit in which it is shown."""
+    path = ROOT / "scenarios" / "baselines" / f"{scenario}.baseline.yaml"
+    value, scale = yaml.safe_load(path.read_text(encoding="utf-8"))["metrics"][name], OWN[name].scale
+    return [scale * number for number in value] if isinstance(value, list) else scale * value
+
+
 def _measured(scenario: str, name: str) -> str:
     """A metric of a baseline as it is shown."""
-    path = ROOT / "scenarios" / "baselines" / f"{scenario}.baseline.yaml"
-    value, metric = yaml.safe_load(path.read_text(encoding="utf-8"))["metrics"][name], OWN[name]
+    value = measured(scenario, name)
     numbers = value if isinstance(value, list) else [value]
-    return f"{', '.join(f'{metric.scale * number:.3g}' for number in numbers)} {metric.shown}".strip(" -")
+    return f"{', '.join(f'{number:.3g}' for number in numbers)} {OWN[name].shown}".strip(" -")

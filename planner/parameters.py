@@ -164,7 +164,7 @@ class RecoveryParameters:
 
     Each is a key ``planner.recovery.*`` of a scenario, described as here. Those with a unit beside their default follow
     the robot's size. What each moves when it is halved or doubled is measured by the campaign ``recovery-numbers`` and
-    told in docs/recovery-limits.md, with the tests that notice those which move no threshold.
+    told in docs/recovery-results.md, with the tests that notice those which move no threshold.
 
     Attributes:
         second_weight: cost of a squared shift of the second step; the other weights count against it [1/m^2].

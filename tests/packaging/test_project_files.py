@@ -48,7 +48,10 @@ def test_a_release_is_tried_on_every_python_that_it_names():
     assert versions[0] == least
     named = re.findall(r"Python :: (3\.\d+)", (ROOT / "pyproject.toml").read_text())
     with (ROOT / "docs" / "results" / "pythons.csv").open(encoding="utf-8") as file:
-        tried = [row["python"].rpartition(".")[0] for row in csv.DictReader(file)]
+        tried = [
+            row["python"].rpartition(".")[0]
+            for row in csv.DictReader(line for line in file if not line.startswith("#"))
+        ]
     assert versions == named == list(dict.fromkeys(tried))
 
 

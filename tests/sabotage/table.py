@@ -1,13 +1,18 @@
 """The tables of docs/scenarios.md and docs/checking.md: which criteria catch which worse controller, and what
 `surefoot check` says of everything that is broken.
 
-python tests/sabotage/table.py [--criteria | --check] [SCENARIO]...
+    python tests/sabotage/table.py --criteria [SCENARIO]... > docs/results/criteria.csv
+    python tests/sabotage/table.py --check [SCENARIO]... > docs/results/sabotage.csv
+
+`python docs/reference.py` then puts them onto the pages.
 """
 
+import argparse
+import csv
 import re
 import sys
 import tempfile
-from collections.abc import Sequence
+from collections.abc import Iterable, Sequence
 from concurrent.futures import ProcessPoolExecutor
 from pathlib import Path
 
@@ -16,6 +21,7 @@ from sabotages import ALL
 
 import surefoot
 from surefoot.scenarios.catalogue import CONTROLS, OURS, OWN
+from surefoot.scenarios.record.provenance import relevant_versions
 from surefoot.scenarios.study.checks.baseline import read_baseline
 from surefoot.scenarios.study.checks.check import cases, run_case
 from surefoot.scenarios.study.checks.report import lines_of
@@ -35,13 +41,11 @@ def caught_by(name: str, sabotage: str) -> str:
 
 def criteria_table(names: Sequence[str]) -> None:
     """Print which criteria each worse controller misses in each scenario."""
-    print("| scenario | " + " | ".join(SABOTAGES) + " |")
-    print("|---" * (1 + len(SABOTAGES)) + "|")
     cells = [(name, sabotage) for name in names for sabotage in SABOTAGES]
     with ProcessPoolExecutor(2) as pool:
         found = dict(zip(cells, pool.map(caught_by, *zip(*cells, strict=True)), strict=True))
-    for name in names:
-        print(f"| `{name}` | " + " | ".join(found[name, sabotage] for sabotage in SABOTAGES) + " |")
+    rows = ([f"`{name}`", *(found[name, sabotage] for sabotage in SABOTAGES)] for name in names)
+    printed("--criteria", ("scenario", *SABOTAGES), rows)
 
 
 def of_make_check() -> list[str]:
@@ -72,21 +76,34 @@ def check_table(names: Sequence[str]) -> None:
     """Print what `surefoot check` says of everything that is broken."""
     everything = short_first(names)
     some = [name for name in everything if name in of_make_check()]
-    print("| broken | caught by the whole | by `make check` |\n|---|---|---|")
+    rows = []
     for sabotage in ALL:
         by_some = first_that_catches(sabotage, some)
         by_all = by_some if everything[: len(some)] == some else "-"
         by_all = first_that_catches(sabotage, everything) if by_all == "-" else by_all
-        print(f"| {sabotage} | {by_all} | {'the same' if by_some == by_all != '-' else by_some} |", flush=True)
+        rows.append((sabotage, by_all, "the same" if by_some == by_all != "-" else by_some))
+    printed("--check", ("broken", "caught by the whole", "by `make check`"), rows)
+
+
+def printed(option: str, head: Sequence[str], rows: Iterable[Sequence[str]]) -> None:
+    """Print a table as docs/results keeps it."""
+    code = relevant_versions()
+    print(f"# python tests/sabotage/table.py {option}")
+    print(f"# surefoot {code['surefoot']}, source_digest {code['source_digest']}")
+    csv.writer(sys.stdout, lineterminator="\n").writerows([head, *rows])
 
 
 def main() -> None:
-    chosen = [argument for argument in sys.argv[1:] if not argument.startswith("--")]
-    options = set(sys.argv[1:]) - set(chosen)
-    if options != {"--check"}:
-        criteria_table(chosen or list(OWN))
-    if options != {"--criteria"}:
-        check_table(chosen or list(OURS))
+    parser = argparse.ArgumentParser(description=__doc__, formatter_class=argparse.RawDescriptionHelpFormatter)
+    which = parser.add_mutually_exclusive_group(required=True)
+    which.add_argument("--criteria", action="store_true")
+    which.add_argument("--check", action="store_true")
+    parser.add_argument("scenarios", nargs="*", metavar="SCENARIO")
+    told = parser.parse_args()
+    if told.criteria:
+        criteria_table(told.scenarios or list(OWN))
+    else:
+        check_table(told.scenarios or list(OURS))
 
 
 if __name__ == "__main__":

@@ -16,6 +16,9 @@ SOUND = {
 STOP = 6.0
 """Time at the end in which the robot is told to stop and stands [s]."""
 
+SEEDS, MINUTES = 10, 10
+"""Of the long walks."""
+
 FEET = {
     "human-size feet": ("walk", (0.6, 0.25, 0.6), {}),
     "7.5 cm feet": ("paper-walk", (0.2, 0.08, 0.2), {"gait.single_support": 0.8, "gait.double_support": 0.3}),
@@ -48,10 +51,10 @@ def test_random_commands_are_walked(feet, tmp_path):
 
 
 @pytest.mark.long
-@pytest.mark.parametrize("seed", range(1, 11))
+@pytest.mark.parametrize("seed", range(1, SEEDS + 1))
 @pytest.mark.parametrize("feet", FEET)
 def test_ten_minutes_of_random_commands_are_walked(feet, seed, tmp_path):
-    result = walk_on_command(feet, seed, 600.0, tmp_path)
+    result = walk_on_command(feet, seed, 60.0 * MINUTES, tmp_path)
     result.log.unlink()
     assert result.verdict.passed, result.verdict.reasons
 

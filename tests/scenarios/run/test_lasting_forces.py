@@ -14,6 +14,15 @@ NATURAL = (
 SURVIVED = "criteria={fell: false, steps_taken: steps_planned, wbc_fallbacks: {max: 0}, self_contact_time: {max: 0}}"
 OFF = "sensing.force_estimate=false"
 FORCES = {"forward": [1, 0], "left": [0, 1], "backward": [-1, 0], "right": [0, -1]}
+HELD = {"natural gait": 40.0, "paper's gait, feet of 7.5 cm": 25.0}
+"""Forces that are walked with in every direction and phase, by the walk [N]."""
+
+LASTING = 2.0
+"""How long each acts [s]."""
+
+SCALES = (0.75, 0.8, 0.9, 1.1, 1.2, 1.25)
+"""Of the believed mass over the true one."""
+
 PHASES = [("double", 0.5), ("single", 0.2), ("single", 0.5), ("single", 0.8)]
 
 
@@ -24,7 +33,7 @@ def walk(folder, scenario, *keys):
 def pulled(force, direction, phase=("single", 0.5)):
     x, y = np.multiply(FORCES[direction], force)
     place = f"step: 3, phase: {phase[0]}, fraction: {phase[1]}"
-    return f"pushes=[{{{place}, duration: 2.0, force: [{x}, {y}, 0]}}]"
+    return f"pushes=[{{{place}, duration: {LASTING}, force: [{x}, {y}, 0]}}]"
 
 
 @pytest.mark.physics
@@ -92,7 +101,7 @@ def test_the_true_weight_is_found_within_a_hundredth(scale, keys, tmp_path):
 @pytest.mark.parametrize("direction", FORCES)
 @pytest.mark.parametrize("keys", [(), ("sensing.preset=good",)], ids=["truth", "good"])
 def test_forces_that_last_two_seconds(keys, direction, phase, tmp_path):
-    keys = (*NATURAL, pulled(40, direction, phase), "start.position_noise=0.0005", *keys)
+    keys = (*NATURAL, pulled(HELD["natural gait"], direction, phase), "start.position_noise=0.0005", *keys)
     assert walk(tmp_path, "walk", *keys).verdict.reasons == ()
 
 
@@ -100,12 +109,13 @@ def test_forces_that_last_two_seconds(keys, direction, phase, tmp_path):
 @pytest.mark.parametrize("phase", PHASES)
 @pytest.mark.parametrize("direction", FORCES)
 def test_forces_that_last_on_small_feet(direction, phase, tmp_path):
-    keys = (pulled(25, direction, phase), "gait.initial_stand=0.4", "start.position_noise=0.0005", "duration=18.0")
+    force = HELD["paper's gait, feet of 7.5 cm"]
+    keys = (pulled(force, direction, phase), "gait.initial_stand=0.4", "start.position_noise=0.0005", "duration=18.0")
     assert walk(tmp_path, "diagonal-walk", *keys).verdict.reasons == ()
 
 
 @pytest.mark.long
 @pytest.mark.parametrize("scenario", ["walk", "diagonal-walk"])
-@pytest.mark.parametrize("scale", [0.75, 0.8, 0.9, 1.1, 1.2, 1.25])
+@pytest.mark.parametrize("scale", SCALES)
 def test_a_weight_that_is_not_believed_in(scale, scenario, tmp_path):
     assert walk(tmp_path, scenario, f"errors.mass_scale={scale}").verdict.reasons == ()

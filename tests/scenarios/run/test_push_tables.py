@@ -68,6 +68,9 @@ NATURAL_GOALS = {
     "SS 0.5": (0.785, 0.45, 0.85, 0.40),
     "SS 0.8": (0.45, 0.27, 0.65, 0.27),
 }
+TWICE = 0.25
+"""Of each of two pushes [N·s/kg]."""
+
 PAPER_IMPULSES = {
     "forward": (0.12, 0.17, 0.20),
     "left": (0.12, 0.17, 0.20),
@@ -141,7 +144,7 @@ def test_standing(keys: dict[str, object], impulse: float, duration: float, eigh
     [*((one, one) for one in DIRECTIONS), *zip(DIRECTIONS, [*DIRECTIONS][1:] + [*DIRECTIONS][:1], strict=True)],
 )
 def test_two_pushes_a_step_apart(phase: str, first: str, second: str, tmp_path: Path) -> None:
-    assert_survives(NATURAL, tmp_path, push(3, phase, 0.25, first), push(4, phase, 0.25, second))
+    assert_survives(NATURAL, tmp_path, push(3, phase, TWICE, first), push(4, phase, TWICE, second))
 
 
 @pytest.mark.parametrize(

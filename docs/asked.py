@@ -1,0 +1,181 @@
+"""Tables of what tests and campaigns ask the robot for, from the tests and campaigns themselves."""
+
+import importlib.util
+from collections.abc import Iterator
+from functools import lru_cache
+from math import prod
+from pathlib import Path
+from types import ModuleType
+from typing import Any
+
+import yaml
+
+from surefoot.scenarios.study.campaigns.spec import with_unit
+
+ROOT = Path(__file__).parents[1]
+RUNS = ROOT / "tests" / "scenarios" / "run"
+
+WALKS = {
+    "stairs-up": "`stairs-up`",
+    "stairs-down": "`stairs-down`",
+    "blocks": "`blocks`, six steps",
+    "slope-up": "`slope`, up",
+    "slope-down": "`slope`, down",
+    "turn": "`walk-turn`",
+    "natural": "natural gait",
+    "heel-off": "natural gait with `gait.heel_off`",
+}
+"""In words, by the names of the tests."""
+
+
+@lru_cache
+def tests(name: str) -> ModuleType:
+    """A module of tests."""
+    spec = importlib.util.spec_from_file_location(name, RUNS / f"{name}.py")
+    assert spec is not None
+    assert spec.loader is not None
+    module = importlib.util.module_from_spec(spec)
+    spec.loader.exec_module(module)
+    return module
+
+
+def pushes() -> ModuleType:
+    """The tests of pushes."""
+    return tests("test_push_tables")
+
+
+def goals() -> dict[str, dict[str, float]]:
+    """What the natural gait shall survive by phase and direction [N·s/kg]."""
+    module = pushes()
+    return {phase: dict(zip(module.DIRECTIONS, most, strict=True)) for phase, most in module.NATURAL_GOALS.items()}
+
+
+def goals_table() -> str:
+    """The largest pushes of both gaits by phase and direction."""
+    module = pushes()
+    papers = {direction: impulses[-1] for direction, impulses in module.PAPER_IMPULSES.items()}
+    rows = [("natural", phase, most) for phase, most in goals().items()]
+    rows.append(("paper's", "each of them", papers))
+    head = "| gait | phase | forward | left, to the swing foot | backward | right, over the stance foot |"
+    lines = [f"| {gait} | {phase} | {' | '.join(f'{one:g}' for one in most.values())} |" for gait, phase, most in rows]
+    return "\n".join([head, "|---" * 6 + "|", *lines])
+
+
+def elsewhere_table() -> str:
+    """What is survived elsewhere than in the third step on flat ground."""
+    lines = [f"| {what} | {impulse:g} | {runs} |" for what, impulse, runs in _elsewhere()]
+    return "\n".join(["| pushed | with, N·s/kg | runs |", "|---|---|---|", *lines])
+
+
+def _elsewhere() -> Iterator[tuple[str, float, int]]:
+    module = pushes()
+    (cases,) = (mark for mark in module.test_standing.pytestmark if mark.args and "keys" in mark.args[0])
+    for told, (_, impulse, _) in zip(cases.kwargs["ids"], cases.args[1], strict=True):
+        yield f"standing, {told}, from eight sides", impulse, _count(module.test_standing) // len(cases.args[1])
+    twice = module.test_two_pushes_a_step_apart
+    yield "two pushes a step apart, in one direction or one after another", module.TWICE, _count(twice)
+    (cases,) = (mark for mark in module.test_elsewhere.pytestmark if mark.args and "walk" in mark.args[0])
+    each = _count(module.test_elsewhere) // len(cases.args[1])
+    for walk, step, impulse in cases.args[1]:
+        yield f"{WALKS[walk]}, step {step}", impulse, each
+
+
+def _count(test: object) -> int:
+    """How many runs a test is."""
+    marks = test.pytestmark  # type: ignore[attr-defined]
+    return prod(len(list(mark.args[1])) for mark in marks if mark.name == "parametrize")
+
+
+def largest() -> dict[str, tuple[float, ...]]:
+    """Of the natural gait forward, backward, to the swing foot, over the stance foot, by when [N·s/kg]."""
+    most = [[phase[direction] for direction in ("forward", "backward", "left", "right")] for phase in goals().values()]
+    return {
+        "in mid-swing": tuple(most[list(goals()).index("SS 0.5")]),
+        "at any time": tuple(map(min, zip(*most, strict=True))),
+    }
+
+
+def readme_table() -> str:
+    """The largest pushes of the natural gait, and those that are survived from every side."""
+    lines = [f"| {when} | {' | '.join(f'{one:g}' for one in most)} |" for when, most in largest().items()]
+    head = ["| push | forward | backward | to the swing foot | over the stance foot |", "|---" * 5 + "|"]
+    return "\n".join([*head, *lines, "", *_from_any_side()])
+
+
+def _from_any_side() -> Iterator[str]:
+    """Rows of pushes that are survived from every side."""
+    standing, *_ = (impulse for what, impulse, _ in _elsewhere() if what.startswith("standing"))
+    stairs = min(impulse for what, impulse, _ in _elsewhere() if what.startswith("`stairs"))
+    yield from ("| push | any side |", "|---|---|", f"| standing | {standing:g} |", f"| on stairs | {stairs:g} |")
+
+
+def lasting_table() -> str:
+    """Forces that last, and weights that are not believed in."""
+    module = tests("test_lasting_forces")
+    phases = f"{len(module.FORCES)} directions, {len(module.PHASES)} phases"
+    lines = [f"| {gait} | {force:g} N for {module.LASTING:g} s, in {phases} |" for gait, force in module.HELD.items()]
+    scales = f"{min(module.SCALES):g} to {max(module.SCALES):g}"
+    lines.append(f"| `walk` and `diagonal-walk` | `errors.mass_scale` {scales} |")
+    return "\n".join(["| walk | what acts |", "|---|---|", *lines])
+
+
+def _campaign(name: str) -> Any:
+    path = ROOT / "scenarios" / "study" / "campaigns" / "campaigns" / f"{name}.yaml"
+    return yaml.safe_load(path.read_text(encoding="utf-8"))
+
+
+def drawn_table() -> str:
+    """What the campaign `robustness` has wrong, and what it draws for each run."""
+    campaign = _campaign("robustness")
+    fixed = {key: value for key, value in campaign["set"].items() if key.startswith(("errors", "start", "wbc"))}
+    drawn = {key: next(iter(spread.items())) for key, spread in campaign["sample"].items()}
+    lines = [f"| `{with_unit(key)}` | {value:g} |" for key, value in fixed.items() if isinstance(value, float)]
+    for key, (kind, values) in drawn.items():
+        told = " to ".join(f"{value:g}" for value in values) if kind == "uniform" else ", ".join(map(str, values))
+        lines.append(f"| `{with_unit(key)}` | {told} |")
+    return "\n".join(["| key | value, or drawn from |", "|---|---|", *lines])
+
+
+def bounds_table() -> str:
+    """Bounds of the ZMP that the campaign `sensors` holds with good sensors, where the catalogue asks for more."""
+    campaign = _campaign("sensors")
+    lines = []
+    for name, keys in campaign["grid"]["walk"].items():
+        path = ROOT / "scenarios" / "catalogue" / f"{keys['scenario']}.yaml"
+        own = yaml.safe_load(path.read_text(encoding="utf-8"))["criteria"]
+        inside, error = (_bound(keys, own, metric) for metric in ("zmp_inside_fraction", "zmp_error_rms"))
+        if inside or error:
+            lines.append(f"| `{name}` | {inside} | {error} |")
+    return "\n".join(["| walk | `zmp_inside_fraction`, at least | `zmp_error_rms`, at most |", "|---|---|---|", *lines])
+
+
+def _bound(keys: dict[str, Any], own: dict[str, Any], metric: str) -> str:
+    """A bound in place of another one, as it is read; empty where a campaign leaves it."""
+    given = keys.get(f"criteria.{metric}")
+    if given is None:
+        return ""
+    (end,) = given
+    scale, unit = (1e3, " mm") if metric.endswith("rms") else (1e2, " %")
+    return f"{scale * given[end]:g}{unit} for {scale * own[metric][end]:g}"
+
+
+def commanded_table() -> str:
+    """Walks on commands that are drawn at random."""
+    module = tests("test_commanded_walks")
+    lines = []
+    for feet, (name, (ahead, aside, turn), _) in module.FEET.items():
+        most = f"{ahead:g} m/s, {aside:g} m/s, {turn:g} rad/s"
+        lines.append(f"| `{name}` | {feet} | {most} | {module.SEEDS} times {module.MINUTES} minutes |")
+    return "\n".join(["| walk | feet | forward, sideways, turn up to | for |", "|---" * 4 + "|", *lines])
+
+
+TABLES = {
+    "robustness-drawn": ("campaigns.md", drawn_table),
+    "commanded": ("drive.md", commanded_table),
+    "sensors-bounds": ("sensors.md", bounds_table),
+    "push-goals": ("recovery-results.md", goals_table),
+    "pushes-elsewhere": ("recovery-results.md", elsewhere_table),
+    "lasting-forces": ("recovery-results.md", lasting_table),
+    "pushes": ("../README.md", readme_table),
+}
+"""By name: the page, and what makes the table."""

@@ -1,0 +1,255 @@
+"""Tables of pages that follow from the results in docs/results, which `measured.py` keeps."""
+
+import json
+import re
+from collections.abc import Callable, Iterator, Sequence
+from functools import partial
+from itertools import groupby
+from pathlib import Path
+from typing import Any
+
+from measured import HEEL_OFF, RESULTS, ROUGH, SENSED, head, limit_of, rows, searches
+
+from surefoot.scenarios.judge.metrics import OWN
+from surefoot.scenarios.study.campaigns.spec import text
+from surefoot.scenarios.study.campaigns.table import wilson
+from surefoot.scenarios.study.campaigns.thresholds import Found
+
+LIMITS = Path(__file__).parents[1] / "benchmarks" / "limits.json"
+
+
+def _table(heads: Sequence[str], lines: Iterator[Sequence[str]] | Sequence[Sequence[str]]) -> str:
+    return "\n".join("| " + " | ".join(line) + " |" for line in (heads, ["---"] * len(heads), *lines))
+
+
+def push_table(name: str) -> str:
+    """Thresholds of all adaptations in one cell, and the limit of the last, by phase and direction."""
+    found, axes = searches(name)
+    *_, columns, shades, groups = axes
+    cells: dict[str, dict[Any, list[str]]] = {}
+    for one in sorted(found, key=lambda one: shades.values.index(one.labels[shades.name])):
+        sign = {"below": "< ", "above": "≥ "}.get(one.threshold.side, "")
+        limit = limit_of(name, one.labels) if one.labels[shades.name] == shades.values[-1] else None
+        shown = f"{sign}{one.shown:.2f}" + ("" if limit is None else f" ({limit:.2f})")
+        cells.setdefault(text(one.labels[groups.name]), {}).setdefault(one.labels[columns.name], []).append(shown)
+    lines = ["| N·s/kg | " + " | ".join(map(text, columns.values)) + " |", "|---" * (1 + len(columns.values)) + "|"]
+    for phase, by_column in cells.items():
+        lines.append(f"| {phase} | " + " | ".join(", ".join(by_column[column]) for column in columns.values) + " |")
+    return "\n".join(lines)
+
+
+def gains_table(name: str) -> str:
+    """By how much each adaptation multiplies the threshold of the one before it, least and most, by direction."""
+    found, axes = searches(name)
+    *_, columns, shades, groups = axes
+    inside = {
+        tuple(one.labels[axis.name] for axis in (columns, shades, groups)): one.shown for one in found if not one.beyond
+    }
+    lines = ["| adaptation | over | " + " | ".join(columns.values) + " |", "|---" * (2 + len(columns.values)) + "|"]
+    for before, after in zip(shades.values, shades.values[1:], strict=False):
+        cells = []
+        for column in columns.values:
+            pairs = [
+                (inside.get((column, before, group)), inside.get((column, after, group))) for group in groups.values
+            ]
+            ratios = [b / a for a, b in pairs if a and b]
+            cells.append(f"{min(ratios):.1f} to {max(ratios):.1f}" if ratios else "")
+        lines.append(f"| `{after}` | `{before}` | {' | '.join(cells)} |")
+    return "\n".join(lines)
+
+
+def _shown(found: Found) -> str:
+    """A threshold in two digits, with the sign of one beyond the range."""
+    return {"below": "< ", "above": "≥ "}.get(found.threshold.side, "") + f"{found.shown:.2f}"
+
+
+def search_table(name: str, head: str = "N·s/kg") -> str:
+    """Thresholds of a search by two axes, the first down, the second across."""
+    found, (down, across) = searches(name)
+    shown = {(one.labels[down.name], one.labels[across.name]): _shown(one) for one in found}
+    lines = [[str(row), *(shown[row, column] for column in across.values)] for row in down.values]
+    return _table([head, *across.values], lines)
+
+
+def numbers_table() -> str:
+    """What a number of the recovery moves, halved and doubled: the thresholds that are others than as it is."""
+    found, (cases, numbers) = searches("recovery-numbers")
+    shown = {(one.labels["case"], one.labels["number"]): _shown(one) for one in found}
+    plain, *changed = numbers.values
+    as_is = [shown[case, plain] for case in cases.values]
+    lines, still = [["as they are", "", *as_is]], []
+    for number in changed:
+        name, _, change = number.partition(" ")
+        cells = [shown[case, number] for case in cases.values]
+        if cells == as_is:
+            still.append(name)
+        else:
+            moved = ("-" if cell == plain else cell for cell, plain in zip(cells, as_is, strict=True))
+            lines.append([f"`{name}`", change, *moved])
+    none = ", ".join(f"`{name}`" for name in dict.fromkeys(still) if still.count(name) == 2)
+    return _table(["number", "changed", *cases.values], lines) + f"\n\nNo threshold is moved by {none}."
+
+
+def runs_table(name: str, labels: Sequence[str], metrics: Sequence[str], of_all: Sequence[str] = ()) -> str:
+    """Runs of a campaign: what varies, how many passed, some metrics of all, and others of those that passed.
+
+    Where several runs have the same labels a metric is given from the least to the largest.
+    """
+    lines = []
+    for values, group in groupby(rows(name), lambda row: [row[label] for label in labels]):
+        runs = list(group)
+        passed = [run for run in runs if run["status"] == "pass"]
+        walked = {0: "no", len(runs): "yes"}.get(len(passed), f"{len(passed)} of {len(runs)}")
+        told = (_measured(of, metric) for of, names in ((runs, of_all), (passed, metrics)) for metric in names)
+        lines.append([*values, walked, *told])
+    return _table([*labels, "walked", *map(_with_unit, (*of_all, *metrics))], lines)
+
+
+def _with_unit(metric: str) -> str:
+    return f"`{metric}`" + (f" [{OWN[metric].shown}]" if OWN[metric].shown else "")
+
+
+def _measured(runs: Sequence[dict[str, str]], metric: str) -> str:
+    """A metric of some runs; empty where there are none."""
+    cells = []
+    for column in runs[0] if runs else ():
+        if re.fullmatch(rf"{metric}(\.\d)?", column):
+            values = [OWN[metric].scale * float(run[column]) for run in runs]
+            cells.append(" to ".join(dict.fromkeys(f"{end:.3g}" for end in (min(values), max(values)))))
+    return ", ".join(cells)
+
+
+def rates_table() -> str:
+    """How many runs of `robustness` passed, with the interval of the rate."""
+    lines = []
+    for gait, group in groupby(rows("robustness"), lambda row: row["gait"]):
+        states = [row["status"] for row in group]
+        passed, of = states.count("pass"), len(states)
+        lines.append([gait, f"{passed} of {of}", f"{wilson(passed, of).between} %"])
+    return _table(["gait", "survived", "95 % interval"], lines)
+
+
+def fastest_table() -> str:
+    """The longest step that walks by its time on each riser of the gait map, and what stops a longer one."""
+    runs = [row for row in rows("gait-map") if row["status"] != "refused"]
+    times = sorted({float(row["step_time"]) for row in runs})
+    lines = []
+    for riser in sorted({float(row["riser"]) for row in runs}):
+        cells = []
+        for time in times:
+            passed = [
+                float(row["step_length"])
+                for row in runs
+                if (float(row["riser"]), float(row["step_time"]), row["status"]) == (riser, time, "pass")
+            ]
+            cells.append(f"{max(passed):g} m, {max(passed) / time:.2f} m/s" if passed else "none")
+        lines.append(["flat ground" if riser == 0.0 else f"stairs of {riser:g} m", *cells])
+    return _table(["", *(f"{time:g} s" for time in times)], lines)
+
+
+def plain_table(name: str) -> str:
+    """A result whose columns are those of the page."""
+    kept = rows(name)
+    return _table(list(kept[0]), [list(row.values()) for row in kept])
+
+
+def faults_table() -> str:
+    """What walks with one fault of their sensors each, and how."""
+    lines = [
+        "| fault | status | velocity error x, y | ZMP error x, y | CoP at p99 | force found that nobody gave |",
+        "|---" * 6 + "|",
+    ]
+    for row in rows("sensor-faults"):
+        velocity, zmp = (
+            ", ".join(f"{1e3 * float(row[name]):.1f}" for name in pair) for pair in (SENSED[:2], SENSED[2:])
+        )
+        cop, ghost = float(row["cop_ratio_p99"]), float(row["ghost_force_max"])
+        lines.append(f"| {row['fault']} | {row['status']} | {velocity} mm/s | {zmp} mm | {cop:.2f} | {ghost:.0f} N |")
+    return "\n".join(lines)
+
+
+def pythons_table() -> str:
+    """In which empty environments a walk passed, and what they take of the disk."""
+    lines = [f"| {row['python']} | {row['distribution']} | {row['MB']} | {row['largest']} |" for row in rows("pythons")]
+    return "\n".join(["| Python | from | MB | of it |", "|---|---|---|---|", *lines])
+
+
+def made_table() -> str:
+    """By what command each result was made, and by which code."""
+    made = [(path.name, *head(path.stem)) for path in sorted(RESULTS.glob("*.csv"))]
+    return _table(["result", "made by", "code"], [[f"`{name}`", f"`{command}`", code] for name, command, code in made])
+
+
+def _section(name: str) -> tuple[list[str], list[list[Any]]]:
+    """Headings and rows of a section of `python -m benchmarks`."""
+    found = json.loads((RESULTS / "benchmarks.json").read_text(encoding="utf-8"))["sections"][name]
+    return found["columns"], found["rows"]
+
+
+def startup_table() -> str:
+    """What commands cost before they do anything."""
+    _, lines = _section("startup")
+    limits = json.loads(LIMITS.read_text(encoding="utf-8"))["surefoot's modules that a command imports"]
+    cells = [[f"`surefoot {name}`", f"{seconds:.2f} s", str(limits.get(name, ""))] for name, seconds, *_ in lines]
+    return _table(["command", "processor time", "modules, at most"], cells)
+
+
+def tick_table() -> str:
+    """Parts of a control tick as shares of its mean, and what it takes over the engines alone."""
+    _, lines = _section("tick")
+    means = {name: mean for name, *_, mean in lines}
+    whole, floor = means.pop("whole tick"), means.pop("floor: engines alone")
+    parts = sorted(means.items(), key=lambda part: (part[0] == "rest", -part[1]))
+    cells = [[name, f"{100 * mean / whole:.0f} %"] for name, mean in parts]
+    return _table(["part", "share of the mean tick"], [*cells, ["engines alone", f"{100 * floor / whole:.0f} %"]])
+
+
+def solvers_table() -> str:
+    """Solvers on the same problems."""
+    columns, lines = _section("solvers")
+    shown = ("solver", "over daqp", "failures", "KKT residual", "largest |x - x_daqp|")
+    kept = [[line[columns.index(name)] for name in shown] for line in lines]
+    cells = [[name, f"{over:.2f}", str(failed), kkt, away] for name, over, failed, kkt, away in kept]
+    return _table(["solver", "median", "failures", "KKT residual", "largest difference to DAQP"], cells)
+
+
+TABLES: dict[str, tuple[str, Callable[[], str]]] = {
+    "push-map-pendulum": ("campaigns.md", partial(push_table, "push-map-pendulum")),
+    "push-map": ("campaigns.md", partial(push_table, "push-map")),
+    "push-gains": ("campaigns.md", partial(gains_table, "push-map-pendulum")),
+    "recovery-numbers": ("recovery-results.md", numbers_table),
+    "profiles-walk": (
+        "profiles.md",
+        partial(
+            runs_table,
+            "profiles",
+            ("profile", "fidelity"),
+            ("zmp_error_rms", "zmp_inside_fraction"),
+            ("planner_infeasible_fraction",),
+        ),
+    ),
+    "profiles-on-stairs": (
+        "profiles.md",
+        partial(runs_table, "profiles-on-stairs", ("terrain.riser", "planner.profile"), ("zmp_error_rms",)),
+    ),
+    "fastest": ("fast-walking.md", fastest_table),
+    "heel-off": ("fast-walking.md", partial(runs_table, "heel-off", ("gait.heel_off",), HEEL_OFF)),
+    "rough-ground": ("scenarios.md", partial(runs_table, "rough-ground", ("ground",), ROUGH)),
+    "sensor-faults": ("sensors.md", faults_table),
+    **{
+        name: (page, partial(plain_table, name))
+        for name, page in (
+            ("foreign", "sensors.md"),
+            ("poor-line", "serve.md"),
+            ("sabotage", "checking.md"),
+            ("criteria", "scenarios.md"),
+            ("public-humanoids", "robots.md"),
+        )
+    },
+    "startup": ("benchmarks.md", startup_table),
+    "tick": ("benchmarks.md", tick_table),
+    "solvers": ("benchmarks.md", solvers_table),
+    "pythons": ("how-to/install.md", pythons_table),
+    "made": ("campaigns.md", made_table),
+}
+"""By name: the page, and what makes the table."""

@@ -292,8 +292,9 @@ class Execution:
             yaw = leaving.yaw + wrap_angle(float(feet.yaw[foot]) - leaving.yaw)
             pose = sole_pose(feet.position[foot], yaw, leaving.normal)
             course = self.schedule.step(self.phase.step).course
-            over = float(feet.position[stance.foot, 2] - stance.position[2])
-            unsure = feet.height_deviation, over
+            # Of the place where it landed the height is believed, too: what is off is off in both, and not the map.
+            x, y, height = feet.position[stance.foot].tolist()
+            unsure = feet.height_deviation, height - self._terrain.height(x, y)
             self.swing = start_swing(foot, pose, target, time, self.left, course, self._parameters, unsure)
         else:
             target[2] -= self.swing.aim

@@ -1,9 +1,15 @@
 """A swing to ground whose height is not known well: aimed below it, and faster down."""
 
+from dataclasses import replace
+from types import SimpleNamespace
+
 import numpy as np
 import pytest
+from pendulum_walk import walk_pendulum
 
 from surefoot.planner.parameters import GroundSearch, PlannerParameters
+from surefoot.planner.planner import WalkingPlanner
+from surefoot.planner.steps.gait import GaitParameters
 from surefoot.planner.swing.trajectory import SwingCourse, start_swing
 from surefoot.planner.types import Foot
 
@@ -60,3 +66,21 @@ def test_ground_that_the_stance_foot_shows_to_be_higher_or_lower_counts_as_far_a
     # A foot on a plate that nobody told of is no ground of another height.
     assert swing(1e-3, over=0.02)[0].target[2] - level.target[2] == pytest.approx(most)
     assert swing(0.0, over=1e-3)[0].aim == 0.0
+
+
+def test_a_walk_whose_feet_are_all_believed_too_low_aims_as_much_lower_at_every_step(stand):
+    """What has drifted is off at the foot that stands and where the next one lands; the map alone does not drift."""
+    gait, sinks, deviation = GaitParameters(steps=4), 8e-4, 3e-4
+    planner, feet = WalkingPlanner(gait, stand(gait.step_width), 0.22, 0.11), stand(gait.step_width)
+
+    def update(state, feet):
+        position = np.column_stack((feet.position[:, :2], np.full(2, -sinks)))
+        return planner.update(state, replace(feet, position=position, height_deviation=deviation))
+
+    told = SimpleNamespace(parameters=planner.parameters, update=update)
+    com = np.array([0.0, 0.0, gait.com_height])
+    plans = walk_pendulum(told, feet, gait.duration, com=com, substeps=2).plans
+    swings = [plan.swing for plan in plans if plan.swing is not None]
+    aims = {round(swing.touchdown_time, 6): swing.aim for swing in swings}
+    assert len(aims) == gait.steps
+    np.testing.assert_allclose(list(aims.values()), GroundSearch().unsure_aim * deviation + sinks, atol=1e-9)

@@ -31,7 +31,7 @@ from surefoot.scenarios.run.plant import Plant, PlantMaker, Sensors, completed, 
 from surefoot.scenarios.run.skeleton import ClosedLoop
 from surefoot.scenarios.run.tick import Look, Spent
 from surefoot.scenarios.setup.hardware import refuse_unread
-from surefoot.scenarios.setup.stance import disturbed, frames_of, pressed
+from surefoot.scenarios.setup.stance import as_told, disturbed, frames_of, pressed
 from surefoot.scenarios.setup.walk import Walk
 from surefoot.sim.drives import IDEAL, Drives
 from surefoot.sim.errors import SimulationDiverged
@@ -70,7 +70,7 @@ def full_loop(walk: Walk, writer: LogWriter, parts: Parts | None = None) -> Clos
         plant.reset(q, torque=torque)
         for push in walk.pushes:
             push_plant(plant, push)
-    controller.reset(q)
+    controller.reset(as_told(q, walk, body) if controller.senses.reads else q)
     sizes = controller.sizes
     writer.attach(AttachedFile(WORLD_FILE, "application/xml", world.mjcf().encode()))
     sensors: SensorSuite | Sensors | None = None

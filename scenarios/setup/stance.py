@@ -12,6 +12,7 @@ from surefoot.models.facts import safe_range
 from surefoot.models.legs import leg_masses, point_mass
 from surefoot.models.pinocchio import pinocchio_model
 from surefoot.models.types import RobotDescription
+from surefoot.planner.geometry import wrap_angle
 from surefoot.planner.model.leg_chain import LegChain, Link
 from surefoot.planner.parameters import LegInertia
 from surefoot.planner.types import FeetState
@@ -131,6 +132,20 @@ def disturbed(q: Array, walk: Walk, body: Body) -> Array:
             "reduce them",
         )
     return result.q
+
+
+def as_told(q: Array, walk: Walk, body: Body) -> Array:
+    """The configuration, shape (nq,), in which a robot that only senses takes itself to stand when it stands like q.
+
+    No sensor tells where it is in the world, nor where it looks: the middle and the heading of its feet are those that
+    it was told.
+    """
+    told, feet = walk.ground.stance, feet_at(body, q)
+    turn = -float(np.mean([wrap_angle(yaw) for yaw in feet.yaw - told.yaw]))
+    turned = pin.SE3(pin.utils.rotate("z", turn), np.zeros(3))
+    middle = pin.SE3(np.eye(3), told.position.mean(axis=0))
+    base = middle * turned * pin.SE3(np.eye(3), -feet.position.mean(axis=0)) * pin.XYZQUATToSE3(q[:7])
+    return np.concatenate((pin.SE3ToXYZQUAT(base), q[7:]))
 
 
 def pressed(q: Array, length: float = 1.0) -> Array:

@@ -126,6 +126,19 @@ def test_the_planner_is_told_how_sure_the_state_is(keys):
 
 
 @pytest.mark.unit
+def test_a_walk_from_sensors_is_planned_where_they_say_that_the_robot_stands():
+    """Nobody tells the planner where in the world the feet were put, of which the estimator knows nothing either."""
+    keys = {"seed": 1, "start.position_noise": 0.001, "start.angle_noise": np.radians(1.0), "start.yaw": 0.7}
+    loop = closed_loop(resolve(surefoot.load("diagonal-walk", {**keys, **GOOD_SENSORS})), NoLog())
+    loop.step()
+    mind = loop.walker.mind
+    believed = mind.terms.sole_position.mean(axis=0)[:2]
+    away = loop.walker.measurement.q[:2] - mind.state.q[:2]
+    assert np.hypot(*away) > 0.005  # the start noise has put it somewhere else
+    np.testing.assert_allclose(loop.planning.plan.zmp_reference[0], believed, atol=1e-3)
+
+
+@pytest.mark.unit
 @pytest.mark.parametrize("wrench", ["feet", "none"])
 def test_without_a_wrench_of_the_estimator_the_controller_has_that_of_the_sensors_and_never_the_truth(wrench, tmp_path):
     class Bare(Listening):

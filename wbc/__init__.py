@@ -14,7 +14,8 @@ from surefoot.lazy import face
 
 if TYPE_CHECKING:
     from surefoot.forces import ExternalLoad
-    from surefoot.wbc.controller import Sole, WbcAnswer, WholeBodyController
+    from surefoot.wbc.cone import Sole
+    from surefoot.wbc.controller import WbcAnswer, WholeBodyController
     from surefoot.wbc.ik import PostureIk, PostureResult, PostureTarget
     from surefoot.wbc.limits import JointLimits
     from surefoot.wbc.model import BodyFrames, RobotTerms
@@ -47,7 +48,8 @@ if not TYPE_CHECKING:  # a type checker shall still refuse names that are not th
     __getattr__, __dir__ = face(
         __name__,
         {
-            "controller": ("Sole", "WbcAnswer", "WholeBodyController"),
+            "cone": ("Sole",),
+            "controller": ("WbcAnswer", "WholeBodyController"),
             "ik": ("PostureIk", "PostureResult", "PostureTarget"),
             "limits": ("JointLimits",),
             "model": ("BodyFrames", "RobotTerms"),

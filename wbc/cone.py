@@ -1,10 +1,50 @@
-"""The 6-D contact wrench cone of a flat rectangular sole."""
+"""The sole, and the 6-D contact wrench cone of a flat rectangle."""
+
+import math
 
 import numpy as np
 
+from surefoot.values import dataclass
 from surefoot.wbc.types import Array
 
 CONE_ROWS = 16
+
+TOE_DEPTH = 0.003
+"""Half length of the strip that stands for a toe edge in its wrench cone, and half width of that for a side edge [m].
+
+Constants here are the reference robot's; see `surefoot.similarity`."""
+
+
+@dataclass(frozen=True, slots=True)
+class Sole:
+    """The sole's contact.
+
+    Attributes:
+        half_length: half the sole's length [m].
+        half_width: half its width [m].
+        friction: Coulomb coefficient that the controller counts on [-].
+        cop_share: share of the half sizes that the planned CoP may use [-].
+    """
+
+    half_length: float
+    half_width: float
+    friction: float
+    cop_share: float = 0.9
+
+    def cones(self, depth: float) -> tuple[Array, Array]:
+        """Rows of the wrench cones of the sole and of its toe edge; the pyramid lies inside the circular cone.
+
+        Args:
+            depth: half length of the strip that stands for the edge [m].
+
+        Returns:
+            As of `wrench_cone`, shape (16, 6) each [-, m].
+
+        Raises:
+            ValueError: the sole has no extent or no friction.
+        """
+        friction, width = self.friction / math.sqrt(2.0), self.cop_share * self.half_width
+        return wrench_cone(self.cop_share * self.half_length, width, friction), wrench_cone(depth, width, friction)
 
 
 def wrench_cone(half_length: float, half_width: float, friction: float) -> Array:

@@ -10,12 +10,11 @@ import pinocchio as pin
 from numpy.typing import NDArray
 
 from surefoot.forces import NO_LOAD
-from surefoot.similarity import Similarity
 from surefoot.values import dataclass, maker
 from surefoot.wbc.arm_swing import ArmSwing
 from surefoot.wbc.balance import SupportRegion
 from surefoot.wbc.compiled import CompiledTick
-from surefoot.wbc.cone import CONE_ROWS, wrench_cone
+from surefoot.wbc.cone import CONE_ROWS, TOE_DEPTH, Sole
 from surefoot.wbc.contacts import ContactSchedule, ContactState
 from surefoot.wbc.driven import DrivenRows, without_driven
 from surefoot.wbc.dynamics import HardConstraints
@@ -38,38 +37,17 @@ from surefoot.wbc.types import GRAVITY, Array, FootSensing, RobotState, SolveSta
 ACCEPTED_VIOLATION = 1e-3
 """A solution that breaks a row by more than this (N, N·m, m/s^2) is not used, whatever its solver says."""
 
-TOE_DEPTH = 0.003
-"""Half length of the strip that stands for a toe edge in its wrench cone, and half width of that for a side edge [m].
-
-Constants here are the reference robot's; see `surefoot.similarity`."""
-
 FADE, FADE_DAMPING = 0.05, 0.02
 """Time in which the last torque fades out [s], and torque of a joint's damper at 1 rad/s meanwhile over its largest one
-[s/rad]."""
+[s/rad].
 
+Constants here are the reference robot's; see `surefoot.similarity`."""
 
 _a_report = maker(WbcReport)
 
 # Members are looked up by name at each access.
 _SOFTENED = SolveStatus.SOFTENED
 _IN_TURN = (SolveStatus.SOLVED, _SOFTENED, SolveStatus.SECOND_SOLVER)
-
-
-@dataclass(frozen=True, slots=True)
-class Sole:
-    """The sole's contact.
-
-    Attributes:
-        half_length: half the sole's length [m].
-        half_width: half its width [m].
-        friction: Coulomb coefficient that the controller counts on [-].
-        cop_share: share of the half sizes that the planned CoP may use [-].
-    """
-
-    half_length: float
-    half_width: float
-    friction: float
-    cop_share: float = 0.9
 
 
 @dataclass(frozen=True, slots=True)
@@ -162,7 +140,7 @@ class WholeBodyController:
         leaning = frames.leaning is not None
         if leaning:
             sole = replace(sole, half_width=TOE_DEPTH * size.length)
-        cones, ankles = _cones(sole, size), stops[0].columns
+        cones, ankles = sole.cones(TOE_DEPTH * size.length), stops[0].columns
         self._tick = CompiledTick(self.terms.compiled) if self.terms.compiled else None
         self._hard = HardConstraints(
             self.qp, self.layout, cones, limits, parameters.contact, ankles, stops[0].rolling, self._tick, leaning
@@ -344,10 +322,3 @@ class WholeBodyController:
         share, damping = self._fading
         torque += share * (-damping * self._limits.torque * rate - torque)
         self._clip(torque)
-
-
-def _cones(sole: Sole, size: Similarity) -> tuple[Array, Array]:
-    """Rows of the wrench cones of the sole and of its toe edge; the pyramid lies inside the circular cone."""
-    share, friction = sole.cop_share, sole.friction / np.sqrt(2.0)
-    width = share * sole.half_width
-    return wrench_cone(share * sole.half_length, width, friction), wrench_cone(TOE_DEPTH * size.length, width, friction)

@@ -22,7 +22,8 @@ from surefoot.scenarios.setup.parts import TASK, guarded
 from surefoot.scenarios.setup.stance import Body
 from surefoot.scenarios.setup.walk import Walk, resolve
 from surefoot.values import dataclass
-from surefoot.wbc.controller import Sole, WholeBodyController
+from surefoot.wbc.cone import Sole
+from surefoot.wbc.controller import WholeBodyController
 from surefoot.wbc.tasks import TASKS, Task, TaskFactory
 from surefoot.wbc.types import Array
 

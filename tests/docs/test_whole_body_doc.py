@@ -13,7 +13,7 @@ from surefoot.models.pinocchio import pinocchio_model
 from surefoot.models.registry import describe
 from surefoot.models.types import RobotOptions
 from surefoot.similarity import Similarity
-from surefoot.wbc.controller import Sole
+from surefoot.wbc.cone import Sole
 from surefoot.wbc.limits import JointLimits
 from surefoot.wbc.model import BodyFrames, RobotTerms
 from surefoot.wbc.parameters import WbcParameters

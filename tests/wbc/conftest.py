@@ -8,7 +8,8 @@ import pytest
 from surefoot.models.pinocchio import pinocchio_model
 from surefoot.models.registry import describe
 from surefoot.models.types import RobotOptions
-from surefoot.wbc.controller import Sole, WholeBodyController
+from surefoot.wbc.cone import Sole
+from surefoot.wbc.controller import WholeBodyController
 from surefoot.wbc.ik import PostureIk, PostureTarget
 from surefoot.wbc.limits import JointLimits
 from surefoot.wbc.model import BodyFrames

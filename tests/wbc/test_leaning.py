@@ -7,7 +7,7 @@ import pinocchio as pin
 import pytest
 
 from surefoot.planner.geometry import sole_rotation
-from surefoot.wbc.controller import TOE_DEPTH
+from surefoot.wbc.cone import TOE_DEPTH
 from surefoot.wbc.leaning import FREE, INWARD, line_centre, line_frame
 from surefoot.wbc.model import RobotTerms
 from surefoot.wbc.statics import standing_torque

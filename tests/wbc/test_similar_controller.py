@@ -10,7 +10,8 @@ from surefoot.models.registry import describe
 from surefoot.models.similar import scaled
 from surefoot.models.types import RobotOptions
 from surefoot.similarity import REFERENCE_SIZE, Similarity
-from surefoot.wbc.controller import Sole, WholeBodyController
+from surefoot.wbc.cone import Sole
+from surefoot.wbc.controller import WholeBodyController
 from surefoot.wbc.external import LoadObserver
 from surefoot.wbc.falling import GivingWay
 from surefoot.wbc.limits import JointLimits

@@ -5,9 +5,8 @@ import pinocchio as pin
 import pytest
 
 from surefoot.wbc.balance import SupportRegion
-from surefoot.wbc.cone import wrench_cone
+from surefoot.wbc.cone import TOE_DEPTH, wrench_cone
 from surefoot.wbc.contacts import ContactParameters, ContactSchedule
-from surefoot.wbc.controller import TOE_DEPTH
 from surefoot.wbc.model import RobotTerms
 from surefoot.wbc.types import FootSensing, RobotState, SolveStatus
 

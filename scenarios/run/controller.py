@@ -236,7 +236,9 @@ class Controller:
     def _inferred(self, readings: "Readings | Measurement", state: RobotState, passed: float) -> Array:
         """Wrenches of soles that feel none, by the torques of the joints, shape (2, 6) [N, N·m]."""
         if self._torques is None:
-            self._torques = TorqueWrench(self.body.model, self.body.frames.soles, self._period, SensorNoise())
+            self._torques = TorqueWrench(
+                self.body.model, self.body.frames.soles, self._period, SensorNoise(), held=not self._output.servo
+            )
             half = np.zeros((2, 6))
             half[:, 2] = 0.5 * GRAVITY * float(self.walk.robot.mass)
             return half

@@ -151,7 +151,8 @@ class SensedState:
         """Contact by sensors in the feet, or by the torques of the joints."""
         parameters, deviation = self._parameters, None
         if readings.wrench is None:
-            self._torques = TorqueWrench(self._model, self._sole_names, self._period, parameters.sensors)
+            at_ends = readings.joint_velocity is not None
+            self._torques = TorqueWrench(self._model, self._sole_names, self._period, parameters.sensors, at_ends)
             self._torques.update(self._measured(readings), readings.joint_torque.values)
             deviation = self._torques.deviation
         return SoleContact(

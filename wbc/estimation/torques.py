@@ -42,10 +42,15 @@ class TorqueWrench:
         soles: names of the sole frames, left first.
         period: control period [s].
         sensors: noise of encoders and torques.
+        held: whether a torque acted all the while since the call before, as one does that is commanded, and the states
+            are those at both ends. Else it has passed evenly from the torque of the call before: one that is followed
+            by a servo, or velocities that are those of the middle of two calls.
     """
 
-    def __init__(self, model: pin.Model, soles: tuple[str, str], period: float, sensors: SensorNoise) -> None:
-        self._model, self._data, self._period = model, model.createData(), period
+    def __init__(
+        self, model: pin.Model, soles: tuple[str, str], period: float, sensors: SensorNoise, held: bool = True
+    ) -> None:
+        self._model, self._data, self._period, self._held = model, model.createData(), period, held
         self._soles = tuple(model.getFrameId(name) for name in soles)
         # As in an α-β filter the noise grows with the bandwidth faster than the lag falls.
         quiet = min((FINE / sensors.encoder) ** 0.4, 1.0) if sensors.encoder > 0.0 else 1.0
@@ -57,7 +62,7 @@ class TorqueWrench:
         self._velocity_noise[:6] = np.repeat(np.square(BASE), 3) * differenced
         self._torque_noise = (sensors.joint_torque**2 + 0.05**2) * passed
         self._residual: Array | None = None
-        self._momentum, self._driven = np.zeros(model.nv), np.zeros(model.nv)
+        self._momentum, self._driven, self._torque = np.zeros(model.nv), np.zeros(model.nv), np.zeros(model.nv - 6)
         self._scale = np.tile([1.0, 1.0, 1.0, LEVER, LEVER, LEVER], 2)
         self._rows: NDArray[np.intp] | None = None
         self.wrench, self.deviation = np.zeros((2, 6)), (0.0, 0.0)
@@ -76,17 +81,19 @@ class TorqueWrench:
         M = np.triu(data.M) + np.triu(data.M, 1).T
         gravity = pin.computeGeneralizedGravity(model, data, q)
         driven = data.C.T @ v - gravity
-        driven[6:] += torque
         momentum = M @ v
         if self._residual is None:
             self._residual = -driven
+            self._residual[6:] -= torque
         else:
-            # The exact discrete low pass of what drives the momentum beside all that is known.
+            # The exact discrete low pass of what drives the momentum beside all that is known. Half a tick in the
+            # torque is a force where a command jumps.
             span = passed or self._period
             lacking = (momentum - self._momentum) / span - 0.5 * (driven + self._driven)
+            lacking[6:] -= torque if self._held else 0.5 * (torque + self._torque)
             gain = 1.0 - (1.0 - self._gain) ** (span / self._period)
             self._residual = self._residual + gain * (lacking - self._residual)
-        self._momentum, self._driven = momentum, driven
+        self._momentum, self._driven, self._torque = momentum, driven, torque
         self.wrench = self._wrenches(q, M)
         return self.wrench
 

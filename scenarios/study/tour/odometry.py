@@ -47,7 +47,7 @@ class LegOdometry:
         x, y = 0.5 * robot.sole_length, 0.5 * robot.sole_width
         self._corners = np.array([[sx * x, sy * y, 0.0] for sx in (1.0, -1.0) for sy in (1.0, -1.0)])
         self._stand: Array | None = None
-        self._torques = TorqueWrench(self._model, robot.sole_sites, 1.0 / walk.rates.control, SensorNoise())
+        self._torques = TorqueWrench(self._model, robot.sole_sites, 1.0 / walk.rates.control, SensorNoise(), held=False)
         self._time, self._load = math.nan, np.array([0.5, 0.5])
         self._base = np.zeros(3)
 

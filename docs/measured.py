@@ -44,14 +44,12 @@ class Made(NamedTuple):
 _NATURAL = "gait=natural"
 _ENDS = "planner.step_adaptation=[none, crossing]"
 _STOPPED = ("torque_at_limit_fraction", "cop_ratio_p99", "torque_ratio_max")
-_DRAWN = ("terrain.friction", *(f"errors.torso_com.{axis}" for axis in range(3)), "errors.payload.mass")
 _ZMP = tuple(f"zmp_error_rms.{axis}" for axis in (0, 1))
 SENSED = (*(f"velocity_estimation_error_rms.{axis}" for axis in (0, 1)), *_ZMP)
 _PLANNED = ("planner_infeasible_fraction", *_ZMP, "zmp_inside_fraction")
 FEET = ("robot", "sensing.preset", "sensing.wrench")
 HEEL_OFF = ("speed_mean", "cost_of_transport", "knee_angle_mean", "knee_torque_rms", "torque_ratio_max")
 ROUGH = ("speed_mean", "cop_ratio_p99", "torque_ratio_max")
-_PUSHED = ("errors.payload.body", "pushes.0.impulse", "pushes.0.direction", "pushes.0.time")
 
 
 def _of_page(name: str, *columns: str) -> Made:
@@ -77,7 +75,6 @@ MADE = {
     "sensor-faults": Made(
         "sensor-faults", columns=("fault", "status", *SENSED, "cop_ratio_p99", "step_shift", "ghost_force_max")
     ),
-    "robustness": Made("robustness", seeds=40, columns=("gait", "status", *_DRAWN, *_PUSHED)),
 }
 """By the name of the result."""
 

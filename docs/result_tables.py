@@ -12,7 +12,6 @@ from measured import HEEL_OFF, RESULTS, ROUGH, SENSED, head, limit_of, rows, sea
 
 from surefoot.scenarios.judge.metrics import OWN
 from surefoot.scenarios.study.campaigns.spec import text
-from surefoot.scenarios.study.campaigns.table import wilson
 from surefoot.scenarios.study.campaigns.thresholds import Found
 
 LIMITS = Path(__file__).parents[1] / "benchmarks" / "limits.json"
@@ -117,16 +116,6 @@ def _measured(runs: Sequence[dict[str, str]], metric: str) -> str:
             values = [OWN[metric].scale * float(run[column]) for run in runs]
             cells.append(" to ".join(dict.fromkeys(f"{end:.3g}" for end in (min(values), max(values)))))
     return ", ".join(cells)
-
-
-def rates_table() -> str:
-    """How many runs of `robustness` passed, with the interval of the rate."""
-    lines = []
-    for gait, group in groupby(rows("robustness"), lambda row: row["gait"]):
-        states = [row["status"] for row in group]
-        passed, of = states.count("pass"), len(states)
-        lines.append([gait, f"{passed} of {of}", f"{wilson(passed, of).between} %"])
-    return _table(["gait", "survived", "95 % interval"], lines)
 
 
 def fastest_table() -> str:

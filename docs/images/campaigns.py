@@ -13,12 +13,10 @@ from sources import FOLDER, save_png
 
 from surefoot.scenarios.show.kit.figures import PAGE_WIDTH, save
 from surefoot.scenarios.study.campaigns.campaign import read_campaign
-from surefoot.scenarios.study.campaigns.spec import with_unit
-from surefoot.scenarios.study.campaigns.success import Histogram, distributions
 from surefoot.scenarios.study.campaigns.thresholds import bars
 
 sys.path.insert(0, str(FOLDER.parent))
-from measured import MADE, limit_of, rows, searches
+from measured import MADE, limit_of, searches
 
 WIDTH = 1300
 """Of a picture that is as wide as a page [px]."""
@@ -32,25 +30,7 @@ def push_map(name: str) -> Any:
     return bars(found, axes, spec.bisect.key, lambda labels, _: limit_of(name, labels), spec.records)
 
 
-def robustness(name: str) -> Any:
-    """What was drawn in runs that passed and in runs that failed."""
-    kept = rows(name)
-    sampled = [column for column in kept[0] if column not in ("gait", "status")]
-    spreads = []
-    for key in sampled:
-        passed, failed = ([_value(row[key]) for row in kept if row["status"] == one] for one in ("pass", "fail"))
-        spreads.append(Histogram(with_unit(key), passed, failed))
-    return distributions(spreads)
-
-
-def _value(text: str) -> Any:
-    try:
-        return float(text)
-    except ValueError:
-        return text
-
-
-DRAWERS = {"push-map": push_map, "push-map-pendulum": push_map, "robustness": robustness}
+PUSH_MAPS = ("push-map", "push-map-pendulum")
 
 
 def _save(figure: Any, name: str) -> None:
@@ -65,9 +45,9 @@ def _save(figure: Any, name: str) -> None:
 def main(arguments: Sequence[str] | None = None) -> None:
     """Draw the pictures that are asked for."""
     parser = argparse.ArgumentParser(description=__doc__, formatter_class=argparse.RawDescriptionHelpFormatter)
-    parser.add_argument("names", nargs="*", metavar="NAME", help=", ".join(DRAWERS))
-    for name in parser.parse_args(arguments).names or DRAWERS:
-        _save(DRAWERS[name](name), f"{name}.png")
+    parser.add_argument("names", nargs="*", metavar="NAME", help=", ".join(PUSH_MAPS))
+    for name in parser.parse_args(arguments).names or PUSH_MAPS:
+        _save(push_map(name), f"{name}.png")
 
 
 if __name__ == "__main__":

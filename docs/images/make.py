@@ -119,15 +119,12 @@ PICTURES: dict[str, Callable[[], None]] = {
     "drive.webp": by("drive"),
     "courses.png": by("courses"),
     "gait-map.png": by("gait_map"),
-    **{f"{name}.png": by("campaigns", name) for name in ("push-map", "push-map-pendulum", "robustness")},
+    **{f"{name}.png": by("campaigns", name) for name in ("push-map", "push-map-pendulum")},
 }
 """What draws a picture."""
 
-OF_CAMPAIGNS = ("gait-map.png", "push-map-pendulum.png", "push-map.png", "robustness.png")
+OF_CAMPAIGNS = ("gait-map.png", "push-map-pendulum.png", "push-map.png")
 """Drawn from the results of campaigns in docs/results."""
-
-WITHOUT_DIGEST = ("robustness.png",)
-"""Of a campaign that was run before its result was kept."""
 
 
 def main() -> None:

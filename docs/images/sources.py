@@ -44,7 +44,6 @@ SOURCES: dict[str, tuple[str, ...]] = {
     "gait-map.png": (PALETTE, f"{_OWN}/gait_map.py", f"{_RESULTS}/gait-map.csv"),
     "push-map.png": (*_MAPS, f"{_RESULTS}/push-map.csv"),
     "push-map-pendulum.png": (*_MAPS, f"{_RESULTS}/push-map-pendulum.csv"),
-    "robustness.png": (PALETTE, *_CAMPAIGNS, "scenarios/study/campaigns/success.py", f"{_RESULTS}/robustness.csv"),
 }
 """What else than its run a picture follows from: colours, camera, how it is drawn, and results that are kept."""
 

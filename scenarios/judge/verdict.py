@@ -256,15 +256,17 @@ def _missed(name: str, bound: Bound, metrics: Mapping[str, Any]) -> Iterator[str
     if not values or any(size != len(values) for size in sizes):
         yield f"{name} has {len(values)} elements, and its bound {sizes[0] if sizes else 1}"
         return
+    metric = known(name)
+    unit = f" {metric.unit}" if metric and metric.unit else ""
     for index, element in enumerate(values):
         label = name if len(values) == 1 else f"{name}[{index}]"
         low, high = (_element(limit, index) for limit in (bound.min, bound.max))
         if element is None or isinstance(element, bool):
             yield f"{label} is not a number"
         elif low is not None and element < low:
-            yield f"{label} is {_text(element)}, bound is at least {_text(low)}"
+            yield f"{label} is {_text(element)}{unit}, bound is at least {_text(low)}{unit}"
         elif high is not None and element > high:
-            yield f"{label} is {_text(element)}, bound is at most {_text(high)}"
+            yield f"{label} is {_text(element)}{unit}, bound is at most {_text(high)}{unit}"
 
 
 def _unfinished(log: Log) -> list[str]:

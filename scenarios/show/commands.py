@@ -40,6 +40,7 @@ def inspect(told: InspectOptions) -> None:
         from surefoot.scenarios.judge import inspection
         from surefoot.scenarios.log import read
         from surefoot.scenarios.show.console import print_inspection
+        from surefoot.scenarios.show.touching import touching
 
     opened = read(told.log)
     if told.topic is not None:
@@ -47,11 +48,12 @@ def inspect(told: InspectOptions) -> None:
         return
     if (told.field, told.start, told.end, told.export) != (None, None, None, None):
         raise LogError("--field, --from, --to and --export choose from one topic; name it with --topic")
-    found = inspection.inspect(opened)
+    found, touches = inspection.inspect(opened), touching(opened)
     if told.as_json:
-        typer.echo(json.dumps(found.to_json(), allow_nan=False))
+        bodies = [touch._asdict() for touch in touches]
+        typer.echo(json.dumps({**found.to_json(), "touching": bodies}, allow_nan=False))
     else:
-        print_inspection(found)
+        print_inspection(found, touches)
     raise typer.Exit(0 if found.verdict.passed else MISSED)
 
 

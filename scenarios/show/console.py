@@ -9,7 +9,7 @@ from contextlib import contextmanager
 from pathlib import Path
 from shlex import quote
 from types import TracebackType
-from typing import Any, Self
+from typing import TYPE_CHECKING, Any, Self
 
 import numpy as np
 from rich.console import Console
@@ -25,6 +25,9 @@ from surefoot.scenarios.judge.verdict import FIRST_METRICS, Verdict, bound_text,
 from surefoot.scenarios.log import ChannelData, Log
 from surefoot.scenarios.output import refuse_existing, write_whole
 from surefoot.scenarios.run.skeleton import Progress
+
+if TYPE_CHECKING:
+    from surefoot.scenarios.show.touching import Touch
 
 _REFRESH = 0.1
 
@@ -91,12 +94,14 @@ def print_result(name: str, verdict: Verdict, log: Path) -> None:
         console.print(f"why: surefoot inspect {quote(str(log))}")
 
 
-def print_inspection(found: Inspection) -> None:
+def print_inspection(found: Inspection, touches: "Sequence[Touch]") -> None:
     """Print everything that an inspection found."""
     console = plain_console()
     console.print(f"{found.log}: {found.start:.3f} s to {found.end:.3f} s")
     for line in _health_lines(found.health):
         console.print(f"health: {line}")
+    for touch in touches:
+        console.print(f"touching: {touch.one} and {touch.other}, from {touch.time:.3f} s on")
     _print_verdict(console, found.scenario, found.verdict)
     console.print(_metric_table(found.verdict, tuple(found.verdict.metrics)))
     topics = ((one.topic, str(one.messages), f"{one.rate:.1f}") for one in found.topics)

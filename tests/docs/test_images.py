@@ -38,15 +38,8 @@ SHOWN = sorted(path.name for path in FOLDER.iterdir() if path.suffix in (".png",
 
 
 @pytest.mark.parametrize("name", SHOWN)
-def test_a_picture_is_of_the_present_colours_and_lines(make, sources, name):
-    if name in make.WITHOUT_DIGEST and not sources.noted(name):
-        return
+def test_a_picture_is_of_the_present_colours_and_lines(sources, name):
     assert sources.noted(name) == sources.digest(name), f"run python docs/images/make.py {name}"
-
-
-def test_only_the_picture_of_a_long_campaign_is_without_a_digest(make, sources):
-    assert {name for name in SHOWN if not sources.noted(name)} <= set(make.WITHOUT_DIGEST)
-    assert set(make.WITHOUT_DIGEST) <= set(make.OF_CAMPAIGNS) <= set(make.PICTURES)
 
 
 @pytest.mark.parametrize("script", sorted(FOLDER.glob("*.py")), ids=lambda path: path.name)

@@ -13,7 +13,7 @@ from surefoot.scenarios.study.checks.check import cases, run_case
 
 EXPECTED = {
     "friction times 1.5": ("control-slide", "failed", "foot_slip_max is 0.0"),
-    "no self-collision": ("control-push", "failed", "self_contact_time is 0, bound is at least"),
+    "no self-collision": ("control-push", "failed", "self_contact_time is 0 s, bound is at least"),
     "DCM gain 2.4 in place of 3": ("control-push", "moved", "balance: largest distance of the CoM along the ground"),
     "orientation gains halved": ("control-push", "moved", "largest tilt of the torso"),
     "motors 1.5 times as strong": ("control-fall", "moved", "the world's motor_force is 13818.0, 9212.0 in"),

@@ -59,7 +59,7 @@ def extract(log: Log, window: ReplayWindow | None = None) -> Replay:
     run, window = RunView(log), window or ReplayWindow()
     if run.constants.fidelity == "pendulum":
         raise LogError(f"{log.path}: a pendulum has no body to replay; run the scenario with fidelity full")
-    mjcf, model = _world(log)
+    mjcf, model = world(log)
     log.load("/truth", "/measurement", "/estimate", "/contact", "/reference")
     frames = choose_frames(run, window)
     configurations = run.field("/truth", "q")[frames.rows]
@@ -85,8 +85,12 @@ def extract(log: Log, window: ReplayWindow | None = None) -> Replay:
     )
 
 
-def _world(log: Log) -> tuple[str, mujoco.MjModel]:
-    """The world that was simulated, as MJCF and compiled; LogError where the log has none, or it is damaged."""
+def world(log: Log) -> tuple[str, mujoco.MjModel]:
+    """The world that was simulated, as MJCF and compiled.
+
+    Raises:
+        LogError: the log has none, or it is damaged.
+    """
     try:
         text = log.attachments[WORLD_FILE].decode()
     except (KeyError, UnicodeDecodeError):

@@ -93,7 +93,7 @@ def test_it_is_computed_shown_and_bounded_after_ours(brought, verdict):
     assert list(found.to_json())[-1] == "grip"
     assert list(found.metrics) == [*OWN, "grip"]
     assert found["grip"] == [0.001, 0.002]
-    assert found.reasons == ("grip[1] is 0.002, bound is at most 0.0015",)
+    assert found.reasons == ("grip[1] is 0.002 m, bound is at most 0.0015 m",)
     assert value_text("grip", [0.001, 0.002]) == "1  2"
     assert shown_unit("grip") == "mm"
     assert bound_text("grip", found.criteria["grip"]) == "<= 1.5  1.5"

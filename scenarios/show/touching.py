@@ -1,0 +1,49 @@
+"""Which bodies of the robot touch each other in a run, by the states and the world of its log."""
+
+from typing import NamedTuple
+
+import numpy as np
+
+from surefoot.engine import mujoco
+from surefoot.scenarios.errors import LogError
+from surefoot.scenarios.log import Log
+from surefoot.scenarios.show.replay.extract import world
+
+MOST_TICKS = 200
+"""Ticks whose contacts are looked at; of more, so many from the first to the last."""
+
+
+class Touch(NamedTuple):
+    """Two bodies, and when they are first found to touch [s]."""
+
+    one: str
+    other: str
+    time: float
+
+
+def touching(log: Log) -> tuple[Touch, ...]:
+    """Pairs of bodies that touch in ticks with ``self_contact``, in the order of their times.
+
+    A log without such ticks has none, and neither has one whose world cannot be read.
+    """
+    if "/truth" not in log or all(field.name != "self_contact" for field in log["/truth"].fields):
+        return ()
+    truth = log["/truth"]
+    ticks = np.flatnonzero(truth.field("self_contact"))
+    if not ticks.size:
+        return ()
+    try:
+        _, model = world(log)
+    except LogError:
+        return ()
+    states, data, found = truth.field("q"), mujoco.MjData(model), dict[tuple[str, str], float]()
+    if states.shape[1] != model.nq:
+        return ()
+    for tick in ticks[np.unique(np.linspace(0, ticks.size - 1, min(ticks.size, MOST_TICKS)).astype(int))]:
+        data.qpos[:] = states[tick]
+        mujoco.mj_fwdPosition(model, data)
+        for bodies in model.geom_bodyid[data.contact.geom]:
+            if bodies.all():
+                one, other = sorted(model.body(body).name for body in bodies)
+                found.setdefault((one, other), float(truth.time[tick]))
+    return tuple(Touch(*pair, time) for pair, time in found.items())

@@ -206,6 +206,8 @@ class WalkingPlanner:
         footsteps = execution.upcoming(time, shifts)
         if execution.free[0]:
             balance = Balance(balance.planned, balance.movable, shifts[0], balance.delay, balance.outside)
+        if execution.adapted:
+            balance = replace(balance, catching=True)
         if execution.phase.swing_foot is not None:
             execution.swing_to(footsteps[0], time, feet, motion.solver is SolverStatus.HELD)
         self._plan = self._world_plan(time, support, window, local, motion, footsteps, balance)

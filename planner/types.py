@@ -206,6 +206,7 @@ class Balance:
         shift: by how much the next landing is moved from where it nominally is, world frame, shape (2,) [m].
         delay: how much later than nominally it is made to come [s].
         outside: plans on end in which the DCM has been farther outside `movable` than a robot that can be saved.
+        catching: place or time of the next landing are being adapted.
     """
 
     planned: float = math.nan
@@ -213,6 +214,7 @@ class Balance:
     shift: Array = field(default_factory=lambda: np.full(2, math.nan))
     delay: float = math.nan
     outside: int = 0
+    catching: bool = False
 
 
 @dataclass(frozen=True, slots=True)

@@ -127,6 +127,7 @@ class WbcReference:
         rolling_foot: index of the foot that rolls about its toe edge, -1 for none; its `swing_position` is that of the
             sole as if it lay flat.
         roll: (pitch, rate, acceleration) of that foot, heel up positive [rad, rad/s, rad/s^2].
+        catching: whether the next footstep is being adapted to catch the body.
         numbers: the kernels' struct ``Reference`` that says the same [SI]; None of one that was not made by a kernel.
     """
 
@@ -154,6 +155,7 @@ class WbcReference:
     ground_normal: Array
     rolling_foot: int = -1
     roll: tuple[float, float, float] = (0.0, 0.0, 0.0)
+    catching: bool = False
     numbers: Array | None = field(init=False, default=None, repr=False, compare=False)
 
     @classmethod
@@ -166,6 +168,7 @@ class WbcReference:
         swing_foot: int,
         swing_progress: float,
         rolling_foot: int,
+        catching: bool = False,
     ) -> "WbcReference":
         """A reference out of the numbers of the kernels' struct ``Reference``, and what they do not know of it.
 
@@ -183,7 +186,7 @@ class WbcReference:
         made = _OpenReference()
         made.numbers, made.planned_contact, made.time_to_switch = numbers, planned_contact, time_to_switch
         made.lifting_foot, made.swing_foot, made.swing_progress = lifting_foot, swing_foot, swing_progress
-        made.rolling_foot, made.__class__ = rolling_foot, cls
+        made.rolling_foot, made.catching, made.__class__ = rolling_foot, catching, cls
         return made  # type: ignore[no-any-return]
 
     if not TYPE_CHECKING:

@@ -57,6 +57,7 @@ def whole_body_reference(plan: WalkPlan, sample: PlanSample) -> WbcReference:
         ground_normal=normal,
         rolling_foot=-1 if roll is None or not roll.rolling(sample.time) else int(roll.foot),
         roll=NO_ROLL if roll is None else roll.evaluate(sample.time),
+        catching=plan.balance.catching,
     )
 
 
@@ -100,7 +101,7 @@ class ReferenceMaker:
         progress = min(1.0, (phase.elapsed + passed) / phase.duration) if foot >= 0 and self._lasts else 0.0
         left = max(0.0, phase.left - passed)
         return WbcReference.of_numbers(
-            self._numbers.copy(), sample.contacts, left, self._lifting, foot, progress, rolling
+            self._numbers.copy(), sample.contacts, left, self._lifting, foot, progress, rolling, plan.balance.catching
         )
 
     def _take(self, plan: WalkPlan) -> None:

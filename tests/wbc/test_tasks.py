@@ -34,10 +34,10 @@ def state(robot, rng):
 def written(robot, state, references, loaded):
     """Controller, QP and task stack of a swing state, made with given changes of the weights."""
 
-    def write(**changes):
+    def write(catching=False, **changes):
         controller = robot.controller(WbcParameters(weights=replace(TaskWeights(), **changes)))
         controller.observe(state)
-        controller.update(references[1](), loaded)
+        controller.update(references[1](catching=catching), loaded)
         return controller, controller.qp, controller.tasks
 
     return write
@@ -115,14 +115,36 @@ def test_a_weight_of_zero_removes_its_task(written, weight, rows):
 
 
 def test_every_weight_matters(written):
-    _, whole, _ = written()
+    walking, caught = written()[1], written(catching=True)[1]
     for field in fields(TaskWeights):
-        _, qp, _ = written(**{field.name: 2.0 * getattr(TaskWeights(), field.name)})
+        catching = field.name.endswith("catching")
+        whole = caught if catching else walking
+        _, qp, _ = written(catching, **{field.name: 2.0 * getattr(TaskWeights(), field.name)})
         changed = np.flatnonzero(np.abs(qp.H - whole.H).max(axis=0))
         assert changed.size > 0, field.name
         if field.name in ONLY_DIAGONAL:
             off = qp.H - whole.H
             np.testing.assert_allclose(off, np.diag(np.diag(off)), atol=1e-12)
+
+
+@pytest.mark.parametrize("kernels", ["1", "0"], ids=["compiled", "plain"])
+def test_the_height_counts_for_more_while_a_step_catches_the_body_and_as_before_after_it(
+    robot, state, references, loaded, monkeypatch, kernels
+):
+    monkeypatch.setenv("SUREFOOT_NATIVE", kernels)
+    controller, weights, seen = robot.controller(), TaskWeights(), []
+    for catching in (False, True, False):
+        terms = controller.observe(state)
+        qp = controller.build(terms, references[1](catching=catching), controller.schedule.update(references[1](), loaded))
+        residual = controller.tasks.residual(np.ones(qp.g.size))
+        seen.append((controller.tasks.rows.copy(), controller.tasks.target.copy(), qp.H.copy(), residual.copy()))
+    (rows, target, H, residual), (caught, aim, _, same), (after, target_after, H_after, _) = seen
+    more = np.ones(len(target))
+    more[2] = np.sqrt(weights.com_vertical_catching / weights.com_vertical)
+    np.testing.assert_allclose(caught, more[:, None] * rows, rtol=1e-12)
+    np.testing.assert_allclose(aim, more * target, rtol=1e-12)
+    np.testing.assert_allclose(same, residual, rtol=1e-9, atol=1e-9)
+    assert all((one == other).all() for one, other in ((after, rows), (target_after, target), (H_after, H)))
 
 
 def placed(robot, q, v):

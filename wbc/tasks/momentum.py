@@ -18,13 +18,18 @@ class CentreOfMass:
     """CoM acceleration by the law of ``surefoot.wbc.balance``, from the forces: c'' = (Σ R_k f_k + f) / m - g.
 
     The force f is that of a lasting load (see ``RobotTerms.bear``).
+
+    While a step catches the body its height counts for more. A leg that is swung hard turns the body; friction and CoP
+    hold that only as far as the stance foot is pressed down, so that it was cheap to jump, and no leg came down in time.
     """
 
     name, size = "CoM", 3
 
     def __init__(self, weights: TaskWeights, balance: BalanceGains, region: SupportRegion) -> None:
         """``region``: where the ZMP may lie; its owner keeps it up to date."""
-        self.weight = np.array([weights.com_horizontal, weights.com_horizontal, weights.com_vertical])
+        across = weights.com_horizontal, weights.com_horizontal
+        self.weight = np.array([*across, weights.com_vertical])
+        self.catching_weight = np.array([*across, weights.com_vertical_catching])
         self._balance, self._region = balance, region
 
     def write(self, terms: RobotTerms, reference: WbcReference, scale: Array, rows: Array) -> Vector:

@@ -44,15 +44,18 @@ class TaskStack:
         """
         self.layout: TaskLayout = layout_of(tasks)
         variables, sizes = qp.g.shape[0], [size for _, size in self.layout]
-        scale = np.sqrt(np.concatenate([_weight(task) for task in tasks]))
+        # Of walking, and of catching the body.
+        self._scales = [np.sqrt(np.concatenate([_weight(task, caught) for task in tasks])) for caught in (False, True)]
+        self._unscales = [np.divide(1.0, s, out=np.zeros_like(s), where=s > 0.0) for s in self._scales]
+        scale = self._scales[False].copy()
         if len(dict(self.layout)) < len(self.layout):
             raise ValueError(f"tasks {', '.join(name for name, _ in self.layout)}: each needs a name of its own")
         self.rows, self.target = np.zeros((sum(sizes), variables)), np.zeros(sum(sizes))
         self.diagonal, self.linear = np.zeros(variables), np.zeros(variables)
         for term in terms:
             term.weigh(self.diagonal)
-        self._scale = scale
-        self._unscale = np.divide(1.0, scale, out=np.zeros_like(scale), where=scale > 0.0)
+        # In place, since tasks and kernels have views of it.
+        self._scale, self._unscale, self._catching = scale, self._unscales[False].copy(), False
         # A view costs as much to make as to use, so each task's part of the rows gets its name once.
         ends = np.cumsum(sizes)
         places = [slice(end - size, end) for size, end in zip(sizes, ends, strict=True)]
@@ -93,8 +96,16 @@ class TaskStack:
         self._first = tick.kernels.sequence(self._kernels) if self._others else None
         self._last = assemble if self._others else tick.kernels.sequence([*self._kernels, assemble])
 
+    def _weigh(self, catching: bool) -> None:
+        """Let tasks count as they do where a step catches the body, or as they do else."""
+        self._catching = catching
+        np.copyto(self._scale, self._scales[catching])
+        np.copyto(self._unscale, self._unscales[catching])
+
     def write(self, terms: RobotTerms, reference: WbcReference) -> None:
         """Write H and g of the QP for this state and reference."""
+        if reference.catching is not self._catching:
+            self._weigh(reference.catching)
         wanted: list[float] = []
         for write, scale, rows in self._tasks:
             wanted.extend(write(terms, reference, scale, rows))
@@ -110,6 +121,8 @@ class TaskStack:
 
     def write_compiled(self, terms: RobotTerms, reference: WbcReference) -> None:
         """The same as ``write`` by kernels, after the reference was given to their tick."""
+        if reference.catching is not self._catching:
+            self._weigh(reference.catching)
         if self._first is not None:
             self._first()
             for write, scale, rows, target in self._others:
@@ -124,9 +137,9 @@ class TaskStack:
         return residual
 
 
-def _weight(task: Task) -> Array:
-    """Weight of each row of a task."""
-    weight = np.asarray(task.weight, dtype=np.float64)
+def _weight(task: Task, catching: bool) -> Array:
+    """Weight of each row of a task, in a walk or where a step catches the body."""
+    weight = np.asarray(getattr(task, "catching_weight", task.weight) if catching else task.weight, dtype=np.float64)
     if task.size < 1 or weight.shape not in ((), (task.size,)) or not (np.isfinite(weight) & (weight >= 0.0)).all():
         raise ValueError(
             f"task '{task.name}' has size {task.size} and weight {task.weight}; the size must be at least 1, the "

@@ -261,6 +261,7 @@ def test_an_undisturbed_walk_keeps_its_margins_and_moves_no_step(stand, adaptati
         assert not movable or plan.phase.leads_to == GAIT.steps or balance.movable > balance.planned
         assert np.abs(balance.shift).max() < 1e-3
         assert balance.delay == 0.0
+        assert not balance.catching
 
 
 def test_who_stands_still_is_captured_by_the_support(stand):
@@ -274,9 +275,11 @@ def test_a_push_is_told_by_the_margins_and_what_is_made_of_the_step(stand):
     assert fallen is None
     after = [plan for plan in made if begin + 0.1 < plan.time and plan.phase.step == 3]
     assert min(plan.balance.planned for plan in after) < 0.0 < min(plan.balance.movable for plan in after)
+    assert not any(plan.balance.catching for plan in made if plan.time <= begin)
     landing = max(plan.balance.shift[0] for plan in after)
     assert landing > 0.05
     swung = [plan for plan in after if plan.swing is not None][-1]
+    assert swung.balance.catching  # where the footstep is fixed already, too
     nominal = GAIT.lift_off(3) + GAIT.single_support
     assert swung.footsteps[0].position[0] - 0.9 == pytest.approx(swung.balance.shift[0], abs=5e-3)
     assert swung.footsteps[0].touchdown_time - nominal == pytest.approx(swung.balance.delay, abs=1.5 * T)

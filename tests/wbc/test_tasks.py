@@ -135,7 +135,9 @@ def test_the_height_counts_for_more_while_a_step_catches_the_body_and_as_before_
     controller, weights, seen = robot.controller(), TaskWeights(), []
     for catching in (False, True, False):
         terms = controller.observe(state)
-        qp = controller.build(terms, references[1](catching=catching), controller.schedule.update(references[1](), loaded))
+        qp = controller.build(
+            terms, references[1](catching=catching), controller.schedule.update(references[1](), loaded)
+        )
         residual = controller.tasks.residual(np.ones(qp.g.size))
         seen.append((controller.tasks.rows.copy(), controller.tasks.target.copy(), qp.H.copy(), residual.copy()))
     (rows, target, H, residual), (caught, aim, _, same), (after, target_after, H_after, _) = seen

@@ -20,7 +20,7 @@ class CentreOfMass:
     The force f is that of a lasting load (see ``RobotTerms.bear``).
 
     While a step catches the body its height counts for more. A leg that is swung hard turns the body; friction and CoP
-    hold that only as far as the stance foot is pressed down, so that it was cheap to jump, and no leg came down in time.
+    hold that only as far as the stance foot is pressed down. So it was cheap to jump, and no leg came down in time.
     """
 
     name, size = "CoM", 3

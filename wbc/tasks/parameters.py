@@ -18,7 +18,9 @@ class TaskWeights:
     com_horizontal: float = number(10.0, "s^4/m^2", "horizontal CoM acceleration")
     com_vertical: float = number(2.5, "s^4/m^2", "vertical CoM acceleration")
     com_vertical_catching: float = number(
-        100.0, "s^4/m^2", "the same while a step is adapted to catch the body, whose swing would else lift it off its legs"
+        100.0,
+        "s^4/m^2",
+        "the same while a step is adapted to catch the body, whose swing would else lift it off its legs",
     )
     angular_momentum: float = number(2.0, "s^4/m^4", "rate of angular momentum over mass")
     orientation: float = number(1.0, "s^4", "angular acceleration of pelvis and torso")

@@ -24,8 +24,8 @@ class Task(Protocol):
     Σ weight (J x - a)² over its rows, with accelerations of about 1 and weights of about 1 to 10 on the default tasks.
 
     A task is asked once per tick, after the terms were computed. It may keep buffers of its own; it must not keep
-    state that outlives a tick, lest equal states give unequal torques. Where it has a ``catching_weight``, shaped as its
-    weight, it counts by that while a step is adapted to catch the body.
+    state that outlives a tick, lest equal states give unequal torques. Where it has a ``catching_weight``, which is
+    shaped as its weight, it counts by that while a step is adapted to catch the body.
     """
 
     @property

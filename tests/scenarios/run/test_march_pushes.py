@@ -33,6 +33,11 @@ def test_it_goes_on_after_a_push_that_takes_an_ankle_to_its_end(direction, phase
     assert not falls(direction, phase, fraction, impulse)
 
 
+def test_a_hard_swing_does_not_lift_it_off_its_stance_foot():
+    """To the left and backward; with the height held no harder than in the walk it falls after 0.43."""
+    assert not falls(2.356, "single", 0.5, 0.5)
+
+
 @pytest.mark.parametrize("fraction", [0.5, 0.8], ids=["SS 0.5", "SS 0.8"])
 def test_a_foot_that_lands_short_of_a_push_to_its_side_goes_on(fraction):
     """To the left, at which the left foot swings; it lands before it can be far enough out."""

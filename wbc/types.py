@@ -182,6 +182,7 @@ class WbcReference:
             swing_foot: likewise.
             swing_progress: likewise [-].
             rolling_foot: likewise.
+            catching: likewise.
         """
         made = _OpenReference()
         made.numbers, made.planned_contact, made.time_to_switch = numbers, planned_contact, time_to_switch

@@ -206,7 +206,7 @@ class WalkingPlanner:
         footsteps = execution.upcoming(time, shifts)
         if execution.free[0]:
             balance = Balance(balance.planned, balance.movable, shifts[0], balance.delay, balance.outside)
-        if execution.adapted:
+        if execution.catching:
             balance = replace(balance, catching=True)
         if execution.phase.swing_foot is not None:
             execution.swing_to(footsteps[0], time, feet, motion.solver is SolverStatus.HELD)

@@ -206,7 +206,7 @@ class Balance:
         shift: by how much the next landing is moved from where it nominally is, world frame, shape (2,) [m].
         delay: how much later than nominally it is made to come [s].
         outside: plans on end in which the DCM has been farther outside `movable` than a robot that can be saved.
-        catching: place or time of the next landing are being adapted.
+        catching: place or time of the next landing are being adapted, but on stairs and blocks.
     """
 
     planned: float = math.nan

@@ -127,7 +127,7 @@ class WbcReference:
         rolling_foot: index of the foot that rolls about its toe edge, -1 for none; its `swing_position` is that of the
             sole as if it lay flat.
         roll: (pitch, rate, acceleration) of that foot, heel up positive [rad, rad/s, rad/s^2].
-        catching: whether the next footstep is being adapted to catch the body.
+        catching: whether the next footstep is being adapted to catch the body, but on stairs and blocks.
         numbers: the kernels' struct ``Reference`` that says the same [SI]; None of one that was not made by a kernel.
     """
 

@@ -123,6 +123,11 @@ class Execution:
         return (self.adapts and remaining >= 1 and not self.fixed, self.adapts and remaining >= 2)
 
     @property
+    def catching(self) -> bool:
+        """Whether the next footstep is being adapted, where the CoM's height does not follow faces that were chosen."""
+        return self.adapted and self._wide
+
+    @property
     def aim(self) -> Array | None:
         """Where a swing goes that deviates from its step, shape (3,) [m]; None where none does."""
         return None if self.swing is None or not (self.adapted or self.swing.bent) else self.swing.footstep
@@ -300,14 +305,14 @@ class Execution:
             target[2] -= self.swing.aim
             if not (self.fixed or held) and greatest(np.abs(target - self.swing.target) / self._pose) > _SAME_TARGET:
                 # Over edges the foot keeps to the times in which its course clears them.
-                gliding = self.adapted and self._wide
+                gliding = self.catching
                 self.swing = self.swing.retargeted(time, target, gliding, LEAST_GLIDE * self._size.time)
         if self.adapted and self.swing.search.hurry_after > 0.0:
             # While a foot that is to catch the body searches for the ground the DCM goes on away from it.
             self.swing = replace(self.swing, search=replace(self.swing.search, hurry_after=0.0))
         if self.legs is not None:
             stride = math.dist(landing.position, stance.position)
-            self.lowering = self.legs.lowering(stride) if self.adapted and self._wide else 0.0
+            self.lowering = self.legs.lowering(stride) if self.catching else 0.0
             self.swing = around_stance_leg(self.swing, stance, self.legs, time, self._parameters.sample_time)
 
     def roll(self, time: float) -> FootRoll | None:

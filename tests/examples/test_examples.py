@@ -38,13 +38,13 @@ def test_examples_are_typed_as_a_users_script_is():
     assert done.returncode == 0, done.stdout
 
 
-FOLLOWED = ("own_law", "own_task", "own_estimator", "own_loop")
-"""Those whose tutorials do the same; they run with the long tests."""
+SOON = ("run_and_read", "planner_alone", "controller_alone", "own_loop", "own_plant", "own_law")
+"""Those that run at every change; the others with the long tests."""
 
 
 @pytest.mark.physics
 @pytest.mark.parametrize(
-    "name", [pytest.param(name, marks=pytest.mark.long) if name in FOLLOWED else name for name in TOLD]
+    "name", [name if name in SOON else pytest.param(name, marks=pytest.mark.long) for name in TOLD]
 )
 def test_an_example_runs_beside_files_named_as_our_parts(name, tmp_path):
     for part in ("models", "sim", "planner", "wbc", "scenarios"):

@@ -110,7 +110,7 @@ def test_it_stands_without_moving_on_side_edges(tmp_path) -> None:
 
 
 @pytest.mark.physics
-@pytest.mark.parametrize("seed", [0, 3])
+@pytest.mark.parametrize("seed", [0, pytest.param(3, marks=pytest.mark.long)])
 def test_it_stands_on_side_edges_from_sensors(tmp_path, seed) -> None:
     """How its soles are turned about their edges is no measurement of level; the way between the edges is."""
     keys = {"robot": str(robot(tmp_path)), "sensing.preset": "good", "seed": seed, "criteria": {}}

@@ -40,7 +40,7 @@ def test_arms_that_are_moved_at_random_are_survived(robot, told):
 
 
 @pytest.mark.physics
-@pytest.mark.parametrize("robot", ROBOTS)
+@pytest.mark.parametrize("robot", [pytest.param("humanoid100", marks=pytest.mark.long), "g1"])
 def test_arms_go_overhead_in_a_second_and_it_walks_on(robot):
     overrides, arms, _ = ROBOTS[robot]
     scenario = load("walk", {"sensing.source": "truth", **overrides, "control": {"driven_joints": arms}})
@@ -79,7 +79,7 @@ def test_five_kilograms_in_a_hand_that_are_told(robot, name):
 
 
 @pytest.mark.physics
-@pytest.mark.parametrize("name", ["walk", "walk-turn"])
+@pytest.mark.parametrize("name", [pytest.param("walk", marks=pytest.mark.long), "walk-turn"])
 @pytest.mark.parametrize("robot", ROBOTS)
 def test_five_kilograms_in_a_hand_that_nobody_told_of(robot, name):
     overrides, _, hand = ROBOTS[robot]

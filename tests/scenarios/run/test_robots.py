@@ -25,7 +25,12 @@ def test_a_scenario_of_the_catalogue_passes(tmp_path: Path, robot: str, scenario
     ("robot", "speed", "gait"),
     [
         # A foot that rolls comes level while its shank swings forward: this ankle would else be too slow.
-        ("talos", 0.6, {"single_support": 0.5, "double_support": 0.1, "com_height": 0.84, "heel_off": 0.4}),
+        pytest.param(
+            "talos",
+            0.6,
+            {"single_support": 0.5, "double_support": 0.1, "com_height": 0.84, "heel_off": 0.4},
+            marks=pytest.mark.long,
+        ),
         ("g1", 0.8, {"single_support": 0.39, "double_support": 0.08, "com_height": 0.62, "heel_off": 0.5}),
     ],
 )

@@ -1,5 +1,8 @@
 """Walks in full physics: the catalogue, and variations of one walk with nothing else changed."""
 
+import re
+from pathlib import Path
+
 import pytest
 from variations import COMMANDED, COMMANDS, SCENARIO, SOUND, VARIATIONS
 
@@ -10,7 +13,9 @@ from surefoot.scenarios.setup.load import load as load_scenario
 
 EVERY_CHANGE = [variation for variation in VARIATIONS if variation.every_change and variation.overrides]
 ON_DEMAND = [variation for variation in VARIATIONS if not variation.every_change]
-LONG_SCENARIOS = ("walk-turn", "walk-curve", "walk-backward", "slope", "blocks", "stairs-tall")
+CHECKED = re.findall(r"surefoot check (.+)", (Path(__file__).parents[3] / "Makefile").read_text())[0].split()
+"""Those that ``make test`` holds against their baselines anyway, and with these against their criteria."""
+LONG_SCENARIOS = sorted({"walk-turn", "walk-curve", "walk-backward", "slope", "blocks", *CHECKED})
 
 
 def verdict(tmp_path, name, overrides=()):

@@ -24,7 +24,15 @@ ROBOTS = {
 }
 
 
-@pytest.mark.parametrize(("robot", "kernels"), [*((name, "1") for name in ROBOTS), ("g1 by its sensors", "0")])
+@pytest.mark.parametrize(
+    ("robot", "kernels"),
+    [
+        ("humanoid100", "1"),
+        pytest.param("position targets", "1", marks=pytest.mark.long),
+        pytest.param("g1 by its sensors", "1", marks=pytest.mark.long),
+        ("g1 by its sensors", "0"),
+    ],
+)
 def test_two_processes_walk_as_one_to_the_bit(bridge, robot, kernels, same_content, monkeypatch, tmp_path):
     monkeypatch.setenv("SUREFOOT_NATIVE", kernels)
     plant = bridge.serve("walk", "--set", "gait.steps=1", *PUSHED, *ROBOTS[robot], "--seed", "3")

@@ -4,12 +4,12 @@ PYTHON ?= $(shell for p in python3.14 python3.13 python3.12 python3.11 python3; 
 VENV := .venv
 BIN := $(VENV)/bin
 
-.PHONY: walk test unit physics check long gate format coverage mutants bench docs dist dist-test scenario changelog clean
+.PHONY: walk test tests unit physics check long gate format coverage mutants bench docs dist dist-test scenario changelog clean
 
 walk: $(VENV)/.installed
 	$(BIN)/surefoot run diagonal-walk
 
-test: gate unit physics check
+test: gate tests check
 
 gate: $(VENV)/.installed-dev
 	$(BIN)/ruff check .
@@ -18,6 +18,10 @@ gate: $(VENV)/.installed-dev
 	$(BIN)/lint-imports
 	$(BIN)/deptry planner wbc sim models scenarios surefoot
 	$(BIN)/deptry tests benchmarks docs $(wildcard examples) --exclude runs --ignore DEP002,DEP004
+
+# All at once is quicker than one tier after the other: each begins with reading all tests.
+tests: $(VENV)/.installed-dev
+	$(BIN)/pytest -m "(unit or physics) and not long" -n auto --dist loadscope
 
 # make unit AREA=planner runs the unit tests of one folder, make unit those of all.
 unit: $(VENV)/.installed-dev

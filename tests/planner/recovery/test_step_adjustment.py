@@ -247,7 +247,11 @@ def greatest(stand, adaptation, direction):
 
 @pytest.mark.parametrize(
     ("direction", "least"),
-    [((1.0, 0.0), 3.0), pytest.param((0.0, 1.0), 1.5, marks=pytest.mark.long), ((0.0, -1.0), 1.5)],
+    [
+        pytest.param((1.0, 0.0), 3.0, marks=pytest.mark.long),
+        pytest.param((0.0, 1.0), 1.5, marks=pytest.mark.long),
+        ((0.0, -1.0), 1.5),
+    ],
 )
 def test_a_pushed_pendulum_survives_more_the_more_it_may_adapt(stand, direction, least):
     survived = [greatest(stand, level, direction) for level in LEVELS]

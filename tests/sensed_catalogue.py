@@ -19,6 +19,12 @@ def pytest_addoption(parser: Any) -> None:
     parser.addoption("--preset", help="sensing.preset of the catalogue's scenarios: perfect, good or cheap")
 
 
+@pytest.fixture
+def from_sensors(pytestconfig: pytest.Config) -> bool:
+    """Whether the catalogue walks from sensors: bounds that are others then are named where they are held."""
+    return pytestconfig.getoption("--preset") is not None
+
+
 def pytest_configure(config: pytest.Config) -> None:
     """Add the key to what is read of the catalogue, at the end, so that lines keep their numbers."""
     preset, read = config.getoption("--preset"), catalogue.text

@@ -25,12 +25,13 @@ def test_noise_with_a_push(tmp_path):
     assert max(verdict.metrics["dcm_estimation_error_rms"]) < 0.004
 
 
-def test_a_com_higher_than_believed(tmp_path):
+def test_a_com_higher_than_believed(tmp_path, from_sensors):
     result = walk(tmp_path, "errors.com_height=-0.2", "gait.steps=3")
     assert result.verdict.reasons == ()
     log = read(result.log)
     gap = log["/truth"].field("com") - log["/estimate"].field("com")
-    np.testing.assert_allclose(gap[0], [0.0, 0.0, 0.2], atol=1e-3)  # the start posture stands upright to a milliradian
+    # The start posture stands upright to a milliradian; an estimate, by its joints' zeros, to three.
+    np.testing.assert_allclose(gap[0], [0.0, 0.0, 0.2], atol=3e-3 if from_sensors else 1e-3)
     assert np.abs(gap[:, :2]).max() < 0.02
 
 

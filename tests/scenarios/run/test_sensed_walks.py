@@ -11,7 +11,8 @@ from surefoot.scenarios.run.sensed import sensed_state, sensor_noise
 from surefoot.scenarios.setup.walk import resolve
 from surefoot.sim.sensor_errors import CHEAP, GOOD, PERFECT
 from surefoot.wbc.estimation.estimate import Deviation, Estimate, Planned
-from surefoot.wbc.types import RobotState
+from surefoot.wbc.estimation.parameters import GroundNoise
+from surefoot.wbc.types import GRAVITY, RobotState
 
 STAND = {"gait.steps": 0, "duration": 0.1}
 GOOD_SENSORS = {"sensing.source": "ekf", "sensing.preset": "good"}
@@ -136,6 +137,34 @@ def test_a_walk_from_sensors_is_planned_where_they_say_that_the_robot_stands():
     away = loop.walker.measurement.q[:2] - mind.state.q[:2]
     assert np.hypot(*away) > 0.005  # the start noise has put it somewhere else
     np.testing.assert_allclose(loop.planning.plan.zmp_reference[0], believed, atol=1e-3)
+
+
+@pytest.mark.unit
+def test_standing_soles_sink_under_what_the_filter_is_told_of_their_loads():
+    """All that its springs have given by in a while is the change of the wrench over it."""
+    made = []
+
+    def make(walk):
+        made.append(Listening(walk))
+        return made[0]
+
+    keys = {"start.angle_noise": 0.017, "sensing.preset": "good"}
+    loop = closed_loop(resolve(surefoot.load("stand", keys)), NoLog(), surefoot.Parts(estimator=make))
+    loop.step()
+    estimator = made[0].inner
+    first, risen, spread = estimator._load[:, 2].copy(), np.zeros(2), estimator.filter.spread
+
+    def heard(loads, sprung=None):
+        risen[:] += sprung[:, 2]
+        spread(loads, sprung)
+
+    estimator.filter.spread = heard
+    for _ in range(40):
+        loop.step()
+    changed, depth = estimator._load[:, 2] - first, GroundNoise().depth
+    assert np.abs(changed).max() > 2.0
+    weight = GRAVITY * estimator._body.mass
+    np.testing.assert_allclose(risen, -depth * changed / weight, rtol=1e-9)
 
 
 @pytest.mark.unit

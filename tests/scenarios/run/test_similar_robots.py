@@ -31,8 +31,8 @@ def quarter():
     ROBOTS.discard("quarter")
 
 
-def walked(tmp_path, robot):
-    return run_scenario(load("walk", (*SHORT, f"robot={robot}")), tmp_path).verdict
+def walked(tmp_path, robot, *keys):
+    return run_scenario(load("walk", (*SHORT, f"robot={robot}", *keys)), tmp_path).verdict
 
 
 def test_a_quarter_of_the_size_takes_the_same_share_of_torques_and_speeds(tmp_path):
@@ -45,5 +45,6 @@ def test_a_quarter_of_the_size_takes_the_same_share_of_torques_and_speeds(tmp_pa
 
 
 def test_with_the_gains_of_full_size_it_does_not_walk(tmp_path, monkeypatch):
+    """Of the true state; from sensors it takes these two steps."""
     monkeypatch.setattr("surefoot.scenarios.setup.walk.controller_parameters", lambda *given: WbcParameters())
-    assert not walked(tmp_path, "quarter").passed
+    assert not walked(tmp_path, "quarter", "sensing.source=truth").passed

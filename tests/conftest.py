@@ -7,12 +7,12 @@ from xml.etree import ElementTree
 
 import numpy as np
 import pytest
-from sensed_catalogue import pytest_addoption, pytest_configure
+from sensed_catalogue import from_sensors, pytest_addoption, pytest_configure
 from skips import pytest_sessionfinish, pytest_terminal_summary
 
 from surefoot.models import RobotDescription, RobotOptions, describe
 
-__all__ = ["pytest_addoption", "pytest_configure", "pytest_sessionfinish", "pytest_terminal_summary"]
+__all__ = ["from_sensors", "pytest_addoption", "pytest_configure", "pytest_sessionfinish", "pytest_terminal_summary"]
 
 
 def _heeding() -> Iterator[None]:

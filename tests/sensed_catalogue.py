@@ -13,6 +13,12 @@ import yaml
 
 from surefoot.scenarios import catalogue
 
+STANDING = {"criteria.zmp_error_rms": {"max": 0.003}, "criteria.com_error_rms": {"max": [0.002, 0.002, 0.003]}}
+"""Bounds of `stand`, which is no walk of the campaign: it has 1.0 to 2.7 mm over five seeds, for 1 mm with the truth.
+
+Soles that are level tell the tilt up to the zeros of the encoders, 0.6 mrad; seed 0 has 1.65 mrad, by which the CoM is
+1.2 mm off. Planned from there with a feedback of about one, it comes to rest twice as far from where it should."""
+
 
 def pytest_addoption(parser: Any) -> None:
     """The option."""
@@ -31,7 +37,7 @@ def pytest_configure(config: pytest.Config) -> None:
     if preset is None:
         return
     campaign = files("surefoot.scenarios.study.campaigns.campaigns") / "sensors.yaml"
-    wider = yaml.safe_load(campaign.read_text())["grid"]["walk"]
+    wider = {"stand": STANDING, **yaml.safe_load(campaign.read_text())["grid"]["walk"]}
 
     def text(name: str) -> tuple[str, str]:
         written, place = read(name)

@@ -10,6 +10,16 @@ from surefoot.scenarios.run.run import run_scenario
 
 pytestmark = pytest.mark.physics
 
+UNSURE = {
+    "cop_ratio_p99": 0.7,
+    "zmp_error_rms": 0.022,
+    "footstep_error_max": 0.008,
+    "foot_slip_max": 0.002,
+    "stance_tilt_max": 0.03,
+}
+"""Bounds of the fast G1 from sensors: its feet, which roll, land 20 ms early at 0.13 m/s ahead with the truth already,
+and where that is by half a millimetre of height, and so what the landing does, is not known better."""
+
 
 @pytest.mark.parametrize(
     ("robot", "scenario"),
@@ -34,8 +44,12 @@ def test_a_scenario_of_the_catalogue_passes(tmp_path: Path, robot: str, scenario
         ("g1", 0.8, {"single_support": 0.39, "double_support": 0.08, "com_height": 0.62, "heel_off": 0.5}),
     ],
 )
-def test_a_robot_walks_fast(tmp_path: Path, robot: str, speed: float, gait: dict[str, float]) -> None:
-    keys = {f"gait.{key}": value for key, value in {**gait, "step_length": 0.4}.items()}
+def test_a_robot_walks_fast(
+    tmp_path: Path, robot: str, speed: float, gait: dict[str, float], from_sensors: bool
+) -> None:
+    keys: dict[str, object] = {f"gait.{key}": value for key, value in {**gait, "step_length": 0.4}.items()}
+    if from_sensors and robot == "g1":
+        keys |= {f"criteria.{metric}": {"max": bound} for metric, bound in UNSURE.items()}
     settings = {"robot": robot, "criteria.speed_mean": {"min": speed}, **keys}
     verdict = run_scenario(surefoot.load("walk-fast", settings), tmp_path).verdict
     assert verdict.passed, verdict.reasons

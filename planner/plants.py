@@ -21,8 +21,8 @@ class Pendulum:
 
     Args:
         mass: [kg].
-        position: at the start.
-        velocity: at the start.
+        position: at the start, shape (2,) [m].
+        velocity: at the start, shape (2,) [m/s].
     """
 
     def __init__(self, mass: float, position: Array, velocity: Array) -> None:

@@ -13,7 +13,7 @@ class Reading:
     """Values of one sensor.
 
     Attributes:
-        values: as the sensor says them, in the unit of its channel [SI]; its own array, which nobody writes to again.
+        values: as the sensor says them, shape (n,) by its channel [SI]; its own array, which nobody writes to again.
         age: time since the instant that they are of [s].
         fresh: whether they came since the control tick before; False for values that are held.
     """

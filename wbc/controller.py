@@ -117,7 +117,7 @@ class WholeBodyController:
             parameters: weights and gains.
             limbs: shapes with the collision pairs that are kept apart; None looks at none.
             arm_joints: which joints are the left and the right shoulder pitch; None for arms that do not swing.
-            arm_back: sign of the angles of these that swing the arms back.
+            arm_back: sign of the angles of these that swing the arms back [-].
             driven: which joints somebody else drives, bool, shape (nj,); None for none.
             tasks: others, after the default ones.
 

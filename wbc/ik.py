@@ -86,7 +86,14 @@ class PostureIk:
     """
 
     def __init__(self, model: pin.Model, frames: BodyFrames, limits: JointLimits, posture: Array) -> None:
-        """Search postures of ``model`` near the joint positions ``posture``, shape (nj,) [rad]."""
+        """Search postures.
+
+        Args:
+            model: the robot.
+            frames: those of its bodies.
+            limits: of its joints.
+            posture: joint positions near which is searched, shape (nj,) [rad].
+        """
         self._model, self._data = model, model.createData()
         self._soles = tuple(model.getFrameId(name) for name in frames.soles)
         self._torso = model.getFrameId(frames.torso)

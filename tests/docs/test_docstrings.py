@@ -4,7 +4,7 @@ import ast
 import inspect
 import re
 import textwrap
-from dataclasses import fields, is_dataclass
+from dataclasses import dataclass, fields, is_dataclass
 from importlib import import_module
 
 import numpy as np
@@ -74,14 +74,24 @@ DATA = [(name, thing) for name, thing in CLASSES if is_dataclass(thing)]
 
 @pytest.mark.parametrize(("name", "thing"), DATA, ids=[name for name, _ in DATA])
 def test_every_field_has_a_meaning_and_every_array_a_shape(name, thing):
+    assert not list(fields_without_meaning(thing)), name
+    assert not list(fields_without_shape(thing)), name
+
+
+def fields_without_meaning(thing):
     told = entries(inspect.getdoc(thing))
     for field in fields(thing):
-        if field.name.startswith("_"):
-            continue
-        meaning = told.get(field.name) or field.metadata.get("doc")
-        assert meaning, f"{name}.{field.name}"
-        if re.search(r"\bArray\b|NDArray|ndarray", str(field.type)) and "tuple" not in str(field.type):
-            assert "shape" in meaning or "of `" in meaning, f"{name}.{field.name}: {meaning}"
+        if not field.name.startswith("_") and not (told.get(field.name) or field.metadata.get("doc")):
+            yield field.name
+
+
+def fields_without_shape(thing):
+    """Arrays, and tuples and mappings of them; the head of the class may say the shape of each."""
+    told, head = entries(inspect.getdoc(thing)), inspect.getdoc(thing).split("\n\n")[0]
+    for field in fields(thing):
+        meaning = (told.get(field.name) or field.metadata.get("doc", "")) + (head if "each" in head else "")
+        if not field.name.startswith("_") and ARRAY.search(str(field.type)) and not re.search(SHAPE, meaning):
+            yield field.name
 
 
 UNIT = r"\[[^\[\]]*\]"
@@ -99,6 +109,7 @@ def test_every_field_that_is_a_number_has_a_unit(name, thing):
 
 
 ARRAY = re.compile(r"\bArray\b|NDArray|ndarray")
+FLOAT = re.compile(r"\bfloat(?:64)?\b|\bArray\b")
 SHAPE = r"[Ss]hapes? \(|\([0-9a-z_]+(?:, [0-9a-z_]*)+\)|of `"
 """Of a docstring: said, written behind a name, or that of what is named."""
 
@@ -114,6 +125,21 @@ def silent_about(said, kind, function, told):
     returns = "".join(re.findall(r"(?s)\nReturns:(.*?)(?=\n\S|$)", text))
     if kind.search(str(signature.return_annotation)) and not re.search(said, head + returns):
         yield "return"
+
+
+@pytest.mark.parametrize(("name", "thing"), CLASSES, ids=[name for name, _ in CLASSES])
+def test_every_array_that_a_class_is_made_of_has_a_shape_and_every_number_a_unit(name, thing):
+    """Of a class that is no dataclass, told of it or of its `__init__`."""
+    made = vars(thing).get("__init__")
+    if is_dataclass(thing) or not inspect.isfunction(made):
+        return
+    told = entries(inspect.getdoc(thing)) | entries(inspect.getdoc(made) or "")
+    for argument in inspect.signature(made).parameters.values():
+        meaning = told.get(argument.name, "")
+        if ARRAY.search(str(argument.annotation)):
+            assert re.search(SHAPE, meaning), f"{name}: {argument.name}"
+        if FLOAT.search(str(argument.annotation)):
+            assert re.search(UNIT, meaning), f"{name}: {argument.name}"
 
 
 @pytest.mark.parametrize(("said", "kind"), [(UNIT, NUMBER), (SHAPE, ARRAY)], ids=["unit", "shape"])
@@ -142,6 +168,19 @@ def test_a_number_without_a_unit_and_an_array_without_a_shape_are_found():
             v: of the joints [rad/s].
         """
 
+    @dataclass
+    class Shapeless:
+        """Places.
+
+        Attributes:
+            one: shape (3,) [m].
+            both: of the feet [m].
+        """
+
+        one: np.ndarray
+        both: tuple[np.ndarray, np.ndarray]
+
+    assert list(fields_without_shape(Shapeless)) == ["both"]
     assert list(silent_about(UNIT, NUMBER, silent, {})) == ["width"]
     assert list(silent_about(SHAPE, ARRAY, shapeless, {})) == ["v"]
 

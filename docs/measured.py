@@ -47,7 +47,6 @@ _STOPPED = ("torque_at_limit_fraction", "cop_ratio_p99", "torque_ratio_max")
 _ZMP = tuple(f"zmp_error_rms.{axis}" for axis in (0, 1))
 SENSED = (*(f"velocity_estimation_error_rms.{axis}" for axis in (0, 1)), *_ZMP)
 _PLANNED = ("planner_infeasible_fraction", *_ZMP, "zmp_inside_fraction")
-FEET = ("robot", "sensing.preset", "sensing.wrench")
 HEEL_OFF = ("speed_mean", "cost_of_transport", "knee_angle_mean", "knee_torque_rms", "torque_ratio_max")
 ROUGH = ("speed_mean", "cop_ratio_p99", "torque_ratio_max")
 
@@ -71,7 +70,6 @@ MADE = {
     "profiles-on-stairs": _of_page("profiles-on-stairs", "terrain.riser", "planner.profile", *_ZMP),
     "heel-off": _of_page("heel-off", "gait.heel_off", *HEEL_OFF),
     "rough-ground": _of_page("rough-ground", "ground", *ROUGH),
-    "feet-without-sensors": _of_page("feet-without-sensors", *FEET, *SENSED, "cop_ratio_p99", "estimation_drift"),
     "sensor-faults": Made(
         "sensor-faults", columns=("fault", "status", *SENSED, "cop_ratio_p99", "step_shift", "ghost_force_max")
     ),

@@ -21,15 +21,19 @@ def _table(heads: Sequence[str], lines: Iterator[Sequence[str]] | Sequence[Seque
     return "\n".join("| " + " | ".join(line) + " |" for line in (heads, ["---"] * len(heads), *lines))
 
 
+def _shown(found: Found) -> str:
+    """A threshold in two digits, with the sign of one beyond the range."""
+    return {"below": "< ", "above": "≥ "}.get(found.threshold.side, "") + f"{found.shown:.2f}"
+
+
 def push_table(name: str) -> str:
     """Thresholds of all adaptations in one cell, and the limit of the last, by phase and direction."""
     found, axes = searches(name)
     *_, columns, shades, groups = axes
     cells: dict[str, dict[Any, list[str]]] = {}
     for one in sorted(found, key=lambda one: shades.values.index(one.labels[shades.name])):
-        sign = {"below": "< ", "above": "≥ "}.get(one.threshold.side, "")
         limit = limit_of(name, one.labels) if one.labels[shades.name] == shades.values[-1] else None
-        shown = f"{sign}{one.shown:.2f}" + ("" if limit is None else f" ({limit:.2f})")
+        shown = _shown(one) + ("" if limit is None else f" ({limit:.2f})")
         cells.setdefault(text(one.labels[groups.name]), {}).setdefault(one.labels[columns.name], []).append(shown)
     lines = ["| N·s/kg | " + " | ".join(map(text, columns.values)) + " |", "|---" * (1 + len(columns.values)) + "|"]
     for phase, by_column in cells.items():
@@ -55,11 +59,6 @@ def gains_table(name: str) -> str:
             cells.append(f"{min(ratios):.1f} to {max(ratios):.1f}" if ratios else "")
         lines.append(f"| `{after}` | `{before}` | {' | '.join(cells)} |")
     return "\n".join(lines)
-
-
-def _shown(found: Found) -> str:
-    """A threshold in two digits, with the sign of one beyond the range."""
-    return {"below": "< ", "above": "≥ "}.get(found.threshold.side, "") + f"{found.shown:.2f}"
 
 
 def search_table(name: str, head: str = "N·s/kg") -> str:
@@ -207,6 +206,7 @@ TABLES: dict[str, tuple[str, Callable[[], str]]] = {
     "push-map": ("campaigns.md", partial(push_table, "push-map")),
     "push-gains": ("campaigns.md", partial(gains_table, "push-map-pendulum")),
     "recovery-numbers": ("recovery-results.md", numbers_table),
+    "abilities": ("recovery-results.md", partial(search_table, "abilities")),
     "profiles-walk": (
         "profiles.md",
         partial(

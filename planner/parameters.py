@@ -84,7 +84,8 @@ class GroundSearch:
             speed=max(self.speed, speed),
             acceleration=self.acceleration + self.unsure_acceleration * least,
         )
-        return faster, self.unsure_aim * least - min(max(over, -most), most)
+        # A foot that is farther from the map stands on a step of the ground, which tells nothing of the next place.
+        return faster, self.unsure_aim * least - (over if abs(over) <= most else 0.0)
 
     def motion(self, since: float) -> tuple[float, float, float]:
         """Way down [m], downward speed [m/s] and acceleration [m/s^2], `since` the touchdown [s]."""

@@ -204,10 +204,10 @@ class WalkingPlanner:
         motion = self.motion = self._law.plan(problem)
         shifts = motion.shifts @ support.rotation.T
         footsteps = execution.upcoming(time, shifts)
-        if execution.free[0]:
-            balance = Balance(balance.planned, balance.movable, shifts[0], balance.delay, balance.outside)
-        if execution.catching:
-            balance = replace(balance, catching=True)
+        catching = execution.catching
+        if execution.free[0] or catching:
+            shift = shifts[0] if execution.free[0] else balance.shift
+            balance = Balance(balance.planned, balance.movable, shift, balance.delay, balance.outside, catching)
         if execution.phase.swing_foot is not None:
             execution.swing_to(footsteps[0], time, feet, motion.solver is SolverStatus.HELD)
         self._plan = self._world_plan(time, support, window, local, motion, footsteps, balance)

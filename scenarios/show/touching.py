@@ -4,10 +4,8 @@ from typing import NamedTuple
 
 import numpy as np
 
-from surefoot.engine import mujoco
 from surefoot.scenarios.errors import LogError
 from surefoot.scenarios.log import Log
-from surefoot.scenarios.show.replay.extract import world
 
 MOST_TICKS = 200
 """Ticks whose contacts are looked at; of more, so many from the first to the last."""
@@ -32,15 +30,21 @@ def touching(log: Log) -> tuple[Touch, ...]:
     ticks = np.flatnonzero(truth.field("self_contact"))
     if not ticks.size:
         return ()
+    # Few runs get here, and the others need no engine.
+    from surefoot.engine import mujoco
+    from surefoot.models.convert import pinocchio_to_mujoco
+    from surefoot.scenarios.show.replay.extract import world
+
     try:
         _, model = world(log)
     except LogError:
         return ()
     states, data, found = truth.field("q"), mujoco.MjData(model), dict[tuple[str, str], float]()
+    still = np.zeros(model.nv)
     if states.shape[1] != model.nq:
         return ()
     for tick in ticks[np.unique(np.linspace(0, ticks.size - 1, min(ticks.size, MOST_TICKS)).astype(int))]:
-        data.qpos[:] = states[tick]
+        pinocchio_to_mujoco(states[tick], still, data.qpos, data.qvel)
         mujoco.mj_fwdPosition(model, data)
         for bodies in model.geom_bodyid[data.contact.geom]:
             if bodies.all():

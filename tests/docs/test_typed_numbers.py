@@ -20,7 +20,7 @@ from surefoot.scenarios.show.replay import content, video
 from surefoot.scenarios.study.campaigns import against
 from surefoot.scenarios.study.tour import rules, world
 from surefoot.wbc import external
-from surefoot.wbc.controller import Sole
+from surefoot.wbc.cone import Sole
 
 pytestmark = pytest.mark.unit
 

@@ -6,6 +6,7 @@ import numpy as np
 import pinocchio as pin
 import pytest
 
+from surefoot.guard import Guard, Guarded
 from surefoot.plugins import PluginError
 from surefoot.wbc.parameters import WbcParameters
 from surefoot.wbc.tasks import DEFAULT_LAYOUT, TASKS, Task, TaskWeights, Weighted, angular_acceleration
@@ -132,9 +133,24 @@ def test_a_task_can_be_given_another_weight(robot, references, loaded, rng):
     assert np.linalg.norm(errors[1]) < np.linalg.norm(errors[0])
 
 
+def test_a_task_may_count_for_more_while_a_step_catches_the_body(robot, references, loaded, rng):
+    state, task = robot.moved(rng, 0.02, 0.2), Elbow(robot.model, robot.frames, weight=1.0)
+    task.catching_weight = 9.0
+    guarded = Guarded(task, Guard("elbow of a test"))
+    for given, more in ((task, 3.0), (guarded, 3.0), (Weighted(task, 1.0), 1.0)):
+        rows = []
+        for catching in (False, True):
+            controller = robot.controller(tasks=(given,))
+            controller.observe(state)
+            controller.update(references[1](catching=catching), loaded)
+            rows.append(controller.tasks.rows[18:])
+        np.testing.assert_allclose(rows[1], more * rows[0])
+
+
 @pytest.mark.parametrize(
     ("changes", "words"),
     [
+        ({"catching_weight": -3.0}, "weight -3.0; .* not negative"),
         ({"name": "pelvis"}, "a name of its own"),
         ({"size": 0}, "size must be at least 1"),
         ({"weight": -1.0}, "not negative"),

@@ -42,9 +42,9 @@ class TorqueWrench:
         soles: names of the sole frames, left first.
         period: control period [s].
         sensors: noise of encoders and torques.
-        held: whether a torque acted all the while since the call before, as one does that is commanded, and the states
-            are those at both ends. Else it has passed evenly from the torque of the call before: one that is followed
-            by a servo, or velocities that are those of the middle of two calls.
+        held: whether a torque acted all the while since the call before, and the states are those at both ends, as
+            under commanded torques. Else the mean of it and the torque of the call before counts, which is that of
+            velocities in the middle between two calls, and of a torque that changes evenly.
     """
 
     def __init__(
@@ -93,7 +93,8 @@ class TorqueWrench:
             lacking[6:] -= torque if self._held else 0.5 * (torque + self._torque)
             gain = 1.0 - (1.0 - self._gain) ** (span / self._period)
             self._residual = self._residual + gain * (lacking - self._residual)
-        self._momentum, self._driven, self._torque = momentum, driven, torque
+        # Who gives the torque may write the next one into the same array.
+        self._momentum, self._driven, self._torque[:] = momentum, driven, torque
         self.wrench = self._wrenches(q, M)
         return self.wrench
 

@@ -142,7 +142,7 @@ def _weight(task: Task, catching: bool) -> Array:
     weight = np.asarray(getattr(task, "catching_weight", task.weight) if catching else task.weight, dtype=np.float64)
     if task.size < 1 or weight.shape not in ((), (task.size,)) or not (np.isfinite(weight) & (weight >= 0.0)).all():
         raise ValueError(
-            f"task '{task.name}' has size {task.size} and weight {task.weight}; the size must be at least 1, the "
+            f"task '{task.name}' has size {task.size} and weight {weight}; the size must be at least 1, the "
             "weight one number or one for each row, finite and not negative"
         )
     return np.broadcast_to(weight, task.size)

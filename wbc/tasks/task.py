@@ -68,7 +68,7 @@ TaskFactory = Callable[[pin.Model, BodyFrames], Task]
 
 @dataclass(frozen=True, slots=True)
 class Weighted:
-    """A task with another weight than its own.
+    """A task with another weight than its own, also while a step catches the body.
 
     Attributes:
         task: the task.

@@ -10,8 +10,10 @@ from surefoot.scenarios.run.run import closed_loop
 from surefoot.scenarios.run.sensed import sensed_state, sensor_noise
 from surefoot.scenarios.setup.walk import resolve
 from surefoot.sim.sensor_errors import CHEAP, GOOD, PERFECT
+from surefoot.wbc.estimation import estimator
 from surefoot.wbc.estimation.estimate import Deviation, Estimate, Planned
 from surefoot.wbc.estimation.parameters import GroundNoise
+from surefoot.wbc.estimation.torques import TorqueWrench
 from surefoot.wbc.types import GRAVITY, RobotState
 
 STAND = {"gait.steps": 0, "duration": 0.1}
@@ -184,6 +186,22 @@ def test_without_a_wrench_of_the_estimator_the_controller_has_that_of_the_sensor
         used, said, true = (log[channel].field(side) for channel in ("/estimation", "/readings", "/measurement"))
         np.testing.assert_array_equal(used, said)
         assert np.abs(used - true).max() > 10.0
+
+
+@pytest.mark.unit
+@pytest.mark.parametrize("said", [True, False])
+def test_torques_count_for_the_time_that_lies_between_velocities(said, tmp_path, monkeypatch):
+    """Those that joints say are of the ticks, those by differences of the middle between two."""
+    held = []
+
+    class Noted(TorqueWrench):
+        def __init__(self, model, soles, period, sensors, told=True):
+            held.append(told)
+            super().__init__(model, soles, period, sensors, told)
+
+    monkeypatch.setattr(estimator, "TorqueWrench", Noted)
+    stand(sensed_state, tmp_path, **{**GOOD_SENSORS, "sensing.wrench": "none", "sensing.encoder_velocity": said})
+    assert held == [said]
 
 
 class Diverging(Listening):

@@ -9,6 +9,7 @@ from types import ModuleType
 from typing import Any
 
 import yaml
+from page_table import table
 
 from surefoot.scenarios.study.campaigns.spec import with_unit
 
@@ -56,15 +57,14 @@ def goals_table() -> str:
     papers = {direction: impulses[-1] for direction, impulses in module.PAPER_IMPULSES.items()}
     rows = [("natural", phase, most) for phase, most in goals().items()]
     rows.append(("paper's", "each of them", papers))
-    head = "| gait | phase | forward | left, to the swing foot | backward | right, over the stance foot |"
-    lines = [f"| {gait} | {phase} | {' | '.join(f'{one:g}' for one in most.values())} |" for gait, phase, most in rows]
-    return "\n".join([head, "|---" * 6 + "|", *lines])
+    heads = ("gait", "phase", "forward", "left, to the swing foot", "backward", "right, over the stance foot")
+    return table(heads, ([gait, phase, *(f"{one:g}" for one in most.values())] for gait, phase, most in rows))
 
 
 def elsewhere_table() -> str:
     """What is survived elsewhere than in the third step on flat ground."""
-    lines = [f"| {what} | {impulse:g} | {runs} |" for what, impulse, runs in _elsewhere()]
-    return "\n".join(["| pushed | with, N·s/kg | runs |", "|---|---|---|", *lines])
+    rows = ([what, f"{impulse:g}", str(runs)] for what, impulse, runs in _elsewhere())
+    return table(("pushed", "with, N·s/kg", "runs"), rows)
 
 
 def _elsewhere() -> Iterator[tuple[str, float, int]]:
@@ -97,26 +97,26 @@ def largest() -> dict[str, tuple[float, ...]]:
 
 def readme_table() -> str:
     """The largest pushes of the natural gait, and those that are survived from every side."""
-    lines = [f"| {when} | {' | '.join(f'{one:g}' for one in most)} |" for when, most in largest().items()]
-    head = ["| push | forward | backward | to the swing foot | over the stance foot |", "|---" * 5 + "|"]
-    return "\n".join([*head, *lines, "", *_from_any_side()])
+    heads = ("push", "forward", "backward", "to the swing foot", "over the stance foot")
+    by_side = table(heads, ([when, *(f"{one:g}" for one in most)] for when, most in largest().items()))
+    return f"{by_side}\n\n{table(('push', 'any side'), _from_any_side())}"
 
 
-def _from_any_side() -> Iterator[str]:
+def _from_any_side() -> Iterator[list[str]]:
     """Rows of pushes that are survived from every side."""
     standing, *_ = (impulse for what, impulse, _ in _elsewhere() if what.startswith("standing"))
     stairs = min(impulse for what, impulse, _ in _elsewhere() if what.startswith("`stairs"))
-    yield from ("| push | any side |", "|---|---|", f"| standing | {standing:g} |", f"| on stairs | {stairs:g} |")
+    yield from (["standing", f"{standing:g}"], ["on stairs", f"{stairs:g}"])
 
 
 def lasting_table() -> str:
     """Forces that last, and weights that are not believed in."""
     module = tests("test_lasting_forces")
     phases = f"{len(module.FORCES)} directions, {len(module.PHASES)} phases"
-    lines = [f"| {gait} | {force:g} N for {module.LASTING:g} s, in {phases} |" for gait, force in module.HELD.items()]
+    rows = [[gait, f"{force:g} N for {module.LASTING:g} s, in {phases}"] for gait, force in module.HELD.items()]
     scales = f"{min(module.SCALES):g} to {max(module.SCALES):g}"
-    lines.append(f"| `walk` and `diagonal-walk` | `errors.mass_scale` {scales} |")
-    return "\n".join(["| walk | what acts |", "|---|---|", *lines])
+    rows.append(["`walk` and `diagonal-walk`", f"`errors.mass_scale` {scales}"])
+    return table(("walk", "what acts"), rows)
 
 
 def _campaign(name: str) -> Any:
@@ -129,24 +129,24 @@ def drawn_table() -> str:
     campaign = _campaign("robustness")
     fixed = {key: value for key, value in campaign["set"].items() if key.startswith(("errors", "start", "wbc"))}
     drawn = {key: next(iter(spread.items())) for key, spread in campaign["sample"].items()}
-    lines = [f"| `{with_unit(key)}` | {value:g} |" for key, value in fixed.items() if isinstance(value, float)]
+    rows = [[f"`{with_unit(key)}`", f"{value:g}"] for key, value in fixed.items() if isinstance(value, float)]
     for key, (kind, values) in drawn.items():
         told = " to ".join(f"{value:g}" for value in values) if kind == "uniform" else ", ".join(map(str, values))
-        lines.append(f"| `{with_unit(key)}` | {told} |")
-    return "\n".join(["| key | value, or drawn from |", "|---|---|", *lines])
+        rows.append([f"`{with_unit(key)}`", told])
+    return table(("key", "value, or drawn from"), rows)
 
 
 def bounds_table() -> str:
     """Bounds of the ZMP that the campaign `sensors` holds with good sensors, where the catalogue asks for more."""
     campaign = _campaign("sensors")
-    lines = []
+    rows = []
     for name, keys in campaign["grid"]["walk"].items():
         path = ROOT / "scenarios" / "catalogue" / f"{keys['scenario']}.yaml"
         own = yaml.safe_load(path.read_text(encoding="utf-8"))["criteria"]
         inside, error = (_bound(keys, own, metric) for metric in ("zmp_inside_fraction", "zmp_error_rms"))
         if inside or error:
-            lines.append(f"| `{name}` | {inside} | {error} |")
-    return "\n".join(["| walk | `zmp_inside_fraction`, at least | `zmp_error_rms`, at most |", "|---|---|---|", *lines])
+            rows.append([f"`{name}`", inside, error])
+    return table(("walk", "`zmp_inside_fraction`, at least", "`zmp_error_rms`, at most"), rows)
 
 
 def _bound(keys: dict[str, Any], own: dict[str, Any], metric: str) -> str:
@@ -162,11 +162,11 @@ def _bound(keys: dict[str, Any], own: dict[str, Any], metric: str) -> str:
 def commanded_table() -> str:
     """Walks on commands that are drawn at random."""
     module = tests("test_commanded_walks")
-    lines = []
+    rows = []
     for feet, (name, (ahead, aside, turn), _) in module.FEET.items():
         most = f"{ahead:g} m/s, {aside:g} m/s, {turn:g} rad/s"
-        lines.append(f"| `{name}` | {feet} | {most} | {module.SEEDS} times {module.MINUTES} minutes |")
-    return "\n".join(["| walk | feet | forward, sideways, turn up to | for |", "|---" * 4 + "|", *lines])
+        rows.append([f"`{name}`", feet, most, f"{module.SEEDS} times {module.MINUTES} minutes"])
+    return table(("walk", "feet", "forward, sideways, turn up to", "for"), rows)
 
 
 TABLES = {

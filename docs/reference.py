@@ -7,13 +7,11 @@ page between `<!-- value: name -->` and `<!-- end -->`.
 """
 
 import csv
-import inspect
 import json
 import math
 import re
 import sys
 from collections.abc import Callable, Iterator
-from dataclasses import dataclass
 from pathlib import Path
 from typing import Any, get_args, get_origin
 
@@ -22,11 +20,7 @@ from pydantic import BaseModel
 from pydantic.fields import FieldInfo
 
 from surefoot.models.robot_file.schema import RobotFile
-from surefoot.planner.laws.law import Motion, MotionProblem, StepContext
 from surefoot.planner.laws.profiles import PROFILES, Profile
-from surefoot.planner.plan import WalkPlan
-from surefoot.planner.references.zmp_reference import ZmpReference
-from surefoot.planner.types import CentroidalState, FeetState
 from surefoot.scenarios import catalogue
 from surefoot.scenarios.file.schema import (
     CommandSettings,
@@ -48,16 +42,14 @@ from surefoot.scenarios.record import channels
 from surefoot.scenarios.record.channels import Sizes
 from surefoot.scenarios.study.checks.signs import SIGNS
 from surefoot.scenarios.study.tour.page import markdown
-from surefoot.sim.measurement import Measurement
 from surefoot.sim.sensor_errors import PRESETS, SensorErrors
-from surefoot.wbc.model import RobotTerms
-from surefoot.wbc.tasks.task import Task
-from surefoot.wbc.types import RobotState, WbcReference
 
 sys.path.insert(0, str(Path(__file__).parent))
 import asked
+import handed
 import result_tables
 import standing
+from page_table import table
 
 FOLDER = Path(__file__).parent
 
@@ -100,12 +92,12 @@ _LISTS: dict[str, type[BaseModel]] = {
 
 def keys_table() -> str:
     """Every key of a scenario with its default and meaning."""
-    return "\n".join(["| key | default | meaning |", "|---|---|---|", *_key_rows("", Scenario)])
+    return table(("key", "default", "meaning"), _key_rows("", Scenario))
 
 
 def robot_keys_table() -> str:
     """Every key of a robot file with its meaning."""
-    return "\n".join(["| key | default | meaning |", "|---|---|---|", *_key_rows("", RobotFile)])
+    return table(("key", "default", "meaning"), _key_rows("", RobotFile))
 
 
 def channels_table() -> str:
@@ -115,12 +107,11 @@ def channels_table() -> str:
 
 def metrics_table() -> str:
     """Every metric with its meaning."""
-    rows = [
-        f"| `{name}` | {metric.shown} | {'' if metric.body else 'yes'} | {tolerance(metric)} | {metric.meaning} |"
+    rows = (
+        [f"`{name}`", metric.shown, "" if metric.body else "yes", tolerance(metric), metric.meaning]
         for name, metric in OWN.items()
-    ]
-    head = ["| metric | shown in | pendulum | tolerance | meaning |", "|---|---|---|---|---|"]
-    return "\n".join([*head, *rows])
+    )
+    return table(("metric", "shown in", "pendulum", "tolerance", "meaning"), rows)
 
 
 def tolerance(metric: Metric[Any]) -> str:
@@ -137,21 +128,20 @@ def tolerance(metric: Metric[Any]) -> str:
 
 def signs_table() -> str:
     """What `surefoot check` compares stage by stage, and by how much it may differ."""
-    lines = ["| from lift-off to lift-off | columns | may differ by |", "|---|---|---|"]
+    rows = []
     for sign in SIGNS:
         what = sign.words.format(stage="", label="the stage", foot="swing").replace(" of the stage", "").strip()
         little, share = sign.tolerance
         allowed = f"{sign.scale * little:.3g} {sign.unit}".strip() + (f" + {100 * share:g} %" if share else "")
         above = " above the greatest of all stages" if sign.peak else ""
-        lines.append(f"| {what} | {', '.join(f'`{name}`' for name in sign.columns)} | {allowed}{above} |")
-    return "\n".join(lines)
+        rows.append([what, ", ".join(f"`{name}`" for name in sign.columns), f"{allowed}{above}"])
+    return table(("from lift-off to lift-off", "columns", "may differ by"), rows)
 
 
 def profiles_table() -> str:
     """The formulations of the planner, with their numbers."""
     heads = ("profile", "what it is", "N_p", "moves", "jerk [m/s³]", "its change per sample [m/s³]")
-    rows = [_profile(profile) for profile in PROFILES.values()]
-    return "\n".join("| " + " | ".join(row) + " |" for row in (heads, ["---"] * len(heads), *rows))
+    return table(heads, map(_profile, PROFILES.values()))
 
 
 def _profile(profile: Profile) -> list[str]:
@@ -163,13 +153,13 @@ def _profile(profile: Profile) -> list[str]:
 
 def sensors_table() -> str:
     """Every term of the sensors, in each preset."""
-    rows = ["| key | unit | " + " | ".join(f"`{name}`" for name in PRESETS) + " |", "|---|---|" + "---|" * len(PRESETS)]
+    rows = []
     for name in SENSOR_KEYS:
         field = Sensing.model_fields[name]
         said = [_of_preset(name, errors) for errors in PRESETS.values()]
         if any(said):
-            rows.append(f"| `{name}` | {unit_of(field.annotation, field.metadata) or '-'} | {' | '.join(said)} |")
-    return "\n".join(rows)
+            rows.append([f"`{name}`", unit_of(field.annotation, field.metadata) or "-", *said])
+    return table(["key", "unit", *(f"`{name}`" for name in PRESETS)], rows)
 
 
 def _of_preset(name: str, errors: SensorErrors) -> str:
@@ -188,18 +178,15 @@ def sensed_table() -> str:
     """What `benchmarks.sensed` measured of the estimator: errors, and their squares over those that it says."""
     with (FOLDER / "sensors.csv").open() as file:
         found = list(csv.DictReader(file))
-    rows = [
-        f"| `{row['preset']}` | {row['quantity']} | {row['error_rms']} {row['unit']} | {row['nees']} |" for row in found
-    ]
-    head = f"| preset | quantity | error, RMS of a number over {found[0]['seeds']} seeds | NEES |"
-    return "\n".join([head, "|---|---|---|---|", *rows])
+    rows = ([f"`{row['preset']}`", row["quantity"], f"{row['error_rms']} {row['unit']}", row["nees"]] for row in found)
+    return table(("preset", "quantity", f"error, RMS of a number over {found[0]['seeds']} seeds", "NEES"), rows)
 
 
 def field_table() -> str:
     """What others have reached, with where it is from."""
     quoted = yaml.safe_load((FOLDER / "field.yaml").read_text(encoding="utf-8"))
-    rows = [f"| {r['what']} | {r['value']} | {r['who']} | {r['evidence']} | {r['source']} |" for r in quoted]
-    return "\n".join(["| what | value | who | evidence | source |", "|---|---|---|---|---|", *rows])
+    columns = ("what", "value", "who", "evidence", "source")
+    return table(columns, ([str(row[column]) for column in columns] for row in quoted))
 
 
 def engines_table() -> str:
@@ -209,7 +196,7 @@ def engines_table() -> str:
     shown = [OWN[name] for name in names[4:]]
     heads = [*names[:4], *(f"`{name}` [{metric.shown}]" for name, metric in zip(names[4:], shown, strict=True))]
     lines = [[*row[:4], *(f"{float(v) * m.scale:.3g}" for v, m in zip(row[4:], shown, strict=True))] for row in rows]
-    return "\n".join("| " + " | ".join(line) + " |" for line in [heads, ["---"] * len(heads), *lines])
+    return table(heads, lines)
 
 
 def benchmark_tables() -> str:
@@ -233,14 +220,13 @@ def walked() -> Any:
 
 def catalogue_table() -> str:
     """How many scenarios each robot walks, and the names of those that it does not."""
-    rows = [_walked_row(name, found) for name, found in walked().items()]
-    head = "| robot | " + " | ".join(words for words, _ in CATALOGUE) + " | not met |"
-    return "\n".join([head, "|---" * (len(CATALOGUE) + 2) + "|", *rows])
+    heads = ["robot", *(words for words, _ in CATALOGUE), "not met"]
+    return table(heads, (_walked_row(name, found) for name, found in walked().items()))
 
 
-def _walked_row(name: str, found: Any) -> str:
+def _walked_row(name: str, found: Any) -> list[str]:
     lacks = ", ".join(f"`{one}`" for kind in ("missed", "fell", "refused") for one in found[kind])
-    return f"| `{name}` | {' | '.join(str(len(found[kind])) for _, kind in CATALOGUE)} | {lacks} |"
+    return [f"`{name}`", *(str(len(found[kind])) for _, kind in CATALOGUE), lacks]
 
 
 TABLES: dict[str, tuple[str, Callable[[], str]]] = {
@@ -257,77 +243,10 @@ TABLES: dict[str, tuple[str, Callable[[], str]]] = {
     "field": ("standing.md", field_table),
     "engines": ("other-simulator.md", engines_table),
     "benchmark-g1": ("benchmark-g1.md", benchmark_tables),
+    "handed": ("extending.md", handed.tables),
+    **result_tables.TABLES,
+    **asked.TABLES,
 }
-
-
-@dataclass(frozen=True, slots=True)
-class Handed:
-    """What crosses the border between Surefoot and a part of others.
-
-    Attributes:
-        thing: the class, or the function whose arguments it is.
-        why: who gets it, and who gives it.
-    """
-
-    thing: Any
-    why: str
-
-    def entries(self) -> list[tuple[str, str]]:
-        """Names and meanings, as the documentation of the class or function has them."""
-        text = inspect.cleandoc(self.thing.__doc__)
-        section = re.search(r"(?ms)^(?:Attributes|Args):\n(.*?)(?=^\S|\Z)", text)
-        assert section is not None, self.thing
-        found = re.findall(r"(?m)^    (\w+): (.*(?:\n {5,}.*)*)", section[1])
-        answer = re.search(r"(?ms)^Returns:\n(.*?)(?=^\S|\Z)", text)
-        found += [("returns", answer[1])] if answer else []
-        return [(name, " ".join(meaning.split()).rstrip(".")) for name, meaning in found]
-
-
-HANDED = (
-    Handed(Task.write, "A task is called with these, once per control tick."),
-    Handed(RobotTerms, "`terms` of a task: the robot in this tick. Feet are left, right."),
-    Handed(WbcReference, "`reference` of a task: what the robot shall do until the next tick."),
-    Handed(MotionProblem, "A law gets it, once per plan."),
-    Handed(ZmpReference, "`reference` of it; n is N + M + 1."),
-    Handed(StepContext, "`steps` of it."),
-    Handed(Motion, "A law gives it."),
-    Handed(CentroidalState, "A planner gets it, as `state`."),
-    Handed(FeetState, "A planner gets it, as `feet`."),
-    Handed(WalkPlan, "A planner gives it."),
-    Handed(Measurement, "An estimator gets it, once per control tick."),
-    Handed(RobotState, "An estimator gives it."),
-)
-"""In the order of the page."""
-
-
-def handed_tables() -> str:
-    """What parts of others get and give, with shapes and units."""
-    return "\n\n".join(_handed(one) for one in HANDED)
-
-
-def _handed(handed: Handed) -> str:
-    lines = [f"### `{handed.thing.__qualname__}`", "", handed.why, "", "| name | shape | unit | meaning |"]
-    return "\n".join([*lines, "|---|---|---|---|", *(_handed_row(*entry) for entry in handed.entries())])
-
-
-def _handed_row(name: str, meaning: str) -> str:
-    meaning, shape = _taken_out(meaning, SHAPE)
-    meaning, unit = _taken_out(meaning, r"\[([^\[\]]*)\]")
-    return f"| `{name}` | {shape} | {unit} | {meaning.replace('|', '/').replace('``', '`')} |"
-
-
-SHAPE = r"shape (?:\([a-z, ]+\) = )?(\([^()]*\))"
-
-
-def _taken_out(text: str, pattern: str) -> tuple[str, str]:
-    """A text without the first place of a pattern and the comma before it, and what stood there."""
-    found = re.search(rf",? ?{pattern}", text)
-    if found is None:
-        return text, ""
-    return (text[: found.start()] + text[found.end() :]).strip(), found[1]
-
-
-TABLES |= {"handed": ("extending.md", handed_tables)} | result_tables.TABLES | asked.TABLES
 
 
 _LIMITS = json.loads((FOLDER.parent / "benchmarks" / "limits.json").read_text(encoding="utf-8"))
@@ -367,14 +286,14 @@ def updated(text: str, name: str, table: str) -> str:
 
 def main() -> None:
     """Update all tables and numbers."""
-    for name, (page, table) in TABLES.items():
+    for name, (page, make) in TABLES.items():
         path = FOLDER / page
-        path.write_text(updated(path.read_text(encoding="utf-8"), name, table()), encoding="utf-8")
+        path.write_text(updated(path.read_text(encoding="utf-8"), name, make()), encoding="utf-8")
     for path in pages():
         path.write_text(with_values(path.read_text(encoding="utf-8")), encoding="utf-8")
 
 
-def _key_rows(prefix: str, group: type[BaseModel]) -> list[str]:
+def _key_rows(prefix: str, group: type[BaseModel]) -> list[list[str]]:
     """Rows of a group's keys."""
     return [_key_row(name, field) for name, field in every_key(group, prefix)]
 
@@ -398,11 +317,11 @@ def _group_of(annotation: Any) -> Any:
     return models[0] if models else annotation
 
 
-def _key_row(name: str, field: FieldInfo) -> str:
+def _key_row(name: str, field: FieldInfo) -> list[str]:
     default = default_of(field)
     unit = unit_of(field.annotation, field.metadata)
     meaning = (field.description or "").replace("|", "/") + (f" [{unit}]" if unit else "")
-    return f"| `{name}` | {default} | {meaning} |"
+    return [f"`{name}`", default, meaning]
 
 
 def default_of(field: FieldInfo) -> str:
@@ -421,12 +340,12 @@ def _default(value: Any) -> str:
 
 
 def _channel(spec: ChannelSpec) -> str:
-    lines = [f"### `{spec.topic}` ({spec.message})", "", spec.doc, "", "| field | shape | unit | frame | meaning |"]
-    lines.append("|---|---|---|---|---|")
+    rows = []
     for field in spec.fields:
         shape = " x ".join(str(_SYMBOLS.get(size, size)) for size in field.shape) or "1"
-        lines.append(f"| `{field.name}` | {shape} | {field.unit} | {field.frame} | {field.doc} |")
-    return "\n".join(lines)
+        rows.append([f"`{field.name}`", shape, field.unit, field.frame, field.doc])
+    fields = table(("field", "shape", "unit", "frame", "meaning"), rows)
+    return "\n".join([f"### `{spec.topic}` ({spec.message})", "", spec.doc, "", fields])
 
 
 if __name__ == "__main__":

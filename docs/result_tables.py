@@ -2,23 +2,20 @@
 
 import json
 import re
-from collections.abc import Callable, Iterator, Sequence
+from collections.abc import Callable, Sequence
 from functools import partial
 from itertools import groupby
 from pathlib import Path
 from typing import Any
 
 from measured import HEEL_OFF, RESULTS, ROUGH, SENSED, head, limit_of, rows, searches
+from page_table import table
 
 from surefoot.scenarios.judge.metrics import OWN
 from surefoot.scenarios.study.campaigns.spec import text
 from surefoot.scenarios.study.campaigns.thresholds import Found
 
 LIMITS = Path(__file__).parents[1] / "benchmarks" / "limits.json"
-
-
-def _table(heads: Sequence[str], lines: Iterator[Sequence[str]] | Sequence[Sequence[str]]) -> str:
-    return "\n".join("| " + " | ".join(line) + " |" for line in (heads, ["---"] * len(heads), *lines))
 
 
 def _shown(found: Found) -> str:
@@ -35,10 +32,8 @@ def push_table(name: str) -> str:
         limit = limit_of(name, one.labels) if one.labels[shades.name] == shades.values[-1] else None
         shown = _shown(one) + ("" if limit is None else f" ({limit:.2f})")
         cells.setdefault(text(one.labels[groups.name]), {}).setdefault(one.labels[columns.name], []).append(shown)
-    lines = ["| N·s/kg | " + " | ".join(map(text, columns.values)) + " |", "|---" * (1 + len(columns.values)) + "|"]
-    for phase, by_column in cells.items():
-        lines.append(f"| {phase} | " + " | ".join(", ".join(by_column[column]) for column in columns.values) + " |")
-    return "\n".join(lines)
+    lines = ([phase, *(", ".join(by[column]) for column in columns.values)] for phase, by in cells.items())
+    return table(["N·s/kg", *map(text, columns.values)], lines)
 
 
 def gains_table(name: str) -> str:
@@ -48,7 +43,7 @@ def gains_table(name: str) -> str:
     inside = {
         tuple(one.labels[axis.name] for axis in (columns, shades, groups)): one.shown for one in found if not one.beyond
     }
-    lines = ["| adaptation | over | " + " | ".join(columns.values) + " |", "|---" * (2 + len(columns.values)) + "|"]
+    lines = []
     for before, after in zip(shades.values, shades.values[1:], strict=False):
         cells = []
         for column in columns.values:
@@ -57,8 +52,8 @@ def gains_table(name: str) -> str:
             ]
             ratios = [b / a for a, b in pairs if a and b]
             cells.append(f"{min(ratios):.1f} to {max(ratios):.1f}" if ratios else "")
-        lines.append(f"| `{after}` | `{before}` | {' | '.join(cells)} |")
-    return "\n".join(lines)
+        lines.append([f"`{after}`", f"`{before}`", *cells])
+    return table(["adaptation", "over", *columns.values], lines)
 
 
 def search_table(name: str, head: str = "N·s/kg") -> str:
@@ -66,7 +61,7 @@ def search_table(name: str, head: str = "N·s/kg") -> str:
     found, (down, across) = searches(name)
     shown = {(one.labels[down.name], one.labels[across.name]): _shown(one) for one in found}
     lines = [[str(row), *(shown[row, column] for column in across.values)] for row in down.values]
-    return _table([head, *across.values], lines)
+    return table([head, *across.values], lines)
 
 
 def numbers_table() -> str:
@@ -85,7 +80,7 @@ def numbers_table() -> str:
             moved = ("-" if cell == plain else cell for cell, plain in zip(cells, as_is, strict=True))
             lines.append([f"`{name}`", change, *moved])
     none = ", ".join(f"`{name}`" for name in dict.fromkeys(still) if still.count(name) == 2)
-    return _table(["number", "changed", *cases.values], lines) + f"\n\nNo threshold is moved by {none}."
+    return table(["number", "changed", *cases.values], lines) + f"\n\nNo threshold is moved by {none}."
 
 
 def runs_table(name: str, labels: Sequence[str], metrics: Sequence[str], of_all: Sequence[str] = ()) -> str:
@@ -100,7 +95,7 @@ def runs_table(name: str, labels: Sequence[str], metrics: Sequence[str], of_all:
         walked = {0: "no", len(runs): "yes"}.get(len(passed), f"{len(passed)} of {len(runs)}")
         told = (_measured(of, metric) for of, names in ((runs, of_all), (passed, metrics)) for metric in names)
         lines.append([*values, walked, *told])
-    return _table([*labels, "walked", *map(_with_unit, (*of_all, *metrics))], lines)
+    return table([*labels, "walked", *map(_with_unit, (*of_all, *metrics))], lines)
 
 
 def _with_unit(metric: str) -> str:
@@ -132,40 +127,38 @@ def fastest_table() -> str:
             ]
             cells.append(f"{max(passed):g} m, {max(passed) / time:.2f} m/s" if passed else "none")
         lines.append(["flat ground" if riser == 0.0 else f"stairs of {riser:g} m", *cells])
-    return _table(["", *(f"{time:g} s" for time in times)], lines)
+    return table(["", *(f"{time:g} s" for time in times)], lines)
 
 
 def plain_table(name: str) -> str:
     """A result whose columns are those of the page."""
     kept = rows(name)
-    return _table(list(kept[0]), [list(row.values()) for row in kept])
+    return table(list(kept[0]), [list(row.values()) for row in kept])
 
 
 def faults_table() -> str:
     """What walks with one fault of their sensors each, and how."""
-    lines = [
-        "| fault | status | velocity error x, y | ZMP error x, y | CoP at p99 | force found that nobody gave |",
-        "|---" * 6 + "|",
-    ]
+    heads = "fault", "status", "velocity error x, y", "ZMP error x, y", "CoP at p99", "force found that nobody gave"
+    lines = []
     for row in rows("sensor-faults"):
         velocity, zmp = (
             ", ".join(f"{1e3 * float(row[name]):.1f}" for name in pair) for pair in (SENSED[:2], SENSED[2:])
         )
         cop, ghost = float(row["cop_ratio_p99"]), float(row["ghost_force_max"])
-        lines.append(f"| {row['fault']} | {row['status']} | {velocity} mm/s | {zmp} mm | {cop:.2f} | {ghost:.0f} N |")
-    return "\n".join(lines)
+        lines.append([row["fault"], row["status"], f"{velocity} mm/s", f"{zmp} mm", f"{cop:.2f}", f"{ghost:.0f} N"])
+    return table(heads, lines)
 
 
 def pythons_table() -> str:
     """In which empty environments a walk passed, and what they take of the disk."""
-    lines = [f"| {row['python']} | {row['distribution']} | {row['MB']} | {row['largest']} |" for row in rows("pythons")]
-    return "\n".join(["| Python | from | MB | of it |", "|---|---|---|---|", *lines])
+    columns = ("python", "distribution", "MB", "largest")
+    return table(("Python", "from", "MB", "of it"), ([row[column] for column in columns] for row in rows("pythons")))
 
 
 def made_table() -> str:
     """By what command each result was made, and by which code."""
     made = [(path.name, *head(path.stem)) for path in sorted(RESULTS.glob("*.csv"))]
-    return _table(["result", "made by", "code"], [[f"`{name}`", f"`{command}`", code] for name, command, code in made])
+    return table(["result", "made by", "code"], [[f"`{name}`", f"`{command}`", code] for name, command, code in made])
 
 
 def _section(name: str) -> tuple[list[str], list[list[Any]]]:
@@ -179,7 +172,7 @@ def startup_table() -> str:
     _, lines = _section("startup")
     limits = json.loads(LIMITS.read_text(encoding="utf-8"))["surefoot's modules that a command imports"]
     cells = [[f"`surefoot {name}`", f"{seconds:.2f} s", str(limits.get(name, ""))] for name, seconds, *_ in lines]
-    return _table(["command", "processor time", "modules, at most"], cells)
+    return table(["command", "processor time", "modules, at most"], cells)
 
 
 def tick_table() -> str:
@@ -189,7 +182,7 @@ def tick_table() -> str:
     whole, floor = means.pop("whole tick"), means.pop("floor: engines alone")
     parts = sorted(means.items(), key=lambda part: (part[0] == "rest", -part[1]))
     cells = [[name, f"{100 * mean / whole:.0f} %"] for name, mean in parts]
-    return _table(["part", "share of the mean tick"], [*cells, ["engines alone", f"{100 * floor / whole:.0f} %"]])
+    return table(["part", "share of the mean tick"], [*cells, ["engines alone", f"{100 * floor / whole:.0f} %"]])
 
 
 def solvers_table() -> str:
@@ -198,7 +191,7 @@ def solvers_table() -> str:
     shown = ("solver", "over daqp", "failures", "KKT residual", "largest |x - x_daqp|")
     kept = [[line[columns.index(name)] for name in shown] for line in lines]
     cells = [[name, f"{over:.2f}", str(failed), kkt, away] for name, over, failed, kkt, away in kept]
-    return _table(["solver", "median", "failures", "KKT residual", "largest difference to DAQP"], cells)
+    return table(["solver", "median", "failures", "KKT residual", "largest difference to DAQP"], cells)
 
 
 TABLES: dict[str, tuple[str, Callable[[], str]]] = {

@@ -8,6 +8,7 @@ from pathlib import Path
 from typing import Any, NamedTuple
 
 import asked
+import page_table
 import yaml
 
 from surefoot.scenarios.judge.metrics import OWN
@@ -45,8 +46,8 @@ PUSH_TEST = "pytest -m long tests/scenarios/run/test_push_tables.py"
 def table() -> str:
     """The table in Markdown."""
     rows = [*_walks(), *_pushes(), *_sensors(), *_tour(), *_compute()]
-    lines = [f"| {row.what} | {row.value} | {row.sure} | `{row.command}` |" for row in rows]
-    return "\n".join(["| what | value | measured by | again by |", "|---|---|---|---|", *lines])
+    lines = ([row.what, row.value, row.sure, f"`{row.command}`"] for row in rows)
+    return page_table.table(("what", "value", "measured by", "again by"), lines)
 
 
 def _walks() -> Iterator[Row]:

@@ -17,11 +17,11 @@ pytestmark = pytest.mark.unit
 
 
 @pytest.fixture(scope="module")
-def reference():
+def handing():
     spec = importlib.util.spec_from_file_location("reference", Path(__file__).parents[2] / "docs" / "reference.py")
     module = importlib.util.module_from_spec(spec)
     spec.loader.exec_module(module)
-    return module
+    return module.handed
 
 
 @pytest.fixture(scope="module")
@@ -75,16 +75,16 @@ def crossed():
     return seen
 
 
-def test_shapes_are_those_of_a_walk(reference, crossed):
+def test_shapes_are_those_of_a_walk(handing, crossed):
     plan, terms = (next(t for k, t in crossed.items() if k.__name__ == name) for name in ("WalkPlan", "RobotTerms"))
     window = next(len(t.omega) for k, t in crossed.items() if k.__name__ == "MotionProblem")
     sizes = {"N": len(plan.jerk), "M": window - len(plan.jerk) - 1, "n": window, "size": 2}
     sizes |= {"nq": terms.model.nq, "nv": terms.model.nv, "nj": terms.model.nv - 6}
     checked = 0
-    for handed in reference.HANDED:
+    for handed in handing.HANDED:
         thing = crossed[handed.thing]
         for name, meaning in handed.entries():
-            found = re.search(reference.SHAPE, meaning)
+            found = re.search(handing.SHAPE, meaning)
             value = thing.get(name) if isinstance(thing, dict) else getattr(thing, name, None)
             if found is None or value is None:
                 continue

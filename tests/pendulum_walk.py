@@ -11,10 +11,14 @@ from surefoot.planner.plan import PlanSampler, WalkPlan
 from surefoot.planner.plan_kernel import PlanKernel
 from surefoot.planner.planner import WalkingPlanner
 from surefoot.planner.plants import IdealFeet, Pendulum
+from surefoot.planner.swing.leg_reach import LegReach
 from surefoot.planner.types import Array, CentroidalState, FeetState
 
 MASS = 100.0
 """Of the pendulum that walks alone, as of the reference robot [kg]."""
+
+LEGS = LegReach(0.36, 0.2, 0.115, 0.12, 0.24, (60.0, 50.0))
+"""Likewise how far its legs reach."""
 
 
 def pushing_force(pushes: tuple[Push, ...], time: float) -> Array:

@@ -5,7 +5,7 @@ from dataclasses import dataclass, replace
 
 import numpy as np
 import pytest
-from pendulum_walk import walk_pendulum
+from pendulum_walk import LEGS, walk_pendulum
 from scipy.optimize import linprog
 
 from surefoot.forces import Push
@@ -17,14 +17,13 @@ from surefoot.planner.references.com_height import HeightPreview
 from surefoot.planner.references.window import Window
 from surefoot.planner.references.zmp_reference import ZmpReference
 from surefoot.planner.steps.gait import GaitParameters
-from surefoot.planner.swing.leg_reach import ANYWHERE, LegReach
+from surefoot.planner.swing.leg_reach import ANYWHERE
 from surefoot.planner.types import Foot, Footstep
 
 pytestmark = pytest.mark.unit
 
 P = PlannerParameters()
 T, OMEGA, HALF = P.sample_time, 3.2, np.array([0.11, 0.055])
-LEGS = LegReach(0.36, 0.2, 0.115, 0.12, 0.24, (60.0, 50.0))
 COUNT, SEGMENTS = P.horizon + P.preview + 1, 3
 
 

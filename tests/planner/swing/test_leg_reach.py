@@ -2,6 +2,7 @@ from dataclasses import replace
 
 import numpy as np
 import pytest
+from pendulum_walk import LEGS
 
 from surefoot.planner.geometry import frame_rotation
 from surefoot.planner.ground.terrain import Box, Terrain
@@ -10,14 +11,12 @@ from surefoot.planner.steps.execution import Execution
 from surefoot.planner.steps.gait import GaitParameters
 from surefoot.planner.steps.schedule import Schedule
 from surefoot.planner.swing.course import Ground
-from surefoot.planner.swing.leg_reach import LegReach
 from surefoot.planner.swing.step_region import StepRegion
 from surefoot.planner.types import Footstep
 
 pytestmark = pytest.mark.unit
 
 TREAD = Box(np.array([1.0, 0.0, 0.05]), np.array([0.3, 1.0, 0.05]), np.eye(3))
-LEGS = LegReach(0.36, 0.2, 0.115, 0.12, 0.24, (60.0, 50.0))
 
 
 def way(start, end):

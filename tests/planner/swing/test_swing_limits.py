@@ -2,16 +2,15 @@
 
 import numpy as np
 import pytest
+from pendulum_walk import LEGS
 
 from surefoot.planner.parameters import PlannerParameters
-from surefoot.planner.swing.leg_reach import LegReach
 from surefoot.planner.swing.trajectory import SwingCourse, start_swing
 from surefoot.planner.types import Foot
 
 pytestmark = pytest.mark.unit
 
 P = PlannerParameters()
-LEGS = LegReach(0.36, 0.2, 0.115, 0.12, 0.24, (60.0, 50.0))
 
 
 @pytest.mark.parametrize("time", [0.16, 0.2, 0.25, 0.3, 0.4])

@@ -19,6 +19,9 @@ SLOW_CUT = 15.0
 CARRIES = 0.4
 """Share of the weight above which the other foot carries, while one is tared [-]."""
 
+UNLIKELY = 4.0
+"""Deviations of a sensor's bias up to which the force on a swinging foot is taken for one [-]."""
+
 
 class SoleContact:
     """Contact of both soles, decided once for filter, controller and planner.
@@ -127,10 +130,15 @@ class SoleContact:
         return bool(abs(moment[1]) < reach * self._half[0] * load and abs(moment[0]) < reach * self._half[1] * load)
 
     def _tare_foot(self, k: int, force: list[float], above: float) -> None:
-        swings = above > self._parameters.tare_height and not self.felt[k] and force[1 - k] > CARRIES * self.weight
-        if swings and self._bias > 0.0:
+        p, x = self._parameters, self.wrench[k, :2]
+        swings = above > p.tare_height and not self.felt[k] and force[1 - k] > CARRIES * self.weight
+        if not swings or self._bias == 0.0:
+            return
+        # A foot that strikes something is pushed, whichever way: that is no bias, and would be felt ever after.
+        left = UNLIKELY * self._bias * math.exp(-self.tared[k] / p.tare_time)
+        if math.hypot(x.item(0), x.item(1), force[k]) < self.threshold + left:
             self.tared[k] += self._period
-            self._tare[k] += (1.0 - math.exp(-self._period / self._parameters.tare_time)) * self.wrench[k]
+            self._tare[k] += (1.0 - math.exp(-self._period / p.tare_time)) * self.wrench[k]
 
 
 def sprung(changed: Array, half_size: tuple[float, float], give: float) -> Array:

@@ -62,7 +62,7 @@ static void move(const Filter *filter, const double *x) {
     for (int64_t i = FIXED; i < filter->size; i++) filter->offsets[i - FIXED] += x[i];
 }
 
-/* Counterpart of `InvariantFilter.correct`; returns whether one of two feet has slipped, of which nothing is taken. */
+/* Counterpart of `InvariantFilter.correct`; returns whether a foot has slipped, of which nothing is taken. */
 int64_t filter_correct(const Filter *filter, double gate) {
     const int64_t rows = POSE * filter->feet_count;
     double seen[9], apart[9], *x = filter->moved;
@@ -77,12 +77,10 @@ int64_t filter_correct(const Filter *filter, double gate) {
                 apart[3 * a + b] = dot(seen + 3 * a, filter->Z + 9 * k + 3 * b, 3);
         rotation_vector(apart, found + 3);
     }
-    if (filter->feet_count == 2) {
-        double likely = 0.0;
-        for (int64_t i = 0; i < rows; i++)
-            likely += filter->residual[i] * dot(filter->weights + rows * i, filter->residual, rows);
-        if (likely > gate) return 1;
-    }
+    double likely = 0.0;
+    for (int64_t i = 0; i < rows; i++)
+        likely += filter->residual[i] * dot(filter->weights + rows * i, filter->residual, rows);
+    if (likely > gate) return 1;
     for (int64_t i = 0; i < filter->size; i++) x[i] = dot(filter->gain + rows * i, filter->residual, rows);
     move(filter, x);
     return 0;

@@ -46,8 +46,9 @@ chance in one of 370 landings, which then tells no height [-]."""
 UNSURE = 0.5
 """Deviation of what springs under a sole do, over what they are believed to do [-]."""
 
-GATE = 50.0
-"""Square of the normalised residual of two feet from which on one has slipped: by chance in one of 10^6 ticks [-]."""
+GATES = (38.0, 50.0)
+"""Square of the normalised residual of one foot and of two from which on one has slipped: by chance in one of 10^6 ticks
+[-]."""
 
 
 class InvariantFilter:
@@ -292,17 +293,17 @@ class InvariantFilter:
         if self._gain is None:
             return None
         if self._kernels is not None:
-            slipped = self._kernels.correct(y, Y, GATE)
+            slipped = self._kernels.correct(y, Y, GATES[len(self._feet) - 1])
             return None if slipped is None else self._slipped(slipped)
         r = self.residual(y, Y)
-        if len(self._feet) == 2 and float(r @ self._weights @ r) > GATE:
+        if float(r @ self._weights @ r) > GATES[len(self._feet) - 1]:
             return self._slipped(r)
         self.stand.move(self._gain @ r)
         return None
 
     def _slipped(self, r: Array) -> int:
         """The foot whose own residual is the less likely."""
-        blocks = [self._weights[6 * i : 6 * i + 6, 6 * i : 6 * i + 6] for i in (0, 1)]
+        blocks = [self._weights[6 * i : 6 * i + 6, 6 * i : 6 * i + 6] for i in range(len(self._feet))]
         likely = [float(r[6 * i : 6 * i + 6] @ block @ r[6 * i : 6 * i + 6]) for i, block in enumerate(blocks)]
         return self._feet[int(np.argmax(likely))]
 

@@ -9,6 +9,7 @@ velocity, position. The first line of TRUTH is where the filter starts.
 """
 
 import argparse
+import math
 from dataclasses import dataclass
 from pathlib import Path
 
@@ -17,7 +18,7 @@ import pinocchio as pin
 from numpy.typing import NDArray
 
 from benchmarks.table import Section
-from surefoot.wbc.estimation.invariant_filter import InvariantFilter
+from surefoot.wbc.estimation.invariant_filter import GATES, InvariantFilter
 from surefoot.wbc.estimation.parameters import GroundNoise, SensorNoise
 from surefoot.wbc.estimation.stand import TURN, VELOCITY, Stand
 
@@ -30,6 +31,9 @@ CREEP = 0.01
 
 TURNING = 1.0
 """A foot that rocks tells nothing by its orientation [rad]."""
+
+_GATES = (math.inf, GATES[1])
+"""Of one foot the log is taken at its word that it stands, as the published filter does."""
 
 START = (1e-3, 1e-2)
 """Deviations of attitude and velocity at the start [rad, m/s]."""
@@ -90,7 +94,7 @@ def states(log: ForeignLog, start: Array, every: int) -> Array:
                 elif stands[k] and not filter_.standing[k]:
                     filter_.land(k, y[k], Y[k], J[k], None, place, TURNING)
             filter_.weigh(J)
-        filter_.correct(y, Y)
+        filter_.correct(y, Y, _GATES)
         found[i] = np.concatenate(([time[i]], stand.R.ravel(), stand.v, stand.p))
     return found
 

@@ -47,8 +47,8 @@ UNSURE = 0.5
 """Deviation of what springs under a sole do, over what they are believed to do [-]."""
 
 GATES = (38.0, 50.0)
-"""Square of the normalised residual of one foot and of two from which on one has slipped: by chance in one of 10^6 ticks
-[-]."""
+"""Square of the normalised residual of one foot, and of two, from which on one has slipped: by chance in one of 10^6
+ticks [-]."""
 
 
 class InvariantFilter:
@@ -128,7 +128,9 @@ class InvariantFilter:
         noise = np.tile([self._ground.level] * 2 + [self._ground.landing], 2)
         self._correct(rows, wanted, noise**2)
         for k in (0, 1):
-            self.land(k, y[k], Y[k], J[k], None, self._ground.kinematics, self._ground.turning)
+            # By the zeros that are known from now on they are elsewhere.
+            place, turn = y[k] - J[k, :3] @ s.offsets, pin.exp3(-J[k, 3:] @ s.offsets) @ Y[k]
+            self.land(k, place, turn, J[k], None, self._ground.kinematics, self._ground.turning)
 
     def _correct(self, rows: Array, wanted: Array, noise: Array) -> None:
         """Plain Kalman update by linear measurements of the error."""
@@ -284,8 +286,13 @@ class InvariantFilter:
             found[6 * i + 3 : 6 * i + 6] = pin.log3(s.R @ Y[k] @ s.Z[k].T)
         return found
 
-    def correct(self, y: Array, Y: Array) -> int | None:
-        """Take the kinematics of a tick; arguments as of `begin`.
+    def correct(self, y: Array, Y: Array, gates: tuple[float, float] = GATES) -> int | None:
+        """Take the kinematics of a tick.
+
+        Args:
+            y: as of `begin`.
+            Y: likewise.
+            gates: as of `GATES`; infinite where standing feet are known to stand still.
 
         Returns:
             the foot that has slipped, which is then to land anew; None where none has.
@@ -293,10 +300,10 @@ class InvariantFilter:
         if self._gain is None:
             return None
         if self._kernels is not None:
-            slipped = self._kernels.correct(y, Y, GATES[len(self._feet) - 1])
+            slipped = self._kernels.correct(y, Y, gates[len(self._feet) - 1])
             return None if slipped is None else self._slipped(slipped)
         r = self.residual(y, Y)
-        if float(r @ self._weights @ r) > GATES[len(self._feet) - 1]:
+        if float(r @ self._weights @ r) > gates[len(self._feet) - 1]:
             return self._slipped(r)
         self.stand.move(self._gain @ r)
         return None

@@ -182,6 +182,23 @@ def test_errors_are_as_large_as_the_filter_says():
     assert timid[1] < 0.3, timid
 
 
+def test_after_the_start_soles_are_where_the_zeros_that_it_has_found_say():
+    """Level soles tell of the zeros; soles left where they were seen by the old ones would have slipped at once."""
+    rng = np.random.default_rng(5)
+    feet = np.array([[0.0, 0.1, -1.0], [0.0, -0.1, -1.0]])
+    stand = Stand(
+        np.eye(3), np.vstack((np.zeros((2, 3)), feet)), np.stack((np.eye(3),) * 2), *np.zeros((2, 3)), np.zeros(JOINTS)
+    )
+    filter_, J = InvariantFilter(stand, NOISE, GROUND, PERIOD), rng.normal(size=(2, 6, JOINTS))
+    Y = np.stack([pin.exp3(2e-3 * rng.normal(size=3)) for _ in range(2)])
+    filter_.begin(feet, Y, J, np.tile([0.0, 0.0, 1.0], (2, 1)), 0.1)
+    assert np.abs(stand.offsets).max() > 1e-4
+    filter_.weigh(J)
+    y = feet - J[:, :3] @ stand.offsets
+    seen = np.stack([pin.exp3(-J[k, 3:] @ stand.offsets) @ Y[k] for k in (0, 1)])
+    np.testing.assert_allclose(filter_.residual(y, seen), 0.0, atol=1e-12)
+
+
 def test_encoder_zeros_are_found_as_far_as_steps_tell_them():
     """Their deviation shrinks, and the offsets come nearer."""
     rng = np.random.default_rng(2)
@@ -194,20 +211,26 @@ def test_encoder_zeros_are_found_as_far_as_steps_tell_them():
     assert (np.diag(filter_.P)[OFFSETS] < 0.5 * before).all()
 
 
-def test_of_two_feet_that_slipped_is_named():
+@pytest.mark.parametrize("alone", [False, True])
+@pytest.mark.parametrize("foot", [0, 1])
+def test_a_foot_that_slipped_is_named(foot, alone):
     """A foot that is 2 cm away from where it stood is told from one that is not; noise alone is none."""
-    for foot in (0, 1):
-        rng = np.random.default_rng(4)
-        filter_ = InvariantFilter(somewhere(rng), NOISE, GROUND, PERIOD)
-        s, J = filter_.stand, 0.1 * rng.normal(size=(2, 6, JOINTS))
-        y = np.array([s.R.T @ (s.d[k] - s.p) for k in (0, 1)])
-        Y = np.array([s.R.T @ s.Z[k] for k in (0, 1)])
-        for k in (0, 1):
-            filter_.land(k, y[k], Y[k], J[k], None, 1e-4, 1e-4)
-        filter_.weigh(J)
-        assert filter_.correct(y + 1e-5 * rng.normal(size=(2, 3)), Y) is None
-        y[foot, 0] += 0.02
-        assert filter_.correct(y, Y) == foot
+    rng = np.random.default_rng(4)
+    filter_ = InvariantFilter(somewhere(rng), NOISE, GROUND, PERIOD)
+    s, J = filter_.stand, 0.1 * rng.normal(size=(2, 6, JOINTS))
+    y = np.array([s.R.T @ (s.d[k] - s.p) for k in (0, 1)])
+    Y = np.array([s.R.T @ s.Z[k] for k in (0, 1)])
+    for k in (0, 1):
+        filter_.land(k, y[k], Y[k], J[k], None, 1e-4, 1e-4)
+    if alone:
+        filter_.lift(1 - foot)
+    filter_.weigh(J)
+    assert filter_.correct(y + 1e-5 * rng.normal(size=(2, 3)), Y) is None
+    before = s.columns.copy()
+    y[foot, 0] += 0.02
+    assert filter_.correct(y, Y) == foot
+    np.testing.assert_array_equal(s.columns, before)
+    assert filter_.correct(y, Y, (np.inf, np.inf)) is None
 
 
 def test_a_height_that_is_known_moves_the_robot_there():

@@ -77,6 +77,15 @@ def test_a_touch_near_the_ground_is_not_tared_away():
     assert abs(high.contact.wrench[0, 2]) < 12.0
 
 
+@pytest.mark.parametrize("blow", [-0.08, -0.3])
+def test_a_blow_from_above_or_before_is_no_bias(blow):
+    """As of a toe that strikes the riser of a step: it is no touch of the sole, and would be read as one when over."""
+    feet = swung()
+    feet.update(blow, 1.0, above=(0.05, 0.0), ticks=30)
+    assert feet.update(0.0, 1.0, above=(0.05, 0.0), ticks=100) is None
+    assert abs(feet.contact.wrench[0, 2]) < 12.0
+
+
 def test_hysteresis_holds_a_contact():
     feet = swung()
     feet.update(0.5, 0.5, ticks=50)

@@ -1,5 +1,6 @@
 """Frames over a connection: what begins, how long it is and what it sums to, so that nothing else is taken for one."""
 
+import contextlib
 import select
 import socket
 import struct
@@ -167,6 +168,14 @@ class Link:
                 raise LinkError(f"{self.peer} has closed the connection")
             self._reader.feed(data)
         return frame
+
+    def last_word(self) -> Frame | None:
+        """The end that the other side has told among what it sent before it was gone; None if it has told none."""
+        with contextlib.suppress(LinkError):
+            while (frame := self.receive(0.0)) is not None:
+                if frame.kind is Kind.END:
+                    return frame
+        return None
 
     def close(self) -> None:
         """End the connection."""

@@ -208,11 +208,8 @@ class RemotePlant:
 
     def _refused(self, fault: LinkError) -> None:
         """The plant is gone; what it has said before is why."""
-        with contextlib.suppress(LinkError):
-            while (frame := self._link.receive(0.0)) is not None:
-                if frame.kind is Kind.END:
-                    raise RunFault(why_of(frame.payload))
-        raise RunFault(f"the plant is lost: {fault}")
+        end = self._link.last_word()
+        raise RunFault(f"the plant is lost: {fault}" if end is None else why_of(end.payload))
 
     def _receive(self) -> Frame:
         try:

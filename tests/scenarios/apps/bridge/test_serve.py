@@ -1,0 +1,59 @@
+"""A controller that says that it ends is heard, whatever it has left unread or said twice before it was gone."""
+
+import threading
+from contextlib import closing
+
+import numpy as np
+import pytest
+
+import surefoot
+from surefoot.joints import JointCommand
+from surefoot.scenarios.apps.bridge.frames import Kind, connected
+from surefoot.scenarios.apps.bridge.host import Care
+from surefoot.scenarios.apps.bridge.messages import Start, command_bytes, end_bytes, json_bytes, start_bytes
+from surefoot.scenarios.apps.bridge.serve import Server
+from surefoot.scenarios.setup.walk import resolve
+
+pytestmark = pytest.mark.unit
+
+PATIENCE = 10.0
+COMMANDS = 3
+"""Of a controller that is ended while it sends; the plant answers each with a state that nobody reads."""
+
+
+@pytest.fixture(name="walk", scope="module")
+def walk_fixture():
+    return resolve(surefoot.load("walk", {"gait.steps": 1}))
+
+
+def served(walk, *last):
+    """How serving ends for a controller that sends commands, then these frames, and is gone."""
+    n = len(walk.robot.joint_names)
+    server = Server(walk, "127.0.0.1", 0, lambda said: None, Care())
+    ends = []
+    serving = threading.Thread(target=lambda: ends.append(server.run(lambda: False)))
+    serving.start()
+    with closing(connected(server.address, PATIENCE)) as link:
+        link.send(Kind.HELLO, json_bytes({}), PATIENCE)
+        assert link.receive(PATIENCE).kind is Kind.WELCOME
+        q = np.concatenate(([0.0, 0.0, 1.0, 0.0, 0.0, 0.0, 1.0], np.zeros(n)))
+        link.send(Kind.RESET, start_bytes(Start(q, np.zeros(6 + n), np.zeros(n), senses=False)), PATIENCE)
+        assert link.receive(PATIENCE).kind is Kind.STATE
+        for _ in range(COMMANDS):
+            link.send(Kind.COMMAND, command_bytes(0, JointCommand(np.zeros(n))), PATIENCE)
+        for kind, payload in last:
+            link.send(kind, payload, PATIENCE)
+    serving.join(PATIENCE)
+    return ends[0]
+
+
+def test_an_end_is_heard_over_a_connection_that_is_closed_already(walk):
+    end = served(walk, (Kind.END, end_bytes("interrupted")))
+    assert (end.in_order, end.said) == (True, "interrupted")
+
+
+def test_without_an_end_the_joints_are_damped(walk):
+    end = served(walk)
+    assert not end.in_order
+    assert "has closed the connection" in end.said
+    assert end.time >= 1.0  # the robot is simulated until it is down

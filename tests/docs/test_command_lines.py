@@ -2,6 +2,7 @@
 
 import re
 import shlex
+from functools import cache
 from itertools import chain, pairwise
 from pathlib import Path
 
@@ -25,8 +26,12 @@ LINES = [
     for line in re.findall(r"(?m)(?:^(?:\$ )?|`)(surefoot(?: [^`\n]*)?)(?:$|`)", page.read_text(encoding="utf-8"))
 ]
 COMMANDS = typer.main.get_command(app)
-AXES = {name: set(read_campaign(name).axes) for name in shipped()}
-"""Of the campaigns that come along, which --set can fix too."""
+
+
+@cache
+def axes(campaign):
+    """Of a campaign that comes along, which --set can fix too."""
+    return set(read_campaign(campaign).axes) if campaign in shipped() else set()
 
 
 def options(command):
@@ -44,7 +49,7 @@ def faults(line):
         return [words[0]]
     given = [word for text in words for word in re.findall(r"^-[\w-]+", text.strip("()[]"))]
     known = {re.sub(r"\.\d+", "", key) for key, _ in keys(Scenario)}
-    known |= AXES.get("".join(words[1:2]), set()) if words[:1] == ["sweep"] else set()
+    known |= axes("".join(words[1:2])) if words[:1] == ["sweep"] else set()
     settings = [text.partition("=")[0] for before, text in pairwise(words) if before == "--set"]
     return [word for word in given if word not in options(command)] + [key for key in settings if key not in known]
 
@@ -81,7 +86,7 @@ def test_what_is_not_there_is_found():
 
 
 def test_keys_that_the_pages_set_are_there():
-    known = {*dict(keys(Scenario)), *chain.from_iterable(AXES.values())}
+    known = {*dict(keys(Scenario)), *chain.from_iterable(map(axes, shipped()))}
     for page in PAGES:
         for key in re.findall(r"--set [\"']?([a-z_.]+)=", page.read_text(encoding="utf-8")):
             assert key in known, f"{page.name}: {key}"

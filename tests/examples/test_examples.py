@@ -38,7 +38,7 @@ def test_examples_are_typed_as_a_users_script_is():
     assert done.returncode == 0, done.stdout
 
 
-SOON = ("run_and_read", "planner_alone", "controller_alone", "own_loop", "own_plant", "own_law")
+SOON = ("run_and_read", "planner_alone", "controller_alone", "own_loop", "own_plant")
 """Those that run at every change; the others with the long tests."""
 
 

@@ -295,9 +295,9 @@ def test_neither_check_nor_sweep_takes_its_exit_code(hop, tmp_path, part, how, c
     made, setting, _ = hop(part, how)
     (tmp_path / "hopping.yaml").write_text("fidelity: pendulum\nduration: 0.1\ncriteria: {fell: false}\n")
     (tmp_path / "hops.yaml").write_text("scenario: hopping.yaml\nseeds: 1\n")
-    checked = made.run("check", "hopping.yaml", "--set", setting)
+    checked = made.run("check", "hopping.yaml", "--jobs", "1", "--set", setting)
     assert checked.returncode == codes[0], checked.stdout + checked.stderr
     assert status in checked.stdout
-    swept = made.run("sweep", "hops.yaml", "--json", "--out", "swept", "--set", setting)
+    swept = made.run("sweep", "hops.yaml", "--json", "--jobs", "1", "--out", "swept", "--set", setting)
     assert swept.returncode == codes[1], swept.stdout + swept.stderr
     assert '"pass": 1' not in swept.stdout

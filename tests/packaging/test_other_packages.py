@@ -82,7 +82,7 @@ def test_the_package_of_the_documentation_brings_all_at_once(documented, site):
 
 
 @pytest.mark.physics
-@pytest.mark.parametrize("profile", ["spring", "calm"])
+@pytest.mark.parametrize("profile", ["spring", pytest.param("calm", marks=pytest.mark.long)])
 def test_planners_of_the_documentation_walk(documented, profile):
     found = ran(documented, "two-slow-steps", "--set", "gait.steps=1", "--set", f"planner.profile={profile}", "--json")
     assert found["steps_taken"] == 1

@@ -41,7 +41,7 @@ def signal_all(process):
     [
         (("run", "stand", "--set", "duration=2", "--set", "criteria={fell: false}"), "stand: verdict pass"),
         (("sweep", "short.yaml", "--jobs", "1"), "short: 1 runs, 1 pass"),
-        (("check", "stand", "--jobs", "1"), "stand: same"),
+        pytest.param(("check", "stand", "--jobs", "1"), "stand: same", marks=pytest.mark.long),
     ],
 )
 def test_a_command_goes_on_to_its_end(tmp_path, arguments, said):

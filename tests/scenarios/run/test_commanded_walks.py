@@ -61,7 +61,12 @@ def test_ten_minutes_of_random_commands_are_walked(feet, seed, tmp_path):
 
 @pytest.mark.physics
 @pytest.mark.parametrize(
-    ("v_x", "v_y", "yaw_rate"), [(0.6, 0.0, 0.0), (0.0, 0.25, 0.0), (0.6, 0.25, 0.6)], ids=["ahead", "sideways", "all"]
+    ("v_x", "v_y", "yaw_rate"),
+    [
+        pytest.param(0.6, 0.0, 0.0, id="ahead", marks=pytest.mark.long),
+        pytest.param(0.0, 0.25, 0.0, id="sideways", marks=pytest.mark.long),
+        pytest.param(0.6, 0.25, 0.6, id="all"),
+    ],
 )
 def test_the_mean_velocity_is_the_one_that_is_followed(v_x, v_y, yaw_rate):
     """Over three gait cycles of the path, which runs midway between the footholds."""

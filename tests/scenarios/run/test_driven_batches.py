@@ -71,7 +71,7 @@ def test_arms_go_overhead_in_a_second_and_it_walks_on(robot):
 
 @pytest.mark.physics
 @pytest.mark.parametrize("name", [pytest.param("walk", marks=pytest.mark.long), "walk-turn"])
-@pytest.mark.parametrize("robot", ROBOTS)
+@pytest.mark.parametrize("robot", [pytest.param("humanoid100", marks=pytest.mark.long), "g1"])
 def test_five_kilograms_in_a_hand_that_are_told(robot, name):
     overrides, _, hand = ROBOTS[robot]
     keys = {**overrides, "robot_options.payload_mass": 5.0, "robot_options.payload_body": hand}
@@ -80,7 +80,7 @@ def test_five_kilograms_in_a_hand_that_are_told(robot, name):
 
 @pytest.mark.physics
 @pytest.mark.parametrize("name", [pytest.param("walk", marks=pytest.mark.long), "walk-turn"])
-@pytest.mark.parametrize("robot", ROBOTS)
+@pytest.mark.parametrize("robot", ["humanoid100", pytest.param("g1", marks=pytest.mark.long)])
 def test_five_kilograms_in_a_hand_that_nobody_told_of(robot, name):
     overrides, _, hand = ROBOTS[robot]
     assert end_of(name, {**overrides, "errors.payload": {"mass": 5.0, "body": hand}}) == "completed"

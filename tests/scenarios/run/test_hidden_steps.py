@@ -22,7 +22,7 @@ def hidden_step(height, start, end):
 @pytest.mark.parametrize(
     ("scenario", "overrides", "step"),
     [
-        ("diagonal-walk", STRAIGHT, (0.01, 0.3, 0.66)),
+        pytest.param("diagonal-walk", STRAIGHT, (0.01, 0.3, 0.66), marks=pytest.mark.long),
         ("diagonal-walk", STRAIGHT, (0.02, 0.3, 0.66)),
         ("walk", ["gait.steps=10"], (0.02, 0.75, 1.65)),
     ],

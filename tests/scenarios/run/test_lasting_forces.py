@@ -55,7 +55,8 @@ def test_a_lasting_force_is_found_within_a_tenth_and_walked_with(tmp_path):
 
 @pytest.mark.physics
 @pytest.mark.parametrize(
-    ("direction", "phase", "seed"), [("left", ("single", 0.5), 1), ("backward", ("double", 0.5), 2)]
+    ("direction", "phase", "seed"),
+    [pytest.param("left", ("single", 0.5), 1, marks=pytest.mark.long), ("backward", ("double", 0.5), 2)],
 )
 def test_a_lasting_force_is_found_and_walked_with_from_sensors(direction, phase, seed, tmp_path):
     """Within a tenth in the median; what is found shakes with the noise of momentum and wrenches."""

@@ -23,7 +23,12 @@ and where that is by half a millimetre of height, and so what the landing does, 
 
 @pytest.mark.parametrize(
     ("robot", "scenario"),
-    [("talos", "walk-turn"), ("talos", "slope"), ("g1", "walk"), ("g1", "walk-backward")],
+    [
+        ("talos", "walk-turn"),
+        ("talos", "slope"),
+        pytest.param("g1", "walk", marks=pytest.mark.long),
+        ("g1", "walk-backward"),
+    ],
 )
 def test_a_scenario_of_the_catalogue_passes(tmp_path: Path, robot: str, scenario: str) -> None:
     verdict = run_scenario(surefoot.load(scenario, {"robot": robot}), tmp_path).verdict
@@ -55,7 +60,7 @@ def test_a_robot_walks_fast(
     assert verdict.passed, verdict.reasons
 
 
-@pytest.mark.parametrize("direction", [0.0, 0.5 * math.pi])
+@pytest.mark.parametrize("direction", [pytest.param(0.0, marks=pytest.mark.long), 0.5 * math.pi])
 def test_talos_stands_a_push_in_mid_single_support(tmp_path: Path, direction: float) -> None:
     push = {"step": 3, "phase": "single", "fraction": 0.5, "impulse": 0.2, "direction": direction}
     keys = {"robot": "talos", "gait.steps": 6, "pushes": [push], "criteria": {"fell": False}}

@@ -77,7 +77,7 @@ def test_the_seed_is_that_of_the_blocks(robots):
 
 
 @pytest.mark.physics
-@pytest.mark.parametrize("angle", [0.1745, -0.1745])
+@pytest.mark.parametrize("angle", [0.1745, pytest.param(-0.1745, marks=pytest.mark.long)])
 def test_the_soles_lie_flat_on_a_slope(tmp_path, angle):
     overrides = (f"terrain.angle={angle}", "gait.steps=4")
     result = run_scenario(load_scenario("slope", overrides), tmp_path)

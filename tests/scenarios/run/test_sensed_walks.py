@@ -236,7 +236,7 @@ PUSH = {"step": 3, "phase": "single", "fraction": 0.5, "duration": 0.1, "impulse
 
 
 @pytest.mark.physics
-@pytest.mark.parametrize("name", ["walk", "walk-fast"])
+@pytest.mark.parametrize("name", ["walk", pytest.param("walk-fast", marks=pytest.mark.long)])
 def test_walks_pass_from_good_sensors(name, tmp_path):
     verdict = surefoot.run(surefoot.load(name, {"seed": 1, **GOOD_SENSORS}), out=tmp_path).verdict
     assert verdict.passed, verdict.reasons

@@ -38,13 +38,13 @@ def test_the_pendulum_takes_stairs_as_the_paper_does(tmp_path, direction):
 
 
 @pytest.mark.physics
-@pytest.mark.parametrize("name", ["stairs-up", "stairs-down"])
+@pytest.mark.parametrize("name", [pytest.param("stairs-up", marks=pytest.mark.long), "stairs-down"])
 def test_treads_two_centimetres_off_are_found(tmp_path, name):
     assert reasons(tmp_path, name, "terrain.height_noise=0.02", "seed=3") == ()
 
 
 @pytest.mark.physics
-@pytest.mark.parametrize(("name", "seed"), [("stairs-up", 3), ("stairs-down", 4)])
+@pytest.mark.parametrize(("name", "seed"), [("stairs-up", 3), pytest.param("stairs-down", 4, marks=pytest.mark.long)])
 def test_treads_two_centimetres_off_are_found_from_sensors(tmp_path, name, seed):
     """A foot that lands on them has found a step of the ground, and not that the robot is lower or tilted."""
     found = reasons(tmp_path, name, "terrain.height_noise=0.02", f"seed={seed}", "sensing.preset=good")

@@ -15,7 +15,9 @@ EVERY_CHANGE = [variation for variation in VARIATIONS if variation.every_change 
 ON_DEMAND = [variation for variation in VARIATIONS if not variation.every_change]
 CHECKED = re.findall(r"surefoot check (.+)", (Path(__file__).parents[3] / "Makefile").read_text())[0].split()
 """Those that ``make test`` holds against their baselines anyway, and with these against their criteria."""
-LONG_SCENARIOS = sorted({"walk-turn", "walk-curve", "walk-backward", "slope", "blocks", *CHECKED})
+HELD_BY_OTHERS = ("stairs-up", "stairs-down", "paper-walk", "commanded")
+"""By stairs-up-down, by paper-noise and paper-push, by test_commanded_walks."""
+LONG_SCENARIOS = sorted({"walk-turn", "walk-curve", "walk-backward", "slope", "blocks", *HELD_BY_OTHERS, *CHECKED})
 
 
 def verdict(tmp_path, name, overrides=()):
@@ -41,7 +43,10 @@ def test_commanded_walk(tmp_path, variation):
 
 
 @pytest.mark.physics
-@pytest.mark.parametrize(("riser", "tread"), [(0.2, 0.3), (0.22, 0.31), (0.235, 0.32)])
+@pytest.mark.parametrize(
+    ("riser", "tread"),
+    [*(pytest.param(*stair, marks=pytest.mark.long) for stair in ((0.2, 0.3), (0.22, 0.31))), (0.235, 0.32)],
+)
 def test_tall_stairs_down(tmp_path, riser, tread, from_sensors):
     stairs = {"terrain.direction": "down", "terrain.riser": riser, "terrain.tread": tread, "gait.step_length": tread}
     if from_sensors and riser > 0.23:

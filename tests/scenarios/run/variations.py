@@ -25,14 +25,14 @@ class Variation:
 
 VARIATIONS = (
     Variation("as it is", (), True),
-    *(Variation(f"step length {v} m", (f"gait.step_length={v}",), v in (0.25, -0.15)) for v in (0.0, 0.1, 0.25, -0.15)),
-    *(Variation(f"single support {v} s", (f"gait.single_support={v}",), v == 0.8) for v in (0.8, 1.0, 2.0)),
+    *(Variation(f"step length {v} m", (f"gait.step_length={v}",), v == -0.15) for v in (0.0, 0.1, 0.25, -0.15)),
+    *(Variation(f"single support {v} s", (f"gait.single_support={v}",)) for v in (0.8, 1.0, 2.0)),
     Variation("20 steps", ("gait.steps=20",)),
     Variation("human-size feet", ("robot_options.foot_length=0.22", "robot_options.foot_width=0.11"), True),
     Variation("friction 0.5", ("terrain.friction=0.5",), True),
     *(Variation(f"control at {v} Hz", (f"rates.control={v}",), v == 250) for v in (250, 1000)),
     Variation("100 m away, turned 90 deg", ("start.x=100", "start.y=100", f"start.yaw={math.pi / 2}"), True),
-    *(Variation(f"start noise, seed {v}", (*START_NOISE, f"seed={v}"), v in (0, 1)) for v in range(10)),
+    *(Variation(f"start noise, seed {v}", (*START_NOISE, f"seed={v}"), v == 1) for v in range(10)),
 )
 
 COMMANDED = "stop-and-go"

@@ -21,7 +21,7 @@ def shadow(log, out, **changes):
     return result, surefoot.read(result.log)
 
 
-@pytest.mark.parametrize("robot", ROBOTS)
+@pytest.mark.parametrize("robot", [pytest.param("humanoid100", marks=pytest.mark.long), "g1 by its sensors"])
 def test_a_shadow_commands_what_was_commanded_to_the_bit(tmp_path, robot):
     result = surefoot.run(surefoot.load("walk", {"gait.steps": 1, **ROBOTS[robot]}), out=tmp_path)
     same, log = shadow(result.log, tmp_path / "shadow")

@@ -110,6 +110,16 @@ def by_length(point):
     return failed(point, "speed_mean is 0.6 m/s, bound is at most 0.5")
 
 
+@pytest.mark.parametrize("trials", [1, 2, 14, 300])
+def test_intervals_are_those_of_a_library_of_statistics(trials):
+    from scipy.stats import binomtest  # which takes long to be imported
+
+    for successes in {0, 1, trials // 3, trials - 1, trials}:
+        rate, wanted = wilson(successes, trials), binomtest(successes, trials).proportion_ci(0.95, "wilson")
+        assert (rate.low, rate.high) == pytest.approx((wanted.low, wanted.high), abs=1e-14)
+        assert 0.0 <= rate.low <= rate.rate == successes / trials <= rate.high <= 1.0
+
+
 def test_rates_are_those_of_the_runs_with_their_intervals(tmp_path):
     whole = swept(tmp_path, GRID, by_length)
     rows = {tuple(row[:2]): row[2:] for row in Page(report.page(whole)).rows["success"]}

@@ -43,6 +43,9 @@ def softening(leg: LegInertia) -> float:
     return 1.0 / (1.0 + 2.0 * leg.mass_ratio)
 
 
+_SUNK = 3e-4
+"""Height by which a footstep may be off the end of its swing: twice what soles sink, of the reference robot [m]."""
+
 Feet = tuple[Array, Array, Array]
 """Nominal motion of both feet over n samples, in the plan frame, the left one first.
 
@@ -84,6 +87,13 @@ def nominal_feet(
     return soles[..., :3], soles[..., 3] - np.arctan2(rotation[1, 0], rotation[0, 0]), pitch
 
 
+def _over(row: int, swing: SwingTrajectory, schedule: Schedule) -> float:
+    """How far over its swing's end a foot lands [m]: standing there a sample later it would seem to accelerate."""
+    height = schedule.positions[:, 2]
+    over = float(height[min(row + 1, len(height) - 1)] - height[row - 1] - swing.target[2])
+    return over if abs(over) > _SUNK * schedule.ground.parameters.size.length else 0.0
+
+
 def _fly(
     soles: Array,
     heading: Array,
@@ -118,7 +128,8 @@ def _swings(samples: PhaseSamples, schedule: Schedule) -> tuple[Array, Array, Ar
             # A foot that searches for the ground is expected to find it at once.
             times = np.minimum((samples.elapsed[here] - late) * samples.sample_time, swing.touchdown_time - TOUCHING)
             way = swing.positions(times)
-            progress[here], height[here] = way[:, 0], way[:, 2]
+            over = _over(schedule.index(phase.leaves - 1), swing, schedule)
+            progress[here], height[here] = way[:, 0], way[:, 2] + over * way[:, 0]
         if phase.roll is not None:
             start, end, angle = phase.roll
             share = (samples.clock[here] - start) / (end - start)
@@ -164,10 +175,8 @@ def zmp_offset(
     Returns:
         Shape (n, 2) [m].
     """
-    n = len(softened)
-    com = np.empty((n + 1, 3))
+    n, t, com = len(softened), motion.sample_time, np.empty((len(softened) + 1, 3))
     com[1:, :2], com[1:, 2] = motion.com[0], height.height[0]
-    t = motion.sample_time
     com[0, :2] = _before(motion.com[:, 0], t) - motion.jerk[0] * t**3 / 6.0
     com[0, 2] = _before(height.height[:, 0], t)
     soles, heading, pitch = (motion_of[:, : n + 1] for motion_of in feet)
@@ -307,13 +316,13 @@ class _CompiledOffset:
         (rotation, origin), position, steps = frame, schedule.positions, schedule.steps
         numbers, last = range(int(which[0]), int(which[-1]) + 1), len(steps) - 1
         elapsed = samples.elapsed[which.searchsorted(numbers)].tolist()
-        phases, heads = np.empty((len(numbers), 35)), []
+        phases, heads = np.empty((len(numbers), 36)), []
         for told, number, gone in zip(phases, numbers, elapsed, strict=True):
             phase, late = samples.phases[number], 0.0
             row, single = schedule.index(phase.leaves - 1), phase.kind is PhaseKind.SINGLE
             if single:
                 swing, late = _swing(phase, schedule, gone)
-                told[9:] = _told(swing)
+                told[9:-1], told[-1] = _told(swing), _over(row, swing, schedule)
             rows = row - 1 if row else last, row, min(row + 1, last)
             heads.append((*rows, steps[row].place.foot is Foot.RIGHT, single, late, *(phase.roll or _LEVEL)))
         phases[:, :9] = heads

@@ -562,10 +562,11 @@ typedef struct {
 /*
  * Counterpart of `planner.references.leg_offset.nominal_feet` without a swing that is flown.
  *
- * Of each phase from that of the first sample on `phases` has 35 numbers: rows of `steps` before, stance and after; 1
+ * Of each phase from that of the first sample on `phases` has 36 numbers: rows of `steps` before, stance and after; 1
  * for a right stance foot; 1 for a single support; how late its swing begins; begin, end and angle of a roll; then of
  * the swing start and end of the glide, apex, touchdown, starts of rise and fall, progress and height at the touchdown, and
- * the coefficients of progress, rise and fall. Soles and angles have rows of `most` samples.
+ * the coefficients of progress, rise and fall; and how far over the swing's end the foot lands. Soles and angles have rows
+ * of `most` samples.
  */
 typedef struct {
     double sample_time;

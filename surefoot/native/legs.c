@@ -21,7 +21,7 @@ static double polynomial(const double *c, double t) {
 
 void nominal_feet_make(const NominalFeet *feet, int64_t samples) {
     for (int64_t k = 0; k < samples; k++) {
-        const double *phase = feet->phases + 35 * (feet->which[k] - feet->which[0]), *swing = phase + 9;
+        const double *phase = feet->phases + 36 * (feet->which[k] - feet->which[0]), *swing = phase + 9;
         double progress = 0.0, height = 0.0, rolled = 0.0;
         if (phase[4] != 0.0) {
             const double last = swing[3], touching = feet->touching;
@@ -30,6 +30,7 @@ void nominal_feet_make(const NominalFeet *feet, int64_t samples) {
             progress = polynomial(swing + 8, clamp(t - swing[0], 0.0, swing[1] - swing[0]));
             height = falls ? polynomial(swing + 20, t - swing[5]) : polynomial(swing + 14, t - swing[4]);
             if (t >= last - touching) progress = swing[6], height = swing[7];
+            height += progress * phase[35];
         }
         if (phase[8] != 0.0) {
             const double s = (feet->clock[k] - phase[6]) / (phase[7] - phase[6]), w = s * (1.0 - s);

@@ -14,7 +14,7 @@ from surefoot.scenarios.log import Log, read
 from surefoot.scenarios.output import shown
 from surefoot.scenarios.record.foxglove import DERIVED_TOPICS
 from surefoot.scenarios.record.provenance import SCENARIO_FILE
-from surefoot.scenarios.show.console import number, plain_console, plain_table
+from surefoot.scenarios.show.console import number, plain_console, plain_table, print_valueless
 from surefoot.scenarios.show.differences import (
     VERSIONS_RECORD,
     ChannelDifference,
@@ -204,7 +204,10 @@ def print_comparison(found: Comparison) -> None:
         console.print(f"attached files that differ: {', '.join(found.files)}")
     if found.records:
         console.print(f"metadata records that differ: {', '.join(found.records)}")
-    console.print(plain_table("metric", "A", "B", "B - A", "unit", rows=map(_metric, found.metrics)))
+    empty = {one.name for one in found.metrics if one.a is None and one.b is None}
+    shown = [_metric(one) for one in found.metrics if one.name not in empty]
+    console.print(plain_table("metric", "A", "B", "B - A", "unit", rows=shown))
+    print_valueless(console, empty)
     console.print(_channels(found.channels, found.tolerance))
     for name, topics in (("A", found.only_a), ("B", found.only_b)):
         if topics:

@@ -4,7 +4,7 @@ import csv
 import importlib
 import io
 import time
-from collections.abc import Callable, Iterable, Iterator, Mapping, Sequence
+from collections.abc import Callable, Collection, Iterable, Iterator, Mapping, Sequence
 from contextlib import contextmanager
 from pathlib import Path
 from shlex import quote
@@ -103,9 +103,19 @@ def print_inspection(found: Inspection, touches: "Sequence[Touch]") -> None:
     for touch in touches:
         console.print(f"touching: {touch.one} and {touch.other}, from {touch.time:.3f} s on")
     _print_verdict(console, found.scenario, found.verdict)
-    console.print(_metric_table(found.verdict, tuple(found.verdict.metrics)))
+    metrics = found.verdict.metrics
+    judged = {key.partition(".")[0] for key in found.verdict.criteria}
+    empty = {name for name, value in metrics.items() if value is None and name not in judged}
+    console.print(_metric_table(found.verdict, tuple(name for name in metrics if name not in empty)))
+    print_valueless(console, empty)
     topics = ((one.topic, str(one.messages), f"{one.rate:.1f}") for one in found.topics)
     console.print(plain_table("topic", "messages", "rate [Hz]", rows=topics))
+
+
+def print_valueless(console: Console, names: Collection[str]) -> None:
+    """Name the metrics that nothing in a run has a value for, which would be rows without one."""
+    if names:
+        console.print(f"without a value: {', '.join(sorted(names))}")
 
 
 def _health_lines(health: Sequence[Finding]) -> list[str]:

@@ -319,6 +319,18 @@ def test_inspect_repeats_the_verdict(surefoot, scenario, tmp_path):
     assert {**json.loads(log.with_name("verdict.json").read_text()), **found} == found
 
 
+def test_metrics_without_a_value_are_named_in_one_line_and_have_no_row(surefoot, scenario, tmp_path):
+    """But for one that is judged: what could not be computed is missed, and has to be seen."""
+    surefoot("run", scenario, "--set", "criteria={place_error: {max: 1.0}}", "--out", tmp_path)
+    log = tmp_path / "two-steps-0" / "log.mcap"
+    for command in (("inspect", log), ("compare", log, log)):
+        lines = surefoot(*command)[1].splitlines()
+        (named,) = (line for line in lines if line.startswith("without a value: "))
+        rows = {line.split()[0]: line for line in lines if line.strip()}
+        assert "waypoints_missed" in named and "waypoints_missed" not in rows
+        assert ("place_error" in rows) == (command[0] == "inspect") == ("place_error" not in named)
+
+
 def test_inspect_and_recover_a_truncated_log(surefoot, scenario, tmp_path):
     surefoot("run", scenario, "--out", tmp_path)
     log = tmp_path / "two-steps-0" / "log.mcap"

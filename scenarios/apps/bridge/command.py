@@ -98,6 +98,8 @@ def serve(told: ServeOptions) -> None:
     with held_back() as interrupts, one_thread():
         served = server.run(lambda: interrupts.count > 0)
     _say(f"ended at {served.time:.3f} s, {served.said}")
+    if served.late:
+        _say(f"too slow for real time: the plant's clock was put back by {served.late:.3f} s in all")
     if interrupts.count:
         raise typer.Exit(INTERRUPTED)
     raise typer.Exit(0 if served.in_order else MISSED)

@@ -3,6 +3,7 @@
 import contextlib
 import time
 from collections.abc import Callable, Mapping
+from dataclasses import replace
 from queue import Empty
 from typing import Any
 
@@ -20,8 +21,8 @@ PATIENCE, GETTING_READY = 10.0, 300.0
 LET_DOWN = 1.0
 """How long a robot that is damped is simulated on [s]."""
 
-MOST_LATE = 0.1
-"""By how much a plant in real time may be late, and catch up [s]."""
+MOST_LATE = 0.01
+"""By how much a plant in real time may be late and catch up; more of it would be simulated at once, unheard [s]."""
 
 _LOOK = 0.1
 
@@ -34,11 +35,13 @@ class Served:
         time: simulated [s].
         said: why, in words.
         in_order: whether the controller has said that it ends, and was not damped before.
+        late: by how much the plant's clock was put back, in all, since the machine was too slow for real time [s].
     """
 
     time: float
     said: str
     in_order: bool
+    late: float = 0.0
 
 
 class Server:
@@ -54,7 +57,6 @@ class Server:
 
     Attributes:
         plant: the robot.
-        late: how often the machine was too slow for real time, so that the plant's clock was put back.
         address: that is listened at.
 
     Raises:
@@ -66,7 +68,7 @@ class Server:
         self, walk: Walk, host: str, port: int, say: Callable[[str], None], care: Care, real_time: bool = False
     ) -> None:
         self.plant, self._walk, self._say = Host(walk, care), walk, say
-        self._real_time, self.late = real_time, 0
+        self._real_time, self._late = real_time, 0.0
         robot = walk.robot
         welcome = {
             "robot": robot.name,
@@ -98,7 +100,7 @@ class Server:
             if link is None:
                 return Served(0.0, "stopped before a controller came", in_order=True)
             self._say(f"{link.peer} walks the robot")
-            return self._serve(link, stopped)
+            return replace(self._serve(link, stopped), late=self._late)
         finally:
             self._door.close()
             if link is not None:
@@ -157,7 +159,7 @@ class Server:
                 self._take(frame, time.monotonic() - begin)
             late = time.monotonic() - due
             if late > MOST_LATE:
-                begin, self.late = begin + late, self.late + 1
+                begin, self._late = begin + late, self._late + late
             state = plant.state()
             if plant.tells:
                 link.offer(Kind.STATE, state_bytes(state))

@@ -1,6 +1,7 @@
 """A controller that says that it ends is heard, whatever it has left unread or said twice before it was gone."""
 
 import threading
+import time
 from contextlib import closing
 
 import numpy as np
@@ -9,9 +10,9 @@ import pytest
 import surefoot
 from surefoot.joints import JointCommand
 from surefoot.scenarios.apps.bridge.frames import Kind, connected
-from surefoot.scenarios.apps.bridge.host import Care
+from surefoot.scenarios.apps.bridge.host import Care, Host
 from surefoot.scenarios.apps.bridge.messages import Start, command_bytes, end_bytes, json_bytes, start_bytes
-from surefoot.scenarios.apps.bridge.serve import Server
+from surefoot.scenarios.apps.bridge.serve import MOST_LATE, Server
 from surefoot.scenarios.setup.walk import resolve
 
 pytestmark = pytest.mark.unit
@@ -26,10 +27,10 @@ def walk_fixture():
     return resolve(surefoot.load("walk", {"gait.steps": 1}))
 
 
-def served(walk, *last):
-    """How serving ends for a controller that sends commands, then these frames, and is gone."""
+def served(walk, *last, real_time=False, after=0.0):
+    """How serving ends for a controller that sends commands, after a while [s] these frames, and is gone."""
     n = len(walk.robot.joint_names)
-    server = Server(walk, "127.0.0.1", 0, lambda said: None, Care())
+    server = Server(walk, "127.0.0.1", 0, lambda said: None, Care(), real_time)
     ends = []
     serving = threading.Thread(target=lambda: ends.append(server.run(lambda: False)))
     serving.start()
@@ -41,15 +42,19 @@ def served(walk, *last):
         assert link.receive(PATIENCE).kind is Kind.STATE
         for _ in range(COMMANDS):
             link.send(Kind.COMMAND, command_bytes(0, JointCommand(np.zeros(n))), PATIENCE)
+        time.sleep(after)
         for kind, payload in last:
             link.send(kind, payload, PATIENCE)
     serving.join(PATIENCE)
     return ends[0]
 
 
+END = Kind.END, end_bytes("interrupted")
+
+
 def test_an_end_is_heard_over_a_connection_that_is_closed_already(walk):
-    end = served(walk, (Kind.END, end_bytes("interrupted")))
-    assert (end.in_order, end.said) == (True, "interrupted")
+    end = served(walk, END)
+    assert (end.in_order, end.said, end.late) == (True, "interrupted", 0.0)
 
 
 def test_without_an_end_the_joints_are_damped(walk):
@@ -57,3 +62,17 @@ def test_without_an_end_the_joints_are_damped(walk):
     assert not end.in_order
     assert "has closed the connection" in end.said
     assert end.time >= 1.0  # the robot is simulated until it is down
+
+
+def test_a_plant_that_is_slower_than_the_wall_clock_says_by_how_much_and_does_not_catch_up(walk, monkeypatch):
+    slow, advance = 2.0 * MOST_LATE, Host.advance
+
+    def slowly(host):
+        time.sleep(slow)
+        advance(host)
+
+    monkeypatch.setattr(Host, "advance", slowly)
+    end = served(walk, END, real_time=True, after=0.5)
+    ticks = round(end.time * walk.rates.control)
+    assert end.in_order and 0 < ticks <= 0.5 / slow + 1.0
+    assert end.late > (ticks - 1) * (slow - 1.0 / walk.rates.control) - MOST_LATE

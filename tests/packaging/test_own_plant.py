@@ -12,7 +12,9 @@ FINER = ("--set", "plant.name=finer", "--set", "gait.steps=2", "--set", "sensing
 
 
 @pytest.mark.unit
-@pytest.mark.parametrize("robot", [(), G1], ids=["humanoid100", "g1"])
+@pytest.mark.parametrize(
+    "robot", [pytest.param((), id="humanoid100", marks=pytest.mark.long), pytest.param(G1, id="g1")]
+)
 def test_a_run_with_it_passes_and_its_log_walks_again(documented, robot):
     done = documented.run("run", "walk", *FINER, *robot, *LOW, "--json")
     assert done.returncode == 0, (done.stdout, done.stderr)

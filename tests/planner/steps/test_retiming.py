@@ -125,7 +125,7 @@ def test_durations_may_change_at_any_moment(stand, data):
     assert_walked(plans, 4)
 
 
-@settings(max_examples=8, deadline=None)
+@settings(max_examples=5, deadline=None)
 @given(data=st.data())
 def test_commands_at_any_moment_leave_no_jump(stand, data):
     """The steps that are not kept change; what was planned for the next sample never does."""

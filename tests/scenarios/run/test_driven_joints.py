@@ -24,8 +24,15 @@ def arms(robot, **keys):
     return {**overrides, "control": {"driven_joints": joints, **keys}}
 
 
-@pytest.mark.parametrize("robot", ROBOTS)
-@pytest.mark.parametrize("told", [True, False])
+@pytest.mark.parametrize(
+    ("robot", "told"),
+    [
+        ("humanoid100", False),
+        ("g1", True),
+        pytest.param("humanoid100", True, marks=pytest.mark.long),
+        pytest.param("g1", False, marks=pytest.mark.long),
+    ],
+)
 def test_it_walks_with_arms_that_are_moved_at_random(robot, told):
     keys = arms(robot, driven_motion=0.06, driven_told=told)
     with surefoot.Simulation(load("walk", {**keys, "gait.steps": 2, "sensing.source": "truth"})) as simulation:

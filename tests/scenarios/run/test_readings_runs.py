@@ -80,7 +80,7 @@ def test_the_truth_has_no_readings(tmp_path):
     assert "/readings" not in log.topics
 
 
-@pytest.mark.parametrize("robot", ["humanoid100", "g1"])
+@pytest.mark.parametrize("robot", [pytest.param("humanoid100", marks=pytest.mark.long), "g1"])
 def test_the_same_is_said_in_another_process_and_in_a_run_from_the_log(tmp_path, robot):
     keys = {"robot": robot, "sized_for": "humanoid100", "duration": 0.2, "sensing.preset": "cheap", "seed": 5}
     log = run(tmp_path, keys)

@@ -48,6 +48,7 @@ _ZMP = tuple(f"zmp_error_rms.{axis}" for axis in (0, 1))
 SENSED = (*(f"velocity_estimation_error_rms.{axis}" for axis in (0, 1)), *_ZMP)
 _PLANNED = ("planner_infeasible_fraction", *_ZMP, "zmp_inside_fraction")
 HEEL_OFF = ("speed_mean", "cost_of_transport", "knee_angle_mean", "knee_torque_rms", "torque_ratio_max")
+HIDDEN = ("cop_ratio_p99", "step_shift", "ghost_force_max")
 ROUGH = ("speed_mean", "cop_ratio_p99", "torque_ratio_max")
 
 
@@ -70,9 +71,8 @@ MADE = {
     "profiles-on-stairs": _of_page("profiles-on-stairs", "terrain.riser", "planner.profile", *_ZMP),
     "heel-off": _of_page("heel-off", "gait.heel_off", *HEEL_OFF),
     "rough-ground": _of_page("rough-ground", "ground", *ROUGH),
-    "sensor-faults": Made(
-        "sensor-faults", columns=("fault", "status", *SENSED, "cop_ratio_p99", "step_shift", "ghost_force_max")
-    ),
+    "sensor-faults": Made("sensor-faults", columns=("fault", "status", *SENSED, *HIDDEN)),
+    "hidden": Made("hidden", columns=("hidden", "feet", "status", *HIDDEN)),
 }
 """By the name of the result."""
 

@@ -8,7 +8,7 @@ from itertools import groupby
 from pathlib import Path
 from typing import Any
 
-from measured import HEEL_OFF, RESULTS, ROUGH, SENSED, head, limit_of, rows, searches
+from measured import HEEL_OFF, HIDDEN, RESULTS, ROUGH, SENSED, head, limit_of, rows, searches
 from page_table import table
 
 from surefoot.scenarios.judge.metrics import OWN
@@ -149,6 +149,19 @@ def faults_table() -> str:
     return table(heads, lines)
 
 
+def hidden_table() -> str:
+    """What is survived with one thing each that the robot is not told, on both feet; of several runs the worst."""
+    heads = "hidden", "feet", "survived", "CoP at p99", "step moved", "force found that nobody gave"
+    lines = []
+    for (hidden, feet), group in groupby(rows("hidden"), lambda row: (row["hidden"], row["feet"])):
+        runs = list(group)
+        survived = sum(run["status"] == "pass" for run in runs)
+        cop, shift, ghost = (max(float(run[name]) for run in runs) for name in HIDDEN)
+        cells = f"{survived} of {len(runs)}", f"{cop:.2f}", f"{1e3 * shift:.0f} mm", f"{ghost:.0f} N"
+        lines.append([hidden, feet, *cells])
+    return table(heads, lines)
+
+
 def pythons_table() -> str:
     """In which empty environments a walk passed, and what they take of the disk."""
     columns = ("python", "distribution", "MB", "largest")
@@ -218,6 +231,7 @@ TABLES: dict[str, tuple[str, Callable[[], str]]] = {
     "heel-off": ("fast-walking.md", partial(runs_table, "heel-off", ("gait.heel_off",), HEEL_OFF)),
     "rough-ground": ("scenarios.md", partial(runs_table, "rough-ground", ("ground",), ROUGH)),
     "sensor-faults": ("sensors.md", faults_table),
+    "hidden": ("sensors.md", hidden_table),
     **{
         name: (page, partial(plain_table, name))
         for name, page in (

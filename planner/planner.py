@@ -188,13 +188,17 @@ class WalkingPlanner:
         if self._recovery.steps_out(local, window):
             support, local, window = self._sight(state)
         # Online constraints generator: the box comes with the reference, the reach of the feet here.
-        step = StepProblem.of(time, execution, feet, support)
-        unsure = self._unsure(state, window)
+        step, unsure = StepProblem.of(time, execution, feet, support.frame), self._unsure(state, window)
         balance = self._recovery.balance(step, local, support, window, self._plan, unsure)
+        if self._recovery.goes_again(time, feet, local, support, window, balance, unsure):
+            support, local, window = self._sight(state)
+            step = StepProblem.of(time, execution, feet, support.frame)
+            balance = self._recovery.balance(step, local, support, window, self._plan, unsure)
         adjusted = self._recovery.adjusted(step, local, window, unsure)
         if adjusted is not None and adjusted.more and self._recovery.adds_steps(balance.planned):
             support, local, window = self._sight(state)
-            adjusted = self._recovery.adjusted(StepProblem.of(time, execution, feet, support), local, window, unsure)
+            step = StepProblem.of(time, execution, feet, support.frame)
+            adjusted = self._recovery.adjusted(step, local, window, unsure)
         left = execution.time_left
         if adjusted is not None and execution.end_in(adjusted.left, time):
             window = self._window(state, support, local)

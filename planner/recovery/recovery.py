@@ -2,7 +2,7 @@
 
 import numpy as np
 
-from surefoot.planner.geometry import signed_distance
+from surefoot.planner.geometry import frame_rotation, signed_distance
 from surefoot.planner.plan import WalkPlan
 from surefoot.planner.recovery.capture_margin import CaptureMargin, PlannedMargin
 from surefoot.planner.recovery.step_adjustment import StepAdjustment, StepBounds, StepProblem
@@ -12,7 +12,7 @@ from surefoot.planner.steps.adaptation import with_step_in_place, with_steps_rep
 from surefoot.planner.steps.execution import Execution
 from surefoot.planner.steps.step import room_left
 from surefoot.planner.swing.step_region import Shifts, reachable_shifts, shifts_within, unshifted
-from surefoot.planner.types import Array, Balance, Foot, PhaseKind
+from surefoot.planner.types import Array, Balance, FeetState, Foot, PhaseKind
 
 
 class Recovery:
@@ -76,6 +76,54 @@ class Recovery:
             return True
         return False
 
+    def goes_again(
+        self,
+        time: float,
+        feet: FeetState,
+        local: Array,
+        support: Support,
+        window: Window,
+        balance: Balance,
+        unsure: float = 0.0,
+    ) -> bool:
+        """Let the foot that landed last make the next step as well, where that captures clearly more; says whether.
+
+        The DCM is past its inner edge, and the other foot would have to cross it. Steps alternate on from there.
+
+        Args:
+            time: now [s].
+            feet: the measured feet.
+            local: as of `balance`.
+            support: likewise.
+            window: likewise.
+            balance: of the steps in the order in which they are.
+            unsure: as of `balance`.
+        """
+        execution, numbers = self._execution, self._parameters.recovery
+        if self._movable is None or balance.planned + unsure > 0.0 or not execution.may_go_again:
+            return False
+        places, schedule = self._capture_point(local, window), execution.schedule
+        beyond = schedule.step(execution.landed).place.foot.side * float(places[1][1])
+        if beyond <= -float(schedule.ground.half_size[1]):
+            return False
+        other = execution.going_again()
+        stance = other.schedule.step(other.landed).place
+        rotation, origin = frame = frame_rotation(stance.yaw), stance.position[:2]
+        step = StepProblem.of(time, other, feet, frame)
+        if step is None:
+            return False
+        com, dcm = ((support.origin + support.rotation @ place - origin) @ rotation for place in places)
+        margins = self._movable.margins(com, dcm, float(window.omega[0]), step, self._counted(other))
+        if margins[-1] < balance.movable + unsure + numbers.tolerance:
+            return False
+        execution.adopt(other)
+        return True
+
+    def _counted(self, execution: Execution) -> int:
+        """Steps that the margin counts with."""
+        ahead = len(execution.schedule.after(execution.landed))
+        return execution.schedule.ground.terrain.footholds.counted(ahead, self._parameters.recovery.most_steps)
+
     def balance(
         self,
         step: StepProblem | None,
@@ -100,9 +148,7 @@ class Recovery:
         if step is None:
             planned = movable = max(planned, signed_distance(support.outer, support.origin + support.rotation @ dcm))
         elif self._movable is not None and execution.adapts:
-            terrain, ahead = execution.schedule.ground.terrain, len(execution.schedule.after(execution.landed))
-            steps = terrain.footholds.counted(ahead, p.recovery.most_steps)
-            omega, fixed = float(window.omega[0]), not execution.free[0]
+            steps, omega, fixed = self._counted(execution), float(window.omega[0]), not execution.free[0]
             movable = max(planned, float(self._movable.margins(com, dcm, omega, step, steps, fixed)[-1]))
         kept = last is not None and last.phase.landed == execution.landed
         shift, delay = (last.balance.shift, last.balance.delay) if last is not None and kept else (np.zeros(2), 0.0)

@@ -39,7 +39,6 @@ from surefoot.planner.model.dcm import decays, moving_cop, nominal_dcm, pendulum
 from surefoot.planner.parameters import PlannerParameters
 from surefoot.planner.recovery.compiled import CompiledAdjustment, CompiledOutlook, CompiledStep
 from surefoot.planner.references.window import Window
-from surefoot.planner.references.zmp_reference import Support
 from surefoot.planner.steps.execution import Execution
 from surefoot.planner.steps.step import Step, room_left, shortest_swing
 from surefoot.planner.swing.leg_reach import LegReach
@@ -84,16 +83,16 @@ class StepProblem:
         return self.place.position[:2]
 
     @classmethod
-    def of(cls, time: float, execution: Execution, feet: FeetState, support: Support) -> "StepProblem | None":
+    def of(cls, time: float, execution: Execution, feet: FeetState, frame: tuple[Array, Array]) -> "StepProblem | None":
         """That of a tick; None where no step is to come.
 
         Args:
             time: now [s].
             execution: the clock and the steps in sight.
             feet: the measured feet.
-            support: what carries the robot now, with the plan frame.
+            frame: its stance foot's, the plan frame: rotation to the world, shape (2, 2), and origin, shape (2,) [m].
         """
-        phase, rotation, moving = execution.info, support.rotation, np.zeros(2)
+        phase, moving, (rotation, origin) = execution.info, np.zeros(2), frame
         if not phase.leads_to:
             return None
         schedule, clock, landed = execution.schedule, execution.clock, execution.landed
@@ -107,7 +106,7 @@ class StepProblem:
         place, face = _landing_place(step, schedule.step(landed), numbers.parallel)
         return cls(
             place=place,
-            swing=np.array(((feet.position[foot, :2] - support.origin) @ rotation, moving)),
+            swing=np.array(((feet.position[foot, :2] - origin) @ rotation, moving)),
             double=0.0 if swings else phase.left,
             single=phase.left if swings else step.single * clock.sample_time,
             cycle=schedule.gait.period,

@@ -186,6 +186,11 @@ class Support:
     footholds: tuple[Footstep, Footstep]
     soles: tuple[Sole, ...]
 
+    @property
+    def frame(self) -> tuple[Array, Array]:
+        """Rotation and origin of the plan frame."""
+        return self.rotation, self.origin
+
 
 def load_left(samples: PhaseSamples, support: Support) -> Array:
     """Planned share of the weight on the left foot over a window, shape (n,) [-]; it goes with the ZMP reference."""

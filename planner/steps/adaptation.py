@@ -44,6 +44,18 @@ def with_steps_repeated(schedule: Schedule, number: int) -> Schedule:
     return again.followed(stride, None, inserted=True)
 
 
+def with_foot_again(schedule: Schedule, number: int) -> Schedule:
+    """The foot of a step that has just landed steps once more on the spot before the steps to come.
+
+    It is now the other foot that landed last, and feet alternate from there on.
+    """
+    kept = _with_feet_swapped(schedule.until(number, stands=False))
+    kept = kept.followed(Twist(width=schedule.gait.step_width), None, inserted=True)
+    for step in schedule.after(number):
+        kept = kept.followed(step.stride, step.stop, inserted=True) if step.inserted else kept
+    return kept
+
+
 def _with_feet_swapped(schedule: Schedule) -> Schedule:
     """The other foot is the one that landed last, so that this one makes the next step."""
     *before, one, other = schedule.steps

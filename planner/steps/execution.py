@@ -1,13 +1,14 @@
 """The execution of a schedule: the clock, the touchdowns that are felt, and the swing that is flown."""
 
 import math
+from copy import copy
 from dataclasses import replace
 
 import numpy as np
 
 from surefoot.planner.geometry import frame_rotation, greatest, sole_pose, wrap_angle
 from surefoot.planner.model.time_scaling import CLOCK_ROUNDING, TimeScaling
-from surefoot.planner.steps.adaptation import aligned, with_heel_lifted
+from surefoot.planner.steps.adaptation import aligned, with_foot_again, with_heel_lifted
 from surefoot.planner.steps.gait import GaitParameters
 from surefoot.planner.steps.phases import Phase, PhaseSamples
 from surefoot.planner.steps.schedule import Schedule
@@ -257,6 +258,28 @@ class Execution:
             schedule = with_heel_lifted(self.schedule, self.landed, self.legs.radius)
             self.schedule = schedule if self._wide else aligned(schedule, self.landed)
         self.waited, self.early, self.fixed, self.adapted = 0, False, False, False
+
+    @property
+    def may_go_again(self) -> bool:
+        """Whether the foot that landed last may make the next step as well: the other one is still on the ground."""
+        phase, now = self.phase, self.clock.now
+        if not self._times or self.fixed or self.leads_to == 0 or self.schedule.step(self.landed + 1).stop is not None:
+            return False
+        rolls = phase.roll is not None and now > phase.roll.start
+        return self.swing is None and not rolls
+
+    def going_again(self) -> "Execution":
+        """The execution in which the foot that landed last makes the next step as well, and the weight goes back."""
+        other, phase, schedule = copy(self), self.phase, with_foot_again(self.schedule, self.landed)
+        gone = 1.0 if phase.kind is PhaseKind.SINGLE else (self.clock.now - phase.start) / phase.samples
+        step = schedule.step(self.landed)
+        other.clock = self.clock.showing(step.touchdown + (1.0 - gone) * step.double)
+        other.follow(schedule)
+        return other
+
+    def adopt(self, other: "Execution") -> None:
+        """Go on as another one, which was made of this one in this tick."""
+        vars(self).update(vars(other))
 
     def upcoming(self, time: float, shifts: Array) -> tuple[Footstep, ...]:
         """The next footsteps.

@@ -126,6 +126,21 @@ def test_a_foot_that_is_to_catch_the_body_searches_for_the_ground_in_haste(stand
     assert hasty.motion(0.03)[0] > 0.004 > P.search.motion(0.06)[0]
 
 
+@pytest.mark.parametrize(
+    ("direction", "feet"), [(0.5 * math.pi, "LRLLRLR"), (-0.5 * math.pi, "LRLRLR"), (0.0, "LRLRLR")]
+)
+def test_a_foot_that_has_just_landed_steps_again_where_the_other_one_would_cross_it(stand, direction, feet):
+    """Pushed to the left as the left foot has landed; not to the right, nor ahead. The step is one that was added."""
+    gait = GaitParameters(steps=6, step_length=0.0, single_support=0.4, double_support=0.12, com_height=0.95)
+    planner, com = WalkingPlanner(gait, stand(), 0.22, 0.11, legs=LEGS), np.array([0.0, 0.0, gait.com_height])
+    push = Push(gait.lift_off(4) - 0.1, 0.1, 500.0 * np.array([math.cos(direction), math.sin(direction), 0.0]))
+    trace = walk_pendulum(planner, stand(), gait.duration + 2.0, com=com, pushes=(push,))
+    assert trace.fall_time is None
+    swung = {plan.phase.step: plan.phase.stance.other for plan in trace.plans if plan.phase.kind is PhaseKind.SINGLE}
+    assert "".join(swung[step].name[0] for step in sorted(swung)) == feet
+    assert trace.plans[-1].phase.kind is PhaseKind.STAND
+
+
 def test_what_a_push_leaves_to_the_cop_moves_no_step(stand):
     """Not by what the TVMPC would save in jerk either."""
     gait = GaitParameters(steps=4, step_length=0.3, single_support=0.5, double_support=0.12, com_height=0.95)

@@ -8,7 +8,7 @@ from hypothesis import strategies as st
 
 from surefoot.planner.ground.terrain import flat
 from surefoot.planner.parameters import PlannerParameters
-from surefoot.planner.steps.adaptation import with_heel_lifted, with_step_in_place, with_steps_repeated
+from surefoot.planner.steps.adaptation import with_foot_again, with_heel_lifted, with_step_in_place, with_steps_repeated
 from surefoot.planner.steps.gait import Bout, GaitParameters
 from surefoot.planner.steps.schedule import Schedule
 from surefoot.planner.steps.source import CommandSource, GaitSource
@@ -208,6 +208,21 @@ def test_a_robot_that_stands_steps_with_either_foot(stand, foot):
     np.testing.assert_allclose(schedule.positions[:3], start[[foot, foot.other, foot]])
     np.testing.assert_allclose(schedule.positions[3:, 0], [0.3, 0.3])
     assert [phase.kind for phase in schedule.phases[4:6]] == [PhaseKind.STAND, PhaseKind.DOUBLE]
+
+
+def test_a_foot_that_steps_twice_comes_down_where_it_was_and_the_walk_goes_on(stand):
+    gait = GaitParameters(steps=4, step_length=0.3, single_support=0.5, double_support=0.12, initial_stand=0.0)
+    plain = Schedule.start(gait, stand(gait.step_width), NEAR).extended(1000.0)
+    schedule = with_foot_again(plain, 2).extended(1000.0)
+    later = schedule.after(2)
+    assert [step.place.foot for step in later] == [Foot.RIGHT, Foot.LEFT, Foot.RIGHT]
+    assert [step.inserted for step in later] == [True, False, False]
+    np.testing.assert_allclose(later[0].place.position, plain.step(2).place.position)
+    np.testing.assert_allclose(later[-1].place.position[0], plain.step(4).place.position[0])
+    # The weight stays on the foot that would have gone, in phases that last as long as any.
+    assert schedule.step(2).place.foot is Foot.LEFT
+    np.testing.assert_allclose(schedule.step(2).place.position, plain.step(1).place.position)
+    assert [phase.samples for phase in schedule.phases[:5]] == [phase.samples for phase in plain.phases[:5]]
 
 
 def test_a_foot_left_far_behind_rolls_as_it_leaves_the_ground(stand):

@@ -42,3 +42,8 @@ def test_a_hard_swing_does_not_lift_it_off_its_stance_foot():
 def test_a_foot_that_lands_short_of_a_push_to_its_side_goes_on(fraction):
     """To the left, at which the left foot swings; it lands before it can be far enough out."""
     assert not falls(1.571, "single", fraction, 0.4)
+
+
+def test_a_foot_that_has_just_landed_steps_again():
+    """To the right, as the right foot has landed; the left one would have to cross it, and it fell after 0.35."""
+    assert not falls(-1.571, "double", 0.5, 0.45)

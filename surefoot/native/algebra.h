@@ -58,6 +58,29 @@ static inline void rotation_vector(const double *R, double *out) {
     for (int i = 0; i < 3; i++) out[i] = scale * axis[i];
 }
 
+/* Quaternion x y z w of a rotation, as Eigen has it, and with it pinocchio.SE3ToXYZQUAT. */
+static inline void quaternion(const double *R, double *out) {
+    const double trace = R[0] + R[4] + R[8];
+    if (trace > 0.0) {
+        double root = sqrt(trace + 1.0);
+        out[3] = 0.5 * root;
+        root = 0.5 / root;
+        out[0] = (R[7] - R[5]) * root;
+        out[1] = (R[2] - R[6]) * root;
+        out[2] = (R[3] - R[1]) * root;
+        return;
+    }
+    int i = R[4] > R[0] ? 1 : 0;
+    if (R[8] > R[4 * i]) i = 2;
+    const int j = (i + 1) % 3, k = (j + 1) % 3;
+    double root = sqrt(R[4 * i] - R[4 * j] - R[4 * k] + 1.0);
+    out[i] = 0.5 * root;
+    root = 0.5 / root;
+    out[3] = (R[3 * k + j] - R[3 * j + k]) * root;
+    out[j] = (R[3 * j + i] + R[3 * i + j]) * root;
+    out[k] = (R[3 * k + i] + R[3 * i + k]) * root;
+}
+
 /* Four sums beside each other, in this order on every machine: one alone would wait for itself at each term. */
 static inline double dot(const double *a, const double *b, int64_t count) {
     double sums[4] = {0.0};

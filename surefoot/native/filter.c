@@ -85,3 +85,27 @@ int64_t filter_correct(const Filter *filter, double gate) {
     move(filter, x);
     return 0;
 }
+
+void sensed_base_now(const SensedBase *sensed, double late) {
+    double base[9], half[9], turn[9], seen[3], way[6], *p = sensed->pose, *v = sensed->velocity;
+    for (int i = 0; i < 3; i++)
+        for (int j = 0; j < 3; j++) base[3 * i + j] = dot(sensed->R + 3 * i, sensed->mount + 3 * j, 3);
+    for (int i = 0; i < 3; i++) seen[i] = sensed->rate[i] - sensed->gyro_bias[i];
+    rotate(sensed->mount, seen, v + 3);
+    rotate_back(base, sensed->columns, v);
+    cross(v + 3, sensed->lever, seen);
+    for (int i = 0; i < 3; i++) v[i] -= seen[i];
+    rotate(base, sensed->lever, seen);
+    for (int i = 0; i < 3; i++) p[i] = sensed->columns[3 + i] - seen[i];
+    if (late > 0.0) {
+        for (int i = 0; i < 6; i++) way[i] = late * (v[i] + 0.5 * sensed->gained[i]);
+        for (int i = 0; i < 3; i++) seen[i] = 0.5 * way[3 + i];
+        turned(seen, turn);
+        compose(base, turn, half);
+        rotate(half, way, seen);
+        compose(half, turn, base);
+        for (int i = 0; i < 3; i++) p[i] += seen[i];
+        for (int i = 0; i < 6; i++) v[i] += sensed->gained[i];
+    }
+    quaternion(base, p + 3);
+}

@@ -909,4 +909,24 @@ typedef struct {
 void filter_propagate(const Filter *filter, double time);
 int64_t filter_correct(const Filter *filter, double gate);
 
+/*
+ * Counterpart of `wbc.estimation.estimator.SensedState._now`, and of `SensedBody.base` of an IMU that no joint moves.
+ *
+ * The arrays of the filter's state, mount and lever of the IMU in the base, its angular velocity without its bias, what
+ * the base was planned to gain since, and where pose (place, quaternion x y z w) and velocity of the base go.
+ */
+typedef struct {
+    const double *R;
+    const double *columns;
+    const double *gyro_bias;
+    const double *mount;
+    const double *lever;
+    const double *rate;
+    const double *gained;
+    double *pose;
+    double *velocity;
+} SensedBase;
+
+void sensed_base_now(const SensedBase *sensed, double late);
+
 #endif

@@ -1,4 +1,4 @@
-"""The compiled ticks of the invariant filter, on the arrays of its state."""
+"""The compiled ticks of the invariant filter, and the base that follows, on the arrays of its state."""
 
 import numpy as np
 
@@ -69,3 +69,44 @@ class FilterKernels:
         """See `InvariantFilter.correct`; returns the residual where a foot has slipped, of which nothing is taken."""
         self._position[:], self._rotation[:] = y, Y
         return self._residual if self._correct(gate) else None
+
+
+class BaseKernel:
+    """The base now, by the state of a filter and an IMU that no joint moves against it.
+
+    Args:
+        kernels: the library.
+        stand: state of the filter, whose arrays stay where they are.
+        mount: orientation of the IMU in the base, shape (3, 3).
+        lever: its place there, shape (3,) [m].
+    """
+
+    def __init__(self, kernels: Library, stand: Stand, mount: Array, lever: Array) -> None:
+        self._rate, self._gained, self._pose, self._velocity = (np.zeros(size) for size in (3, POSE, 7, POSE))
+        base = kernels.fill(
+            "SensedBase",
+            R=stand.R,
+            columns=stand.columns,
+            gyro_bias=stand.gyro_bias,
+            mount=np.ascontiguousarray(mount),
+            lever=np.array(lever),
+            rate=self._rate,
+            gained=self._gained,
+            pose=self._pose,
+            velocity=self._velocity,
+        )
+        self._now = kernels.bind("sensed_base_now", base)
+
+    def __call__(self, rate: Array, gained: Array | None, late: float) -> tuple[Array, Array]:
+        """Place and quaternion of the base, shape (7,) [m, -], and its velocity in its axes, shape (6,) [m/s, rad/s].
+
+        Args:
+            rate: angular velocity of the IMU with its bias, shape (3,) [rad/s].
+            gained: what the base was planned to gain since the readings, shape (6,) [m/s, rad/s]; None of new ones.
+            late: how old they are [s].
+        """
+        self._rate[:] = rate
+        if gained is not None:
+            self._gained[:] = gained
+        self._now(0.0 if gained is None else late)
+        return self._pose, self._velocity

@@ -7,8 +7,10 @@ from collections.abc import Callable
 import numpy as np
 import pinocchio as pin
 
+from surefoot.native.library import library
 from surefoot.readings import Reading, Readings
 from surefoot.values import dataclass
+from surefoot.wbc.estimation.compiled import BaseKernel
 from surefoot.wbc.estimation.contact import SoleContact, sprung
 from surefoot.wbc.estimation.doubt import Doubt
 from surefoot.wbc.estimation.estimate import Deviation, Estimate, Planned
@@ -86,10 +88,10 @@ class SensedState:
         self._torques: TorqueWrench | None = None
         self._torques_at, self._encoders = 0, np.zeros(0)
         self._filter: InvariantFilter | None = None
+        self._base: BaseKernel | None = None
         self._tick, self._imu_at, self._from = -1, 0, 0.0
         self._base_told: deque[Array] = deque(maxlen=KEPT)
-        self._still = [True, True]
-        self._lost = False
+        self._still, self._lost = [True, True], False
         self._state: RobotState | None = None
         self._deviation: Deviation | None = None
         self._doubt = Doubt(self._body, sensors, self._joints.rate_noise)
@@ -125,13 +127,13 @@ class SensedState:
             self._contact = self._feeling(readings)
             self._contact.update(self._wrench(readings), self._still, self._above)
             self._load = self._contact.wrench
-            self._state = self._now(readings, q, qd)
+            self._state = self._now(q, qd)
             self._deviation = self._unsure(self._body.offset_jacobians())
         elif not self._lost:
             kept = self._state
             with np.errstate(all="ignore"):
                 self._step(readings)
-                self._state = self._now(readings, q, qd)
+                self._state = self._now(q, qd)
             if not self._sound(self._state):
                 self._lost, self._state = True, kept
         state = self._state
@@ -210,6 +212,8 @@ class SensedState:
         filter_.begin(body.position, body.rotation, J, normals, ATTITUDE)
         body.update(self._known(joints, filter_.stand.offsets), filter_.stand.R)
         filter_.weigh(J)
+        kernels, mount = library(), body.mount
+        self._base = BaseKernel(kernels, stand, *mount) if kernels and mount else None
         return filter_
 
     def _leaning(self, joints: Array, R: Array, level: list[Array]) -> Array:
@@ -314,18 +318,19 @@ class SensedState:
         x, y, z = (s.p + s.R @ self._body.position[k]).tolist()
         return float(z - self._footing.ground(x, y)[0])
 
-    def _now(self, readings: Readings, q: Array, qd: Array) -> RobotState:
+    def _now(self, q: Array, qd: Array) -> RobotState:
         """The state now, which is older by the age of the IMU's readings."""
-        s = self.filter.stand
-        late = self._tick - self._imu_at
-        rate = self._rate.rate - s.gyro_bias
-        q = self._known(q, s.offsets)
-        base, p, velocity = self._body.base(s.R, s.p, s.v, rate, q, qd)
-        if late and self._base_told:
+        s, told, late, gained = self.filter.stand, self._base_told, self._tick - self._imu_at, None
+        q, time = self._known(q, s.offsets), late * self._period
+        if late and told:
             # What the controller has planned since; its velocity is that of the base in its own axes.
-            told = self._base_told
-            gained = self._period * (told[-1] if late == 1 else sum(list(told)[-late:]))
-            way = (late * self._period) * (velocity + 0.5 * gained)
+            gained = self._period * (told[-1] if late == 1 else np.sum(list(told)[-late:], axis=0))
+        if self._base is not None:
+            pose, velocity = self._base(self._rate.rate, gained, time)
+            return RobotState(np.concatenate((pose, q)), np.concatenate((velocity, qd)))
+        base, p, velocity = self._body.base(s.R, s.p, s.v, self._rate.rate - s.gyro_bias, q, qd)
+        if gained is not None:
+            way = time * (velocity + 0.5 * gained)
             turn = pin.exp3(0.5 * way[3:])
             half = base @ turn
             p, base, velocity = p + half @ way[:3], half @ turn, velocity + gained

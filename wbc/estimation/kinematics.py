@@ -70,6 +70,11 @@ class SensedBody:
         self.leaning, self._beside = leaning, np.zeros((2, 3))
         self.mass = float(sum(inertia.mass for inertia in model.inertias))
 
+    @property
+    def mount(self) -> tuple[Array, Array] | None:
+        """Orientation, shape (3, 3), and place, shape (3,) [m], of the IMU in the base; None where joints move it."""
+        return None if self._behind else (self._placement.rotation, self._placement.translation)
+
     def update(self, joints: Array, attitude: Array) -> None:
         """Take joint angles.
 

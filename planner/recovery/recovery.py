@@ -100,11 +100,11 @@ class Recovery:
             unsure: as of `balance`.
         """
         execution, numbers = self._execution, self._parameters.recovery
-        if self._movable is None or balance.planned + unsure > 0.0 or not execution.may_go_again:
+        if self._movable is None or balance.planned + unsure > -numbers.tolerance or not execution.may_go_again:
             return False
         places, schedule = self._capture_point(local, window), execution.schedule
-        beyond = schedule.step(execution.landed).place.foot.side * float(places[1][1])
-        if beyond <= -float(schedule.ground.half_size[1]):
+        foot = schedule.step(execution.landed).place.foot
+        if not feet.contact[foot] or foot.side * float(places[1][1]) <= -float(schedule.ground.half_size[1]):
             return False
         other = execution.going_again()
         stance = other.schedule.step(other.landed).place

@@ -266,7 +266,9 @@ class Execution:
         if not self._times or self.fixed or self.leads_to == 0 or self.schedule.step(self.landed + 1).stop is not None:
             return False
         rolls = phase.roll is not None and now > phase.roll.start
-        return self.swing is None and not rolls
+        # A plan in which it stands lies between its steps, so that it is seen to land.
+        stood = phase.kind is PhaseKind.SINGLE or now > phase.start + CLOCK_ROUNDING
+        return self.swing is None and stood and not rolls
 
     def going_again(self) -> "Execution":
         """The execution in which the foot that landed last makes the next step as well, and the weight goes back."""

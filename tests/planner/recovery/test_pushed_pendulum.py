@@ -2,6 +2,7 @@
 
 import math
 from dataclasses import replace
+from itertools import pairwise
 
 import numpy as np
 import pytest
@@ -133,11 +134,18 @@ def test_a_foot_that_has_just_landed_steps_again_where_the_other_one_would_cross
     """Pushed to the left as the left foot has landed; not to the right, nor ahead. The step is one that was added."""
     gait = GaitParameters(steps=6, step_length=0.0, single_support=0.4, double_support=0.12, com_height=0.95)
     planner, com = WalkingPlanner(gait, stand(), 0.22, 0.11, legs=LEGS), np.array([0.0, 0.0, gait.com_height])
-    push = Push(gait.lift_off(4) - 0.1, 0.1, 500.0 * np.array([math.cos(direction), math.sin(direction), 0.0]))
+    push = Push(gait.lift_off(4) - 0.14, 0.1, 700.0 * np.array([math.cos(direction), math.sin(direction), 0.0]))
     trace = walk_pendulum(planner, stand(), gait.duration + 2.0, com=com, pushes=(push,))
     assert trace.fall_time is None
     swung = {plan.phase.step: plan.phase.stance.other for plan in trace.plans if plan.phase.kind is PhaseKind.SINGLE}
     assert "".join(swung[step].name[0] for step in sorted(swung)) == feet
+    # Both feet stand between two steps, so that each is seen to land.
+    single = [
+        (a.phase, b.phase)
+        for a, b in pairwise(trace.plans)
+        if a.phase.stance is not None and b.phase.stance is not None
+    ]
+    assert all(a.step == b.step for a, b in single)
     assert trace.plans[-1].phase.kind is PhaseKind.STAND
 
 

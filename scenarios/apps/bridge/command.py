@@ -173,7 +173,7 @@ def _on(address: str, told: WalkOptions, asked: list[str]) -> "tuple[str, Result
         progress = ProgressLine(scenario.name)
         with progress:
             result = walk_on(remote, scenario, told.out, progress)
-        ended = "interrupted" if result.interrupted else "the walk is over"
+        ended = "interrupted"  # else the plant has been told that the walk is over
     finally:
         remote.close(ended)
     return scenario.name, result

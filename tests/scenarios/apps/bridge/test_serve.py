@@ -12,7 +12,11 @@ from surefoot.joints import JointCommand
 from surefoot.scenarios.apps.bridge.frames import Kind, connected
 from surefoot.scenarios.apps.bridge.host import Care, Host
 from surefoot.scenarios.apps.bridge.messages import Start, command_bytes, end_bytes, json_bytes, start_bytes
+from surefoot.scenarios.apps.bridge.remote import Remote
 from surefoot.scenarios.apps.bridge.serve import MOST_LATE, Server
+from surefoot.scenarios.apps.bridge.walk import walk_on
+from surefoot.scenarios.judge.verdict import judge
+from surefoot.scenarios.run import run
 from surefoot.scenarios.setup.walk import resolve
 
 pytestmark = pytest.mark.unit
@@ -62,6 +66,25 @@ def test_without_an_end_the_joints_are_damped(walk):
     assert not end.in_order
     assert "has closed the connection" in end.said
     assert end.time >= 1.0  # the robot is simulated until it is down
+
+
+def test_a_plant_is_told_that_the_walk_is_over_before_the_log_is_judged(monkeypatch, tmp_path):
+    """By the wall clock its joints would be damped meanwhile."""
+    scenario = surefoot.load("stand", {"duration": 0.05, "criteria": {}})
+    server = Server(resolve(scenario), "127.0.0.1", 0, lambda said: None, Care())
+    ends = []
+    serving = threading.Thread(target=lambda: ends.append(server.run(lambda: False)))
+    serving.start()
+
+    def judged(log):
+        serving.join(PATIENCE)
+        return judge(log)
+
+    monkeypatch.setattr(run, "judge", judged)
+    remote = Remote(server.address, {})
+    assert walk_on(remote, scenario, tmp_path).verdict.passed
+    (end,) = ends
+    assert (end.in_order, end.said, end.time) == (True, "the walk is over", 0.05)
 
 
 def test_a_plant_that_is_slower_than_the_wall_clock_says_by_how_much_and_does_not_catch_up(walk, monkeypatch):

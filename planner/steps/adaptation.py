@@ -27,14 +27,16 @@ def with_step_in_place(schedule: Schedule, now: float, foot: Foot | None = None,
     present = schedule.following(now)
     stand = next(phase for phase in present if phase.kind is PhaseKind.STAND)
     kept, stop = schedule.until(stand.step, stands=stand is present[0]), None
+    width = schedule.gait.step_width
     if foot is not None and kept.gait.step_foot(stand.step + 1) is not foot:
-        kept = _with_feet_swapped(kept)
+        # The foot that landed last: as far beside the path as it is, which is laid from the other one.
+        kept, width = _with_feet_swapped(kept), kept.last.path.width
     if kept.stands:
         double, stood = schedule.durations[1], max(0.0, now - kept.last.end)
         here, usual = (float(np.hypot(*way)) for way in kept.apart(stand.step))
         farther = 1.0 if at_once else max(1.0, here / usual)
         stop = Stop(stood, double, 0.0) if at_once else Stop.usual(stood, double, farther)
-    return kept.followed(Twist(width=schedule.gait.step_width), stop, inserted=True)
+    return kept.followed(Twist(width=width), stop, inserted=True)
 
 
 def with_steps_repeated(schedule: Schedule, number: int) -> Schedule:
@@ -50,7 +52,8 @@ def with_foot_again(schedule: Schedule, number: int) -> Schedule:
     It is now the other foot that landed last, and feet alternate from there on.
     """
     kept = _with_feet_swapped(schedule.until(number, stands=False))
-    kept = kept.followed(Twist(width=schedule.gait.step_width), None, inserted=True)
+    # As far beside the path as it is, which is within reach; the gait's own width may not be.
+    kept = kept.followed(Twist(width=kept.last.path.width), None, inserted=True)
     for step in schedule.after(number):
         kept = kept.followed(step.stride, step.stop, inserted=True) if step.inserted else kept
     return kept

@@ -225,6 +225,18 @@ def test_a_foot_that_steps_twice_comes_down_where_it_was_and_the_walk_goes_on(st
     assert [phase.samples for phase in schedule.phases[:5]] == [phase.samples for phase in plain.phases[:5]]
 
 
+def test_a_foot_that_steps_twice_after_a_wider_step_comes_down_where_it_was(stand):
+    """And not as far beside the path as the gait's own width, which may be too near to the other foot."""
+    gait = GaitParameters(bouts=(Bout(0.0, (Twist(0.2, width=0.3),) * 3),), steps=3)
+    plain = Schedule.start(gait, stand(gait.step_width), NEAR).extended(1000.0)
+    again = with_foot_again(plain, 2).after(2)[0]
+    np.testing.assert_allclose(again.place.position, plain.step(2).place.position)
+    last = plain.step(3).place
+    in_place = with_step_in_place(plain, plain.last.end + 10.0, last.foot).after(3)[0]
+    assert in_place.place.foot is last.foot
+    np.testing.assert_allclose(in_place.place.position, last.position)
+
+
 def test_a_foot_left_far_behind_rolls_as_it_leaves_the_ground(stand):
     """From 1.1 radii on; the last foot of a walk stays."""
     gait = GaitParameters(steps=3, step_length=0.5, single_support=0.5, double_support=0.12, initial_stand=0.0)

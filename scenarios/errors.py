@@ -90,6 +90,10 @@ class LinkError(Exception):
     """A plant or a controller in another process that cannot be talked to; the message says what and what is right."""
 
 
+class LinkClosedError(LinkError):
+    """The other side has closed the connection; what it sent before may still be heard."""
+
+
 def _readable(problem: str) -> str:
     if len(problem) > LONGEST_SENTENCE:
         problem = f"{problem[: LONGEST_SENTENCE // 2]} ... {problem[-LONGEST_SENTENCE // 2 :]}"

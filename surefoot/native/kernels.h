@@ -912,7 +912,7 @@ int64_t filter_correct(const Filter *filter, double gate);
 /*
  * Counterpart of `wbc.estimation.estimator.SensedState._now`, and of `SensedBody.base` of an IMU that no joint moves.
  *
- * The arrays of the filter's state, mount and lever of the IMU in the base, its angular velocity without its bias, what
+ * The arrays of the filter's state, mount and lever of the IMU in the base, its angular velocity with its bias, what
  * the base was planned to gain since, and where pose (place, quaternion x y z w) and velocity of the base go.
  */
 typedef struct {

@@ -43,8 +43,8 @@ class TorqueWrench:
         period: control period [s].
         sensors: noise of encoders and torques.
         held: whether a torque acted all the while since the call before, and the states are those at both ends, as
-            under commanded torques. Else the mean of it and the torque of the call before counts, which is that of
-            velocities in the middle between two calls, and of a torque that changes evenly.
+            under commanded torques. Else the mean of it and the torque of the call before counts. It suits velocities
+            in the middle between two calls, and a torque that changes evenly.
     """
 
     def __init__(

@@ -10,7 +10,7 @@ from collections.abc import Callable
 from enum import IntEnum
 from typing import NamedTuple
 
-from surefoot.scenarios.errors import LinkError
+from surefoot.scenarios.errors import LinkClosedError, LinkError
 
 MAGIC, VERSION = b"SRFT", 1
 _HEADER = struct.Struct("<4sBBHII")
@@ -144,7 +144,7 @@ class Link:
             except BlockingIOError:
                 return False
             except OSError:
-                raise LinkError(f"{self.peer} has closed the connection") from None
+                raise LinkClosedError(f"{self.peer} has closed the connection") from None
         return True
 
     def receive(self, patience: float) -> Frame | None:
@@ -165,7 +165,7 @@ class Link:
             except OSError:
                 data = b""
             if not data:
-                raise LinkError(f"{self.peer} has closed the connection")
+                raise LinkClosedError(f"{self.peer} has closed the connection")
             self._reader.feed(data)
         return frame
 

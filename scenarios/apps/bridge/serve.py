@@ -11,7 +11,7 @@ from surefoot.scenarios.apps.bridge.door import Door
 from surefoot.scenarios.apps.bridge.frames import Frame, Kind, Link
 from surefoot.scenarios.apps.bridge.host import Care, Host
 from surefoot.scenarios.apps.bridge.messages import command_of, end_bytes, push_of, start_of, state_bytes, why_of
-from surefoot.scenarios.errors import LinkError
+from surefoot.scenarios.errors import LinkClosedError, LinkError
 from surefoot.scenarios.setup.walk import Walk
 from surefoot.values import dataclass
 
@@ -127,7 +127,8 @@ class Server:
             return Served(plant.time, why_of(end.payload), in_order=True)
         except LinkError as fault:
             # A controller that a signal ends may leave states unread, and be gone before its end is looked for.
-            if (parting := None if plant.damped or stopped() else link.last_word()) is not None:
+            parting = link.last_word() if isinstance(fault, LinkClosedError) else None
+            if parting is not None:
                 return Served(plant.time, why_of(parting.payload), in_order=True)
             return self._let_down(link, str(fault))
 

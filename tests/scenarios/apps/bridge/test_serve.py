@@ -68,6 +68,13 @@ def test_without_an_end_the_joints_are_damped(walk):
     assert end.time >= 1.0  # the robot is simulated until it is down
 
 
+def test_an_end_after_a_command_that_nobody_may_obey_is_no_end_in_order(walk):
+    wrong = command_bytes(1, JointCommand(np.full(len(walk.robot.joint_names), np.nan)))
+    end = served(walk, (Kind.COMMAND, wrong), END)
+    assert not end.in_order
+    assert "a command whose numbers are not finite" in end.said
+
+
 def test_a_plant_is_told_that_the_walk_is_over_before_the_log_is_judged(monkeypatch, tmp_path):
     """By the wall clock its joints would be damped meanwhile."""
     scenario = surefoot.load("stand", {"duration": 0.05, "criteria": {}})

@@ -31,8 +31,8 @@ def walk_fixture():
     return resolve(surefoot.load("walk", {"gait.steps": 1}))
 
 
-def served(walk, *last, real_time=False, after=0.0):
-    """How serving ends for a controller that sends commands, after a while [s] these frames, and is gone."""
+def served(walk, *last, real_time=False, after=0.0, stays=False):
+    """How serving ends for a controller that sends commands, after a while [s] these frames, and is gone or stays."""
     n = len(walk.robot.joint_names)
     server = Server(walk, "127.0.0.1", 0, lambda said: None, Care(), real_time)
     ends = []
@@ -49,6 +49,8 @@ def served(walk, *last, real_time=False, after=0.0):
         time.sleep(after)
         for kind, payload in last:
             link.send(kind, payload, PATIENCE)
+        if stays:
+            serving.join(PATIENCE)
     serving.join(PATIENCE)
     return ends[0]
 
@@ -70,7 +72,7 @@ def test_without_an_end_the_joints_are_damped(walk):
 
 def test_an_end_after_a_command_that_nobody_may_obey_is_no_end_in_order(walk):
     wrong = command_bytes(1, JointCommand(np.full(len(walk.robot.joint_names), np.nan)))
-    end = served(walk, (Kind.COMMAND, wrong), END)
+    end = served(walk, (Kind.COMMAND, wrong), END, stays=True)
     assert not end.in_order
     assert "a command whose numbers are not finite" in end.said
 

@@ -196,7 +196,7 @@ class WholeBodyController:
         """
         start = time.perf_counter()
         if sensing.wrench is not None:
-            load = self._observer.update(self.terms, sensing.wrench, sensing.load_deviation)
+            load = self._observer.update(self.terms, sensing.wrench, sensing.load_deviation, sensing.wrench_age)
             if load is not NO_LOAD:
                 self.terms.bear(load)
             self.schedule.weight = self.terms.mass * GRAVITY

@@ -59,12 +59,14 @@ class FootSensing:
         contact: which soles the ground carries, (left, right); None where the normal forces shall tell.
         load_deviation: standard deviations of the force and of the moment that momentum and wrenches give for a load,
             zero for the truth, infinite where they give none [N, N·m].
+        wrench_age: time since the wrenches acted, by latency and filters; zero for the truth [s].
     """
 
     normal_force: tuple[float, float]
     wrench: Array | None = None
     contact: tuple[bool, bool] | None = None
     load_deviation: tuple[float, float] = (0.0, 0.0)
+    wrench_age: float = 0.0
 
 
 _put = object.__setattr__

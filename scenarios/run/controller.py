@@ -191,8 +191,7 @@ class Controller:
         if self._output.holds:
             self._next = self._output.after(now)
         reference = self._references.reference(self.planning.plan, until)
-        inferred = None if self._torques is None else self._torques.deviation
-        sensing = foot_sensing(self.estimate, self.wrench, self._estimates, inferred)
+        sensing = foot_sensing(self.estimate, self.wrench, self._estimates, self._torques)
         fails = self._faults is not None and self._faults.active("qp_failure", self.planning.tick(now))
         if self.whole_body.driven is not None:
             self._tell(self.whole_body.driven, driven_joints)

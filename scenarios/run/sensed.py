@@ -24,6 +24,7 @@ from surefoot.wbc.estimation.estimate import Deviation, Estimate, Planned
 from surefoot.wbc.estimation.estimator import Footing, SensedState
 from surefoot.wbc.estimation.kinematics import ImuMount
 from surefoot.wbc.estimation.parameters import ContactDetection, EstimatorParameters, GroundNoise, SensorNoise
+from surefoot.wbc.estimation.torques import TorqueWrench
 from surefoot.wbc.types import Array, FootSensing, WbcReference, WbcReport
 
 _OPTIONS = ("sensing", "options")
@@ -161,7 +162,9 @@ class Senses:
             return last
         estimate: Estimate = self._sense(readings)
         felt = readings.wrench
-        return estimate if estimate.wrench is not None or felt is None else replace(estimate, wrench=felt.values)
+        if estimate.wrench is not None or felt is None:
+            return estimate
+        return replace(estimate, wrench=felt.values, wrench_age=felt.age)
 
     def told(self, reference: WbcReference, report: WbcReport) -> None:
         """Tell the estimator what was decided, if it wants to know."""
@@ -169,23 +172,23 @@ class Senses:
             self._told(Planned(report.acceleration.copy(), report.torque.copy(), report.active, reference.rolling_foot))
 
 
-def foot_sensing(
-    estimate: Estimate, wrench: Array, wanted: bool, inferred: tuple[float, float] | None = None
-) -> FootSensing:
+def foot_sensing(estimate: Estimate, wrench: Array, wanted: bool, inferred: TorqueWrench | None = None) -> FootSensing:
     """What the feet feel.
 
     Args:
         estimate: of this tick.
         wrench: of the soles, shape (2, 6) [N, N·m].
         wanted: whether a lasting force is to be found.
-        inferred: deviations of force and moment of wrenches that follow from the joints' torques, for an estimate that
-            tells none; None of wrenches that are felt [N, N·m].
+        inferred: what makes these wrenches of the joints' torques, for an estimate that tells none; None of wrenches
+            that are felt.
     """
-    forces, sure = (wrench.item(2), wrench.item(8)), estimate.deviation
-    deviation = inferred if sure is None else (sure.force, sure.moment)
-    if deviation is None:
-        return _a_sensing(forces, wrench if wanted else None, estimate.contact)
-    return FootSensing(forces, wrench if wanted else None, estimate.contact, deviation)
+    forces, felt = (wrench.item(2), wrench.item(8)), wrench if wanted else None
+    age, sure = estimate.wrench_age + (0.0 if inferred is None else inferred.late), estimate.deviation
+    if sure is not None:
+        return FootSensing(forces, felt, estimate.contact, (sure.force, sure.moment), age)
+    if inferred is not None:
+        return FootSensing(forces, felt, estimate.contact, inferred.deviation, age)
+    return _a_sensing(forces, felt, estimate.contact, wrench_age=age)
 
 
 def unsure(deviation: Deviation, state: CentroidalState, feet: FeetState) -> tuple[CentroidalState, FeetState]:

@@ -294,6 +294,9 @@ typedef struct {
     const double *wrench;
     double *felt;
     double *com;
+    double *past;
+    int64_t past_count;
+    int64_t *newest;
 } LoadSums;
 
 void load_sums_add(const LoadSums *sums);
@@ -446,6 +449,7 @@ typedef struct {
     double weight;
     double span;
     double ticks;
+    double late;
     int64_t spans_count;
     int64_t latest_count;
     double most_share;
@@ -459,6 +463,9 @@ typedef struct {
     double *felt;
     double *com;
     double *momentum;
+    double *past;
+    int64_t past_count;
+    int64_t *newest;
     double *spans;
     int64_t *filled;
     double *estimate;

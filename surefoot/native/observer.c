@@ -5,16 +5,40 @@
 /* Numbers of an estimate: force x, y; moment x, y, z; share of the weight. */
 enum { NUMBERS = 6, PULLS = 5, MOST_SPANS = 64 };
 
-static void moving(const LoadSpan *span, double *momentum) {
-    const Terms *terms = span->terms;
+static void moving(const Terms *terms, double *momentum) {
     double turning[3];
     for (int i = 0; i < 3; i++) momentum[i] = terms->model_mass * terms->com_velocity[i];
     cross(terms->com, momentum, turning);
     for (int i = 0; i < 3; i++) momentum[3 + i] = terms->angular_momentum[i] + turning[i];
 }
 
-/* Momentum and moment of momentum about the origin now, where a span begins. */
-void load_moving(const LoadSpan *span) { moving(span, span->momentum); }
+/* Momentum and moment of momentum about the origin now, where the first span begins. */
+void load_moving(const LoadSpan *span) {
+    moving(span->terms, span->momentum);
+    for (int64_t k = 0; k < span->past_count; k++) memcpy(span->past + 6 * k, span->momentum, 6 * sizeof(double));
+}
+
+/* Counterpart of `LoadObserver.update` within a span. */
+void load_sums_add(const LoadSums *sums) {
+    const double *map = sums->terms->sole_wrench_map;
+    for (int i = 0; i < 6; i++) {
+        double felt = 0.0;
+        for (int j = 0; j < 12; j++) felt += map[12 * i + j] * sums->wrench[j];
+        sums->felt[i] += felt;
+    }
+    for (int i = 0; i < 3; i++) sums->com[i] += sums->terms->com[i];
+    sums->newest[0] = (sums->newest[0] + 1) % sums->past_count;
+    moving(sums->terms, sums->past + 6 * sums->newest[0]);
+}
+
+/* Momenta as they were when the forces acted that the soles tell of now: counterpart of `LoadObserver._then`. */
+static void moved(const LoadSpan *span, double *momentum) {
+    const double late = clamp(span->late, 0.0, span->past_count - 2.0);
+    const int64_t whole = (int64_t)late, newest = span->newest[0] + span->past_count - whole;
+    const double *younger = span->past + 6 * (newest % span->past_count);
+    const double *older = span->past + 6 * ((newest - 1) % span->past_count);
+    for (int i = 0; i < 6; i++) momentum[i] = younger[i] + (late - whole) * (older[i] - younger[i]);
+}
 
 /* Values of which nothing counts up to the first limit, all from the second one on. */
 static double ramp(double value, double none, double full) {
@@ -62,16 +86,18 @@ static void follow(const LoadSpan *span) {
 /* Holds the forces of a span against its change of momentum, and has the load follow; says whether it did. */
 int64_t load_span_end(const LoadSpan *span, int64_t follows) {
     double felt[6], com[3], now[6], change[6], turning[3], found[NUMBERS];
-    moving(span, now);
+    moved(span, now);
+    /* By how much the CoM was farther back when the forces acted, in the time of a momentum. */
+    const double back = 0.5 * span->late * span->span / (span->ticks * span->terms->model_mass);
+    for (int i = 0; i < 3; i++) {
+        com[i] = span->com[i] / span->ticks - back * (span->momentum[i] + now[i]);
+        span->com[i] = 0.0;
+    }
     for (int i = 0; i < 6; i++) {
         felt[i] = span->felt[i] / span->ticks;
         change[i] = (now[i] - span->momentum[i]) / span->span;
         span->momentum[i] = now[i];
         span->felt[i] = 0.0;
-    }
-    for (int i = 0; i < 3; i++) {
-        com[i] = span->com[i] / span->ticks;
-        span->com[i] = 0.0;
     }
     const double pressing = change[2] + span->weight, least = span->least_press * span->weight;
     const int known = pressing > least && felt[2] > least;

@@ -96,14 +96,3 @@ void terms_shift(const Terms *terms, int64_t foot, double forward, double pitch)
     dual_action(sole->contact_rotation, sole->contact_position, sole->wrench_map, 12);
     dual_action(R, p, terms->to_sole + 36 * foot, 6);
 }
-
-/* Counterpart of `wbc.external.LoadObserver.update` within a span. */
-void load_sums_add(const LoadSums *sums) {
-    const double *map = sums->terms->sole_wrench_map;
-    for (int i = 0; i < 6; i++) {
-        double felt = 0.0;
-        for (int j = 0; j < 12; j++) felt += map[12 * i + j] * sums->wrench[j];
-        sums->felt[i] += felt;
-    }
-    for (int i = 0; i < 3; i++) sums->com[i] += sums->terms->com[i];
-}

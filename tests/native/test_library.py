@@ -92,6 +92,7 @@ def test_a_struct_is_filled_whole_and_with_what_it_points_to(kernels):
     with pytest.raises(TypeError, match="works on a Torso"):
         kernels.bind("task_torso", bench)
     numbers = {"terms": kernels.fill("Terms"), "wrench": np.zeros((2, 6)), "felt": np.zeros(6), "com": np.zeros(3)}
+    numbers |= {"past": np.zeros((4, 6)), "past_count": 4, "newest": np.zeros(1, dtype=np.int64)}
     kernels.fill("LoadSums", **numbers)
     for wrong in (np.zeros(6, dtype=np.float32), np.zeros((6, 2))[:, 0]):
         with pytest.raises(TypeError, match=r"LoadSums\.felt points to double"):

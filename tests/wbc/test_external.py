@@ -7,7 +7,7 @@ import numpy as np
 import pinocchio as pin
 import pytest
 
-from surefoot.wbc.external import LoadObserver
+from surefoot.wbc.external import PAST, LoadObserver
 from surefoot.wbc.model import RobotTerms
 from surefoot.wbc.types import GRAVITY, NO_LOAD, ExternalLoad, FootSensing
 
@@ -18,9 +18,12 @@ FORCE, MOMENT = np.array([-30.0, 20.0, 0.0]), np.array([-9.0, -12.0, 5.0])
 LOAD = ExternalLoad(FORCE, MOMENT, 1.15)
 
 
-def observed(scale=1.0, pull=lambda time: np.zeros(3), duration=1.0, fault=None, unsure=None):
-    """Loads at every tick of a body, far from the origin, that its feet shake and that is pulled 0.8 m over its CoM."""
-    rng, observer, loads = np.random.default_rng(5), LoadObserver(MASS, PERIOD), []
+def observed(scale=1.0, pull=lambda time: np.zeros(3), duration=1.0, fault=None, unsure=None, late=0, told=0.0):
+    """Loads at every tick of a body, far from the origin, that its feet shake and that is pulled 0.8 m over its CoM.
+
+    What the feet feel is told so many ticks late, with an age in ticks.
+    """
+    rng, observer, loads, wrenches = np.random.default_rng(5), LoadObserver(MASS, PERIOD), [], []
     mass, weight = scale * MASS, np.array([0.0, 0.0, -scale * MASS * GRAVITY])
     com, momentum = np.array([40.0, -7.0, 1.0]), np.array([20.0, -30.0, 5.0])
     spin = np.cross(com, momentum)
@@ -39,9 +42,11 @@ def observed(scale=1.0, pull=lambda time: np.zeros(3), duration=1.0, fault=None,
         terms = SimpleNamespace(
             com=com, com_velocity=momentum / mass, angular_momentum=turning, sole_wrench_map=wrench_map
         )
-        wrench = np.concatenate((felt, np.zeros(6))).reshape(2, 6)
-        deviation = () if unsure is None else (unsure(tick * PERIOD),)
-        loads.append(observer.update(terms, wrench if fault is None else fault(tick, wrench), *deviation))
+        wrenches.append(np.concatenate((felt, np.zeros(6))).reshape(2, 6))
+        wrench = wrenches[max(tick - late, 0)]
+        deviation = (0.0, 0.0) if unsure is None else unsure(tick * PERIOD)
+        wrench = wrench if fault is None else fault(tick, wrench)
+        loads.append(observer.update(terms, wrench, deviation, told * PERIOD))
     return loads
 
 
@@ -51,6 +56,39 @@ def test_the_observer_finds_a_lasting_force_its_moment_and_the_weight_however_th
     np.testing.assert_allclose(load.force, [40.0, -15.0, 0.0], atol=0.1)
     np.testing.assert_allclose(load.moment, [12.0, 32.0, 0.0], atol=0.1)
     assert load.mass_scale == pytest.approx(scale, abs=1e-6)
+
+
+@pytest.mark.parametrize("late", [1, 3, 70])
+def test_forces_that_are_told_late_are_held_against_the_motion_of_their_time(late):
+    """Against that of now they are moments that nobody exerts; beyond what is remembered they are, too."""
+    loads = observed(pull=lambda time: np.array([40.0, -15.0, 0.0]), late=late, told=late)
+    if late < PAST:
+        np.testing.assert_allclose(loads[-1].force, [40.0, -15.0, 0.0], atol=0.1)
+        np.testing.assert_allclose(loads[-1].moment, [12.0, 32.0, 0.0], atol=0.2)
+    # The first wrenches are told of more ticks than one.
+    quiet, taken_for_new = observed(late=late, told=late)[100:], observed(late=late)[100:]
+    assert all(load is NO_LOAD for load in quiet) == (late < PAST)
+    assert max(np.abs(load.moment).max() for load in taken_for_new) > 10.0
+
+
+def test_between_two_ticks_the_motion_is_as_far_from_each_as_the_age_says():
+    """A push of the feet that grows evenly tells 1.5 ticks from 1 and from 2."""
+    found = {}
+    for told in (1.0, 1.5, 2.0):
+        observer = LoadObserver(MASS, PERIOD)
+        for tick in range(40):
+            now, then = tick * PERIOD, (tick - 1.5) * PERIOD
+            # Of forces at the ends of ticks a mean is half a tick younger than the momentum: the last rows take it out.
+            momentum = np.array([500.0 * now * now + 500.0 * PERIOD * now, 0.0, 0.0])
+            terms = SimpleNamespace(
+                com=np.zeros(3), com_velocity=momentum / MASS, angular_momentum=np.zeros(3),
+                sole_wrench_map=np.hstack((np.eye(6), np.zeros((6, 6)))),
+            )  # fmt: skip
+            wrench = np.zeros((2, 6))
+            wrench[0, [0, 2]] = 1000.0 * then, MASS * GRAVITY
+            observer.update(terms, wrench, (0.0, 0.0), told * PERIOD)
+        found[told] = observer._spans[-1, 0]
+    np.testing.assert_allclose([found[told] for told in (1.0, 1.5, 2.0)], [1.0, 0.0, -1.0], atol=1e-9)
 
 
 def test_the_weight_is_known_within_a_tenth_of_a_second_and_never_jumps():

@@ -44,6 +44,7 @@ class SoleContact:
         tared: how long each sensor was tared [s].
         deviation: of a force and of a moment, both soles together, in the mean of a span of the load observer [N, N·m].
         threshold: normal force from which on a contact is felt [N].
+        age: time since the wrench acted, the low pass included [s].
     """
 
     def __init__(
@@ -61,6 +62,7 @@ class SoleContact:
         cut = CUT * min(QUIET / noise, 1.0) ** (2.0 / 3.0) if noise > 0.0 else math.inf
         cut = math.inf if deviation else cut
         self._share, left = _low_pass(cut, period)
+        self.age = self._late = period * (1.0 - self._share) / self._share
         self._slow_share, slowly = _low_pass(SLOW_CUT, period)
         # What is filtered already is no white noise, of which a mean has less.
         mean = math.sqrt(2.0) if deviation else math.sqrt(2.0 * min(period / SPAN, 1.0))
@@ -95,6 +97,7 @@ class SoleContact:
         elif reading.fresh:
             self._filtered = self._filtered + self._share * (reading.values - self._filtered)
         self.wrench = wrench = self._filtered - self._tare
+        self.age = reading.age + self._late
         self._slow = self._slow + self._slow_share * (wrench[:, 2] - self._slow)
         force = wrench[:, 2].tolist()
         for k in (0, 1):

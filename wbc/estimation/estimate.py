@@ -41,6 +41,7 @@ class Estimate:
         contact: which soles the ground carries; None where the controller shall decide by the wrench.
         deviation: how sure the estimate is; None where that is not known, which counts as the truth.
         channels: further numbers for the log, by name.
+        wrench_age: time since the wrench acted, by latency of the sensors and by filters [s].
     """
 
     state: RobotState
@@ -48,6 +49,7 @@ class Estimate:
     contact: tuple[bool, bool] | None = None
     deviation: Deviation | None = None
     channels: Mapping[str, Array] = field(default_factory=dict)
+    wrench_age: float = 0.0
 
 
 @dataclass(frozen=True, slots=True)

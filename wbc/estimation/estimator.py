@@ -142,8 +142,8 @@ class SensedState:
             # The walk is lost with it; what is left falls as a body does.
             state = RobotState(np.concatenate((state.q[:7], q)), np.concatenate((np.zeros(6), qd)))
         self._state = state
-        felt = self._contact.felt
-        return Estimate(state, self._contact.wrench, (felt[0], felt[1]), self._deviation, self._channels())
+        contact, felt = self._contact, self._contact.felt
+        return Estimate(state, contact.wrench, (felt[0], felt[1]), self._deviation, self._channels(), contact.age)
 
     def _channels(self) -> dict[str, Array]:
         s = self.filter.stand
@@ -171,7 +171,7 @@ class SensedState:
         if at > self._torques_at:
             torques.update(self._measured(readings), torque.values, (at - self._torques_at) * self._period)
             self._torques_at = at
-        return Reading(torques.wrench, torque.age, True)
+        return Reading(torques.wrench, torque.age + torques.late, True)
 
     def _measured(self, readings: Readings) -> RobotState:
         """The state of the encoders' last way: its mean velocity, which is that of its middle.

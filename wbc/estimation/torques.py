@@ -45,6 +45,11 @@ class TorqueWrench:
         held: whether a torque acted all the while since the call before, and the states are those at both ends, as
             under commanded torques. Else the mean of it and the torque of the call before counts. It suits velocities
             in the middle between two calls, and a torque that changes evenly.
+
+    Attributes:
+        wrench: as of the last call, shape (2, 6) [N, N·m].
+        deviation: of its forces and of its moments, the largest [N, N·m].
+        late: by how much the low pass makes it later [s].
     """
 
     def __init__(
@@ -55,6 +60,7 @@ class TorqueWrench:
         # As in an α-β filter the noise grows with the bandwidth faster than the lag falls.
         quiet = min((FINE / sensors.encoder) ** 0.4, 1.0) if sensors.encoder > 0.0 else 1.0
         self._gain = gain = 1.0 - math.exp(-math.tau * BANDWIDTH * quiet * period)
+        self.late = period * (1.0 - gain) / gain
         # White noise of a velocity, differenced and low-passed, and that of a torque.
         differenced, passed = 2.0 * gain**2 / (2.0 - gain) / period**2, gain / (2.0 - gain)
         rate = max(sensors.encoder, 1e-7) * math.sqrt(2.0) / period

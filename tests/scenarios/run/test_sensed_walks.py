@@ -1,5 +1,7 @@
 """Estimators that see nothing but sensors: what they are asked and told, whose fault is whose, and walks with ours."""
 
+import math
+
 import numpy as np
 import pytest
 
@@ -14,6 +16,7 @@ from surefoot.wbc.estimation import estimator
 from surefoot.wbc.estimation.estimate import Deviation, Estimate, Planned
 from surefoot.wbc.estimation.parameters import GroundNoise
 from surefoot.wbc.estimation.torques import TorqueWrench
+from surefoot.wbc.external import LoadObserver
 from surefoot.wbc.types import GRAVITY, RobotState
 
 STAND = {"gait.steps": 0, "duration": 0.1}
@@ -186,6 +189,36 @@ def test_without_a_wrench_of_the_estimator_the_controller_has_that_of_the_sensor
         used, said, true = (log[channel].field(side) for channel in ("/estimation", "/readings", "/measurement"))
         np.testing.assert_array_equal(used, said)
         assert np.abs(used - true).max() > 10.0
+
+
+@pytest.mark.unit
+def test_the_load_observer_is_told_how_old_wrenches_are(tmp_path, monkeypatch):
+    """By the latency of their sensors and by what filters add; the truth is of now."""
+    ages, update = [], LoadObserver.update
+
+    def noted(self, terms, wrench, deviation, age):
+        ages.append(age)
+        return update(self, terms, wrench, deviation, age)
+
+    class Bare(Listening):
+        def sense(self, readings):
+            return Estimate(self.inner.sense(readings).state)
+
+    monkeypatch.setattr(LoadObserver, "update", noted)
+    found = {}
+    for name, estimator_, keys in (
+        ("truth", None, {}),
+        ("bare", Bare, {}),
+        ("ours", sensed_state, {}),
+        ("torques", sensed_state, {"sensing.wrench": "none"}),
+    ):
+        stand(estimator_, tmp_path / name, **({} if name == "truth" else GOOD_SENSORS), **keys)
+        found[name] = ages[-1]
+    latency = GOOD.feet.latency
+    assert found["truth"] == 0.0 and found["bare"] == pytest.approx(latency)
+    # Low passes of 100 and 60 Hz are late by about the times of which these are the frequencies, over a turn.
+    assert latency + 0.0005 < found["ours"] < latency + 1.0 / (math.tau * 100.0)
+    assert latency + 0.001 < found["torques"] < latency + 1.0 / (math.tau * 60.0)
 
 
 @pytest.mark.unit

@@ -119,6 +119,17 @@ def test_the_last_contact_stands_whatever_its_edge():
     assert feet.contact.firm == [True, False]
 
 
+@pytest.mark.parametrize("sensors", [GOOD, POOR])
+def test_a_force_that_grows_evenly_acted_when_its_age_says(sensors):
+    feet, latency, slope = Feet(sensors, bias=np.zeros((2, 6))), 0.003, np.array([1000.0, 5000.0])
+    for tick in range(100):
+        wrench = np.zeros((2, 6))
+        wrench[:, 2] = 100.0 + slope * (tick * PERIOD - latency)
+        feet.contact.update(Reading(wrench, latency, True), [True, True], (0.0, 0.0))
+    assert feet.contact.age > latency + 0.0005
+    np.testing.assert_allclose(feet.contact.wrench[:, 2], 100.0 + slope * (99 * PERIOD - feet.contact.age), atol=1e-6)
+
+
 def test_a_sole_on_springs_under_its_corners_moves_until_they_bear_the_change():
     half, give, rng = (0.11, 0.05), 2.5e-7, np.random.default_rng(2)
     changed = rng.normal(size=(2, 6)) * 100.0

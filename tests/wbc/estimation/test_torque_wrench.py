@@ -83,6 +83,17 @@ def test_a_force_that_sets_in_is_followed_within_its_bandwidth(robot):
     np.testing.assert_allclose(seen[:, 2], other[:, 2], atol=5.0)
 
 
+def test_forces_that_change_evenly_acted_before_by_what_the_low_pass_makes_them_late(robot):
+    q = robot.standing
+    (wrench, torque), (other, changed) = balanced(robot, q, 0.4), balanced(robot, q, 0.6)
+    found = TorqueWrench(robot.model, robot.frames.soles, PERIOD, SensorNoise())
+    for tick in range(101):
+        seen = found.update(RobotState(q, np.zeros(robot.nv)), torque + 0.01 * tick * (changed - torque))
+    then = wrench + 0.01 * (100 - found.late / PERIOD) * (other - wrench)
+    assert found.late > 0.001
+    np.testing.assert_allclose(seen[:, 2], then[:, 2], atol=0.01 * np.abs(other - wrench)[:, 2].max())
+
+
 @pytest.mark.parametrize("sensors", [SensorNoise(), SensorNoise(encoder=1.5e-4, joint_torque=2.0)])
 def test_noise_of_encoders_and_torques_is_as_large_as_it_says(robot, sensors):
     q, rng = robot.standing, np.random.default_rng(4)

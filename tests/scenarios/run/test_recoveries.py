@@ -92,7 +92,7 @@ def test_down_stairs_the_foot_that_stood_lands_again_farther_out_before_the_walk
 def test_the_last_step_off_the_stairs_crosses(tmp_path, from_sensors):
     """Its foot comes down from a tread, but the leg that stands lets nothing down."""
     when = "step: 7, phase: single, fraction: 0.2"
-    # With the truth it falls from 0.22 on, from good sensors in two of three seeds from 0.2 on.
+    # With the truth it falls from 0.22 on, from good sensors in one of three seeds at 0.2.
     impulse = 0.18 if from_sensors else 0.2
     result = pushed("stairs-down", ("duration=17.0",), impulse, RIGHT, when, tmp_path)
     metrics, log = assert_recovered(result)

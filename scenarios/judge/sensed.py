@@ -106,19 +106,28 @@ CARRYING = 0.05
 PUSH_LASTS = 0.5
 """Time after a push in which a force that is still counted with may be of it [s]."""
 
-_GHOST_READS = {"/estimate": ("external_force",), "/measurement": ("external_force",)}
+_PUSHED = {"/measurement": ("external_force",)}
 
 
-@metric(unit="N", reads=_GHOST_READS, body=True, least=0.0, tolerance=(1.0, SHARE))
+@metric(unit="N", reads={"/estimate": ("external_force",), **_PUSHED}, body=True, least=0.0, tolerance=(1.0, SHARE))
 def ghost_force_max(run: RunView) -> float:
     """Largest external force that the controller counts with where nothing pushes [N]."""
+    return _ghost(run, "external_force")
+
+
+@metric(unit="N m", reads={"/estimate": ("external_moment",), **_PUSHED}, body=True, least=0.0, tolerance=(1.0, SHARE))
+def ghost_moment_max(run: RunView) -> float:
+    """Largest external moment about the CoM that the controller counts with where nothing pushes [N m]."""
+    return _ghost(run, "external_moment")
+
+
+def _ghost(run: RunView, name: str) -> float:
     ticks = round(PUSH_LASTS * run.constants.similarity.time * run.constants.control_rate)
     pushed = np.flatnonzero(run.field("/measurement", "external_force").any(axis=1))
     quiet = np.ones(run.ticks, dtype=bool)
     for tick in pushed:
         quiet[tick : tick + ticks] = False
-    force = np.linalg.norm(run.field("/estimate", "external_force")[quiet], axis=1)
-    return float(np.max(force, initial=0.0))
+    return float(np.max(np.linalg.norm(run.field("/estimate", name)[quiet], axis=1), initial=0.0))
 
 
 def _settled(run: RunView, name: str) -> Array:

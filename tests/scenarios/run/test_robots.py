@@ -11,8 +11,8 @@ from surefoot.scenarios.run.run import run_scenario
 pytestmark = pytest.mark.physics
 
 UNSURE = {"footstep_error_max": 0.0055, "foot_slip_max": 0.004, "stance_tilt_max": 0.036}
-"""Bounds of the fast G1 from sensors, for one landing: the last but one, 4.3 to 4.9 mm, 2.8 to 3.6 mm and 0.030 to 0.033
-rad in four seeds. An ankle that nears its end yields wholly where its sole is behind its target by however little: in
+"""Bounds of the fast G1 from sensors, for one landing: the last but one, in four seeds 4.3 to 4.9 mm, 2.8 to 3.6 mm and
+0.030 to 0.033 rad. An ankle that nears its end yields wholly where its sole is behind its target by however little: in
 this swing by 1 mrad, while with the truth it is ahead by 2. The sole turns by 0.03 rad and lands at 0.3 m/s."""
 
 

@@ -185,7 +185,7 @@ class LoadObserver:
         """Mean age of a span's wrenches [ticks]; the next span's begins at nothing."""
         late = self._age / (self._ticks * self._period)
         self._age = 0.0
-        return min(late, PAST - 2.0)
+        return max(0.0, min(late, PAST - 2.0))
 
     def _then(self, late: float) -> Array:
         """What `_moving` gave so many ticks ago, or at the first one, shape (6,) [N·s, N·m·s]."""

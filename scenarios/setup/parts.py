@@ -90,6 +90,8 @@ def _estimate(answer: Estimate, readings: "Readings") -> Estimate:
         fit(answer.wrench, (2, 6), "wrench")
     elif readings.wrench is None:
         raise MisfitError("gave no wrench, and the feet have no force sensors")
+    if not 0.0 <= answer.wrench_age < math.inf:
+        raise MisfitError(f"gave a wrench_age of {answer.wrench_age}, which should be a time")
     if answer.contact is not None:
         fit(answer.contact, (2,), "contact")
     if answer.deviation is not None:

@@ -71,6 +71,12 @@ def test_forces_that_are_told_late_are_held_against_the_motion_of_their_time(lat
     assert max(np.abs(load.moment).max() for load in taken_for_new) > 10.0
 
 
+@pytest.mark.parametrize("told", [np.nan, -3.0])
+def test_an_age_that_is_no_time_is_none(told):
+    found, wanted = observed(told=told), observed()
+    np.testing.assert_array_equal([load.mass_scale for load in found], [load.mass_scale for load in wanted])
+
+
 def test_between_two_ticks_the_motion_is_as_far_from_each_as_the_age_says():
     """A push of the feet that grows evenly tells 1.5 ticks from 1 and from 2."""
     found = {}

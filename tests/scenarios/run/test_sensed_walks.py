@@ -1,6 +1,7 @@
 """Estimators that see nothing but sensors: what they are asked and told, whose fault is whose, and walks with ours."""
 
 import math
+from dataclasses import replace
 
 import numpy as np
 import pytest
@@ -235,6 +236,17 @@ def test_torques_count_for_the_time_that_lies_between_velocities(said, tmp_path,
     monkeypatch.setattr(estimator, "TorqueWrench", Noted)
     stand(sensed_state, tmp_path, **{**GOOD_SENSORS, "sensing.wrench": "none", "sensing.encoder_velocity": said})
     assert held == [said]
+
+
+@pytest.mark.unit
+@pytest.mark.parametrize("age", [-0.001, math.nan, math.inf])
+def test_an_age_that_is_no_time_is_a_fault_of_the_estimator(age, tmp_path):
+    class Wrong(Listening):
+        def sense(self, readings):
+            return replace(self.inner.sense(readings), wrench_age=age)
+
+    end = read(stand(Wrong, tmp_path).log).metadata["end"]
+    assert end["kind"] == "fault" and f"gave a wrench_age of {age}, which should be a time" in end["reason"]
 
 
 class Diverging(Listening):

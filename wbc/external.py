@@ -70,7 +70,7 @@ LEAST_PRESS = 0.3
 """In less than this share of the weight on its soles, nearly in flight, no robot tells how heavy it is [-]."""
 
 PAST = 64
-"""Momenta that are remembered [ticks]."""
+"""Momenta that are remembered, for longer than wrenches of any sensors are late [ticks]."""
 
 _ROWS = (2, 3, 1)
 """Numbers of an estimate: force x, y; moment x, y, z; share of the weight."""

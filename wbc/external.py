@@ -54,8 +54,8 @@ BOUND = (40.0, 12.0)
 """No more force and moment counts of what acts now and has not lasted: it may be a push, soon over [N, N·m]."""
 
 PUSH = (50.0, 60.0)
-"""Force that acts now which is still taken for one that will last, and which is a push, of which nothing counts [N]: to
-lean into a push that is soon over felled small feet."""
+"""Force of the hardest of the latest spans which is still taken for one that will last, and which is a push, of which
+nothing counts [N]: to lean into a push that is soon over felled small feet."""
 
 WEIGHT = (0.01, 0.02)
 """Likewise of what the robot weighs more or less than its model, as a share of that; these leave 0.001 [-]."""
@@ -268,7 +268,9 @@ class LoadObserver:
             kept = _ramp(np.copysign(kept, latest)[:-1], kept_limits)
             sudden = np.clip(_ramp(latest[:-1], sudden_limits), -self._bound, self._bound)
             none, push = self._push
-            sudden = sudden * min(max((push - math.hypot(*latest[:2])) / (push - none), 0.0), 1.0)
+            # The span in which a push ends has only part of it.
+            hardest = max(math.hypot(x, y) for x, y in self._spans[-LATEST:, :2].tolist())
+            sudden = sudden * min(max((push - hardest) / (push - none), 0.0), 1.0)
             pull = np.where(np.abs(sudden) > np.abs(kept), sudden, kept)
         wanted = np.concatenate((pull, share))
         self._estimate = self._estimate + np.clip(wanted - self._estimate, -self._most, self._most)

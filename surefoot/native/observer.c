@@ -66,7 +66,11 @@ static void follow(const LoadSpan *span) {
         latest[i] = median(span, i, span->latest_count);
     }
     const double none = span->push[0], full = span->push[1];
-    const double counts = clamp((full - hypot(latest[0], latest[1])) / (full - none), 0.0, 1.0);
+    const int64_t first = span->filled[0] > span->latest_count ? span->filled[0] - span->latest_count : 0;
+    double hardest = 0.0;
+    for (int64_t k = first; k < span->filled[0]; k++)
+        hardest = fmax(hardest, hypot(span->spans[NUMBERS * k], span->spans[NUMBERS * k + 1]));
+    const double counts = clamp((full - hardest) / (full - none), 0.0, 1.0);
     for (int i = 0; i < PULLS && span->filled[0] == span->spans_count; i++) {
         const double least = fabs(lasting[i]) < fabs(latest[i]) ? fabs(lasting[i]) : fabs(latest[i]);
         const double both = lasting[i] * latest[i] > 0.0 ? least : 0.0;

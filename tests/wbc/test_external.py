@@ -129,6 +129,13 @@ def test_nobody_leans_into_a_push():
     assert all(load is NO_LOAD for load in loads)
 
 
+@pytest.mark.parametrize("tick", range(200, 210))
+def test_the_spans_in_which_a_push_begins_and_ends_tell_no_smaller_force(tick):
+    begins, ends = (tick - 0.5) * PERIOD, (tick + 49.5) * PERIOD
+    loads = observed(pull=lambda now: np.array([0.0, -180.0, 0.0]) * (begins < now < ends), duration=0.8)
+    assert all(load is NO_LOAD for load in loads)
+
+
 def test_what_is_short_and_small_is_none():
     loads = observed(pull=lambda now: np.array([9.0, 9.0, 0.0]) * (0.4 <= now < 0.5))
     assert all(load is NO_LOAD for load in loads)

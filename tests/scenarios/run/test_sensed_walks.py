@@ -260,7 +260,7 @@ class Diverging(Listening):
 
 @pytest.mark.unit
 def test_an_estimate_that_diverges_ends_in_a_fall(tmp_path):
-    result = stand(Diverging, tmp_path, duration=4.0)
+    result = stand(Diverging, tmp_path, duration=6.0)
     assert result.verdict["fell"] and read(result.log).metadata["end"]["kind"] == "fall"
 
 

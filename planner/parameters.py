@@ -216,8 +216,8 @@ class RecoveryParameters:
     unheld_share: float = quantity(0.5, "-")
     stand_share: float = quantity(0.85, "-")
     time_changes: tuple[float, ...] = quantity(tuple(map(float, _TIME_CHANGES)), "s")
-    least_double: float = quantity(0.06, "s")
-    least_single: float = quantity(0.16, "s")
+    least_double: float = quantity(0.04, "s")
+    least_single: float = quantity(0.10, "s")
     apart: float = quantity(0.03, "m")
     calm: float = quantity(0.005, "m")
     margin_times: tuple[float, ...] = quantity((0.0, 0.1, 0.2, 0.3, 0.45, 0.65, 1.0), "-")
@@ -270,6 +270,7 @@ class PlannerParameters:
         compliance_margin: change of a footstep that the paper's step law does not ask for [m].
         swing_speed: fastest mean speed of the swing foot to a shifted footstep, where the legs are not known [m/s].
         freeze_time: time before touchdown from which the footstep is fixed [s].
+        freeze_catching: likewise of a step that catches the body, since until then the DCM may go on elsewhere [s].
         late_touchdown: longest wait of the phase clock for a touchdown [s].
         apex_share: share of single support after which the swing sole is highest; a late apex keeps the sole high while
             the leg is stretched furthest, shortly before touchdown [-].
@@ -305,6 +306,7 @@ class PlannerParameters:
     compliance_margin: float = quantity(0.05, "m")
     swing_speed: float = quantity(3.0, "m/s")
     freeze_time: float = quantity(0.08, "s")
+    freeze_catching: float = quantity(0.04, "s")
     late_touchdown: float = quantity(0.3, "s")
     apex_share: float = quantity(0.5, "-")
     touchdown_lead: float = quantity(0.02, "s")

@@ -165,8 +165,6 @@ class Recovery:
         execution = self._execution
         if self.adjustment is None or step is None or not execution.free[0]:
             return None
-        if execution.phase.swing_foot is not None and execution.swing is None:
-            return None
         adjusted = self.adjustment.solve(*self._capture_point(local, window), window, step, unsure)
         execution.adapted |= adjusted is not None
         return adjusted

@@ -248,7 +248,8 @@ class Execution:
         """Decide the next footstep where its foot now lands, shortly before it does."""
         if self.swing is None or self.fixed:
             return
-        if self.swing.touchdown_time - time <= self._parameters.freeze_time + CLOCK_ROUNDING:
+        frozen = self._parameters.freeze_catching if self.adapted else self._parameters.freeze_time
+        if self.swing.touchdown_time - time <= frozen + CLOCK_ROUNDING:
             self.fix(self.swing.footstep)
 
     def _land(self, position: Array) -> None:

@@ -18,7 +18,7 @@ from surefoot.planner.references.window import Window
 from surefoot.planner.references.zmp_reference import ZmpReference
 from surefoot.planner.steps.gait import GaitParameters
 from surefoot.planner.swing.leg_reach import ANYWHERE
-from surefoot.planner.types import Foot, Footstep
+from surefoot.planner.types import Foot, Footstep, PhaseKind
 
 pytestmark = pytest.mark.unit
 
@@ -215,7 +215,7 @@ def test_its_few_times_find_what_many_do():
     law, fixed = margin_of(timing=True), margin_of()
     for now in states():
         now = replace(now, place=landing(now.place.foot, *now.swing[0]), double=0.0)
-        times = np.append(np.linspace(min(now.single, 0.16), now.single + 0.2, 40), now.single)
+        times = np.append(np.linspace(min(now.single, P.recovery.least_single), now.single + 0.2, 40), now.single)
         cycle = min(law.cycle, now.cycle)
         every = max(fixed.margins(replace(now, single=t, cycle=cycle), 3)[-1] for t in times)
         assert every - 0.03 < law.margins(now, 3)[-1] < every + 5e-3
@@ -282,6 +282,14 @@ def test_a_push_is_told_by_the_margins_and_what_is_made_of_the_step(stand):
     nominal = GAIT.lift_off(3) + GAIT.single_support
     assert swung.footsteps[0].position[0] - 0.9 == pytest.approx(swung.balance.shift[0], abs=5e-3)
     assert swung.footsteps[0].touchdown_time - nominal == pytest.approx(swung.balance.delay, abs=1.5 * T)
+
+
+def test_a_swing_is_hurried_from_its_first_plan_on(stand):
+    _, made, fallen = plans(stand, 1.2)
+    assert fallen is None
+    first = next(plan for plan in made if plan.phase.kind is PhaseKind.SINGLE and plan.phase.step == 4)
+    assert first.phase.elapsed < T
+    assert first.phase.left < GAIT.single_support - 0.05
 
 
 def test_who_falls_was_outside_before(stand):

@@ -220,7 +220,7 @@ class RecoveryParameters:
     least_single: float = quantity(0.10, "s")
     apart: float = quantity(0.03, "m")
     calm: float = quantity(0.005, "m")
-    margin_times: tuple[float, ...] = quantity((0.0, 0.1, 0.2, 0.3, 0.45, 0.65, 1.0), "-")
+    margin_times: tuple[float, ...] = quantity((0.0, 0.1, 0.2, 0.3, 0.4, 0.5, 0.7, 1.0), "-")
     longer: float = quantity(0.2, "s")
     most_steps: int = 5
     fall_margin: float = quantity(0.02, "m")

@@ -293,14 +293,14 @@ def test_a_swing_is_hurried_from_its_first_plan_on(stand):
 
 
 def test_who_falls_was_outside_before(stand):
-    _, made, fallen = plans(stand, 1.6)
+    _, made, fallen = plans(stand, 1.8)
     assert fallen is not None
     assert min(plan.balance.movable for plan in made if plan.time < fallen - 0.1) < -0.03
 
 
 def test_a_fall_is_told_after_some_plans_on_end_outside_and_stays_told(stand):
     numbers = P.recovery
-    _, made, fallen = plans(stand, 1.6)
+    _, made, fallen = plans(stand, 1.8)
     outside, told, run = [plan.balance.movable < -numbers.fall_margin for plan in made], False, 0
     for plan, out in zip(made, outside, strict=True):
         run = run + 1 if out else 0

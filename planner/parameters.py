@@ -236,7 +236,10 @@ class RecoveryParameters:
     same_swing: float = quantity(0.005, "m")
 
 
-_ZERO_TOO = ("late_touchdown", "freeze_time", "touchdown_lead", "terminal_weight", "jerk_weight", "compliance_margin")
+_ZERO_TOO = (
+    "late_touchdown", "freeze_time", "freeze_catching", "touchdown_lead", "terminal_weight", "jerk_weight",
+    "compliance_margin",
+)  # fmt: skip
 
 
 @dataclass(frozen=True, slots=True)

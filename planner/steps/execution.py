@@ -246,11 +246,9 @@ class Execution:
 
     def fix_imminent(self, time: float) -> None:
         """Decide the next footstep where its foot now lands, shortly before it does."""
-        if self.swing is None or self.fixed:
-            return
-        frozen = self._parameters.freeze_catching if self.adapted else self._parameters.freeze_time
-        if self.swing.touchdown_time - time <= frozen + CLOCK_ROUNDING:
-            self.fix(self.swing.footstep)
+        swing, frozen = self.swing, self._parameters.freeze_catching if self.adapted else self._parameters.freeze_time
+        if swing is not None and not self.fixed and swing.touchdown_time - time <= frozen + CLOCK_ROUNDING:
+            self.fix(swing.footstep)
 
     def _land(self, position: Array) -> None:
         self.fix(position)

@@ -240,12 +240,12 @@ def test_as_planned_the_cop_at_the_edge_of_its_boxes_holds_just_what_is_inside(a
 GAIT = GaitParameters(steps=5, step_length=0.3, single_support=0.5, double_support=0.12, com_height=0.95)
 
 
-def plans(stand, impulse=0.0, **keys):
+def plans(stand, impulse=0.0, aside=0.0, **keys):
     parameters, begin = replace(P, **keys), GAIT.lift_off(3) + 0.25
     planner = WalkingPlanner(GAIT, stand(), 0.22, 0.11, parameters=parameters, legs=LEGS)
-    push = Push(begin, 0.1, 1000.0 * impulse * np.array([1.0, 0.0, 0.0]))
+    push = Push(begin, 0.1, 1000.0 * np.array([impulse, aside, 0.0]))
     com = np.array([0.0, 0.0, GAIT.com_height])
-    trace = walk_pendulum(planner, stand(), GAIT.duration + 0.5, com=com, pushes=(push,) if impulse else ())
+    trace = walk_pendulum(planner, stand(), GAIT.duration + 0.5, com=com, pushes=(push,) if impulse or aside else ())
     return begin, trace.plans, trace.fall_time
 
 
@@ -293,14 +293,15 @@ def test_a_swing_is_hurried_from_its_first_plan_on(stand):
 
 
 def test_who_falls_was_outside_before(stand):
-    _, made, fallen = plans(stand, 1.8)
+    """Pushed to its right, over the foot that stands."""
+    _, made, fallen = plans(stand, aside=-1.4)
     assert fallen is not None
     assert min(plan.balance.movable for plan in made if plan.time < fallen - 0.1) < -0.03
 
 
 def test_a_fall_is_told_after_some_plans_on_end_outside_and_stays_told(stand):
     numbers = P.recovery
-    _, made, fallen = plans(stand, 1.8)
+    _, made, fallen = plans(stand, aside=-1.4)
     outside, told, run = [plan.balance.movable < -numbers.fall_margin for plan in made], False, 0
     for plan, out in zip(made, outside, strict=True):
         run = run + 1 if out else 0

@@ -22,7 +22,8 @@ from surefoot.planner.parameters import PlannerParameters
 from surefoot.planner.recovery.compiled import CompiledMargins, CompiledOutlook
 from surefoot.planner.recovery.step_adjustment import StepProblem
 from surefoot.planner.references.window import Window
-from surefoot.planner.swing.leg_reach import ANYWHERE, PEAK, LegReach
+from surefoot.planner.swing.leg_reach import ANYWHERE, LegReach
+from surefoot.planner.swing.quintics import PEAK
 from surefoot.planner.types import Array
 
 

@@ -324,7 +324,8 @@ class Execution:
             # Of the place where it landed the height is believed, too: what is off is off in both, and not the map.
             x, y, height = feet.position[stance.foot].tolist()
             unsure = feet.height_deviation, height - self._terrain.height(x, y)
-            self.swing = start_swing(foot, pose, target, time, self.left, course, self._parameters, unsure)
+            lifting = math.inf if self.legs is None else self.legs.acceleration[0]  # knees are about as strong as hips
+            self.swing = start_swing(foot, pose, target, time, self.left, course, self._parameters, unsure, lifting)
         else:
             target[2] -= self.swing.aim
             if not (self.fixed or held) and greatest(np.abs(target - self.swing.target) / self._pose) > _SAME_TARGET:

@@ -13,7 +13,8 @@ from surefoot.planner.steps.footsteps import Path
 from surefoot.planner.steps.gait import WEIGHT_SHIFT, GaitParameters, in_samples
 from surefoot.planner.swing.course import Ground, swing_course
 from surefoot.planner.swing.heel_off import LEVEL_AGAIN, RollSpan, roll_span, rolls
-from surefoot.planner.swing.leg_reach import PEAK, LegReach
+from surefoot.planner.swing.leg_reach import LegReach
+from surefoot.planner.swing.quintics import PEAK
 from surefoot.planner.swing.step_region import check_reach
 from surefoot.planner.swing.trajectory import SwingCourse, SwingTrajectory, start_swing
 from surefoot.planner.types import Array, Foot, Footstep, Twist

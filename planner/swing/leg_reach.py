@@ -7,16 +7,11 @@ import numpy as np
 
 from surefoot.planner.geometry import frame_rotation, wrap_angle
 from surefoot.planner.parameters import PlannerParameters
+from surefoot.planner.swing.quintics import BRAKING, PEAK, detour, farthest
 from surefoot.planner.swing.step_region import soles_apart
-from surefoot.planner.swing.trajectory import SwingTrajectory, detour
+from surefoot.planner.swing.trajectory import SwingTrajectory
 from surefoot.planner.types import Array, Footstep
 from surefoot.values import dataclass
-
-PEAK = 5.77
-"""Greatest acceleration of a quintic from rest to rest, over way / T²: 10 / √3 [-]."""
-
-_BRAKING, _GAINING = 1.9, 3.9
-"""What a speed takes off that at the end of a quintic to rest, and at its begin, over speed / T: its extremes [-]."""
 
 
 @dataclass(frozen=True, slots=True)
@@ -158,11 +153,10 @@ class LegReach:
         usual, (here, speeds) = float(time[-1]), swing.tolist()
         for side in (1.0, -1.0):
             for at, speed, aim, most in zip(here, speeds, nominal.tolist(), self.acceleration, strict=True):
-                hardest = max(most, abs(PEAK * (aim - at) / (usual * usual) - _BRAKING * speed / usual))
-                onward = side * speed
-                edges.append((side * at, hardest, (_BRAKING if onward > 0.0 else _GAINING) * onward))
+                hardest = max(most, abs(PEAK * (aim - at) / (usual * usual) - BRAKING * speed / usual))
+                edges.append((side * at, hardest, side * speed))
         place, hardest, onward = np.array(edges).T[:, :, None]
-        return np.asarray(place + (hardest * time**2 + onward * time) / PEAK)
+        return np.asarray(place + farthest(hardest, onward, time))
 
     def _swing_times(self, singles: Array) -> Array:
         """Times in which a foot swings of single supports, at whose end it has arrived, shape (n,) [s]."""

@@ -8,6 +8,7 @@ import numpy as np
 
 from surefoot.planner.geometry import quintic, shifted
 from surefoot.planner.parameters import GroundSearch, PlannerParameters
+from surefoot.planner.swing.quintics import PEAK, detour, farthest, straight_time, to_rest
 from surefoot.planner.types import Array, Foot
 from surefoot.values import dataclass
 
@@ -47,6 +48,7 @@ class SwingTrajectory:
         clearance: height of the apex above the higher of lift-off and touchdown [m].
         search: how it goes on after the touchdown time, if it feels no ground.
         aim: how far the target lies below the footstep, where the ground's height is unsure [m].
+        lifting: vertical acceleration that it is not to exceed where it is replanned [m/s^2].
         level: coefficients of all but z from `start_time`, shape (6, 5).
         rise_start: local time zero of the rise [s].
         rise: coefficients of z until the apex, shape (6, 1).
@@ -72,6 +74,7 @@ class SwingTrajectory:
     bend_time: float = math.inf
     onward: Array = field(default_factory=lambda: np.zeros((6, len(_GLIDING))))
     aim: float = 0.0
+    lifting: float = math.inf
 
     @property
     def footstep(self) -> Array:
@@ -162,7 +165,7 @@ class SwingTrajectory:
         start = max(time, self.start_time)
         keeps = time < self.glide_end - least and not gliding
         end = self.glide_end if keeps else self.touchdown_time
-        level = _to_rest(state[:, _GLIDING], target[_GLIDING], end - start)
+        level = to_rest(state[:, _GLIDING], target[_GLIDING], end - start)
         moved = replace(self, start_time=start, glide_end=end, level=level, target=np.array(target), bend_time=math.inf)
         if target[2] == self.target[2]:
             return moved
@@ -197,6 +200,7 @@ class SwingTrajectory:
         """The trajectory that goes on from its own state at `time` to the same target and apex at other times.
 
         What is left until each instant changes in proportion; but for the touchdown they stay on a grid from now on.
+        A foot on its way down that has so much more time that it would pass below its target is lifted once more.
 
         Args:
             time: instant of the change [s].
@@ -213,23 +217,32 @@ class SwingTrajectory:
         moved = replace(self, touchdown_time=touchdown, start_time=start, glide_end=end)
         if time < self.glide_end - TOUCHING:
             end = max(end, min(start + grid, touchdown))
-            end = min(end, start + max(_straight(state[:, :2], self.target[:2]), self.glide_end - start))
-            level = _to_rest(state[:, _GLIDING], self.target[_GLIDING], end - start)
+            end = min(end, start + max(straight_time(state[:, :2], self.target[:2]), self.glide_end - start))
+            level = to_rest(state[:, _GLIDING], self.target[_GLIDING], end - start)
             moved = replace(moved, glide_end=end, level=level, bend_time=math.inf)
         if time < self.apex_time - TOUCHING:
             moved = replace(moved, apex_time=min(max(put_off(self.apex_time), time + grid), touchdown - grid))
-        top = float((self.apex_time - self.rise_start) ** _EXPONENTS @ self.rise[:, 0])
-        return moved._with_height(time, state[:, 2:3], top)
+            top = float((self.apex_time - self.rise_start) ** _EXPONENTS @ self.rise[:, 0])
+            return moved._with_height(time, state[:, 2:3], top)
+        again = time + round(0.5 * (touchdown - time) / grid) * grid
+        sinks = touchdown - time > straight_time(state[:, 2:3], self.target[2:3])
+        if sinks and math.isfinite(self.lifting) and time + TOUCHING < again < touchdown - TOUCHING:
+            moved = replace(moved, apex_time=again)
+        return moved._with_height(time, state[:, 2:3], max(float(state[0, 2]), self.footstep[2] + self.clearance))
 
     def _with_height(self, time: float, state: Array, apex: float) -> "SwingTrajectory":
         """Height from a state at `time` up to an apex, unless that is over, and down to the target.
 
-        4 h / t² at the apex keeps both monotone.
+        The apex is no higher than the acceleration `lifting` lifts the foot until then and lowers it from there; a foot
+        that is too high for that goes down at once. 4 h / t² at the apex keeps both monotone.
         """
         end = np.array([[self.target[2]], [-self.search.touchdown_speed], [0.0]])
-        if time >= self.apex_time - TOUCHING:
-            return replace(self, fall_start=time, fall=quintic(state, end, self.touchdown_time - time))
-        up, down = self.apex_time - time, self.touchdown_time - self.apex_time
+        up, down, (height, speed) = self.apex_time - time, self.touchdown_time - self.apex_time, state[:2, 0].tolist()
+        room = self.lifting * down**2 / PEAK
+        if up <= TOUCHING or height - self.target[2] > room:
+            fall = quintic(state, end, self.touchdown_time - time)
+            return replace(self, apex_time=min(self.apex_time, time), fall_start=time, fall=fall)
+        apex = min(apex, float(self.target[2]) + room, height + float(farthest(self.lifting, speed, up)))
         bend = -4.0 * min((apex - state[0, 0]) / up**2, (apex - end[0, 0]) / down**2)
         top = np.array([[apex], [0.0], [bend]])
         rise, fall = quintic(state, top, up), quintic(top, end, down)
@@ -267,6 +280,7 @@ def start_swing(
     course: SwingCourse,
     parameters: PlannerParameters,
     unsure: tuple[float, float] = (0.0, 0.0),
+    lifting: float = math.inf,
 ) -> SwingTrajectory:
     """Swing from rest, which ends some time before the single support does.
 
@@ -280,6 +294,7 @@ def start_swing(
         parameters: of the planner.
         unsure: standard deviation of its height over the stance foot, and how high that is believed over its footstep;
             it stands, so that the ground is there. Of the truth, whose deviation is zero, neither counts [m].
+        lifting: vertical acceleration that it is not to exceed where it is replanned [m/s^2].
     """
     t, rest = parameters.sample_time, np.zeros((3, 6))
     search, aim = parameters.search.unsure(*unsure)
@@ -300,48 +315,12 @@ def start_swing(
         target=target,
         clearance=course.height,
         search=search,
-        level=_to_rest(rest[:, _GLIDING], target[_GLIDING], glide_end - glide_start),
+        level=to_rest(rest[:, _GLIDING], target[_GLIDING], glide_end - glide_start),
         rise_start=start,
         rise=np.zeros((6, 1)),
         fall_start=apex,
         fall=np.zeros((6, 1)),
         aim=aim,
+        lifting=lifting,
     )
     return trajectory._with_height(start, rest[:, 2:3], max(float(pose[2]), float(footstep[2])) + course.height)
-
-
-def detour(time: float, duration: float) -> tuple[Array, Array]:
-    """Coefficients of 1, t, ..., t^5 of the least jerk from rest at zero to one at a time and back, shape (6,) each."""
-    a, b = time, duration - time
-    # Jerk and its rate do not jump where both quintics meet, with velocity v and acceleration w.
-    matrix = [[36.0 * (b**-2 - a**-2), 9.0 * (1.0 / a + 1.0 / b)], [-192.0 * (a**-3 + b**-3), 36.0 * (a**-2 - b**-2)]]
-    meeting = np.linalg.solve(np.array(matrix), [-60.0 * (a**-3 + b**-3), -360.0 * (a**-4 - b**-4)])
-    rest, top = np.zeros((3, 1)), np.append(1.0, meeting)[:, None]
-    return quintic(rest, top, a)[:, 0], quintic(top, rest, b)[:, 0]
-
-
-def _straight(state: Array, target: Array) -> float:
-    """Longest time in which a quintic from a state to rest at a target does not go beyond that [s].
-
-    At a distance d, with speed v and acceleration a towards it, its end is at 10 d - 4 v T - a T² / 2 times the cube of
-    what is left of its time.
-
-    Args:
-        state: position, velocity and acceleration, shape (3, 2) [m, m/s, m/s^2].
-        target: shape (2,) [m].
-    """
-    way = target - state[0]
-    distance = math.hypot(*way)
-    if distance == 0.0:
-        return 0.0
-    speed, bend = (float(rate @ way) / distance for rate in state[1:])
-    inner = 16.0 * speed**2 + 20.0 * bend * distance
-    if inner < 0.0 or 4.0 * speed + math.sqrt(inner) <= 0.0:
-        return math.inf
-    return 20.0 * distance / (4.0 * speed + math.sqrt(inner))
-
-
-def _to_rest(state: Array, target: Array, duration: float) -> Array:
-    end = np.zeros((3, state.shape[1]))
-    end[0] = target
-    return quintic(state, end, duration)

@@ -10,7 +10,7 @@ from dotted import named
 
 from surefoot.planner.model.dcm import nominal_dcm
 from surefoot.planner.parameters import PlannerParameters, RecoveryParameters
-from surefoot.planner.swing.leg_reach import PEAK
+from surefoot.planner.swing.quintics import PEAK
 from surefoot.scenarios.setup.load import load
 from surefoot.scenarios.setup.walk import resolve
 

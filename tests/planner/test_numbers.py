@@ -34,9 +34,9 @@ NOTICED = {
     "references.leg_offset._SUNK": "tests/planner/references/test_nominal_feet.py",
     "steps.schedule._LAID_OUT": "tests/planner/steps/test_laid_out.py",
     "steps.schedule._STOP_AHEAD": "tests/planner/steps/test_schedule.py",
-    "swing.leg_reach.PEAK": "tests/planner/swing/test_swing_limits.py",
-    "swing.leg_reach._BRAKING": "tests/planner/swing/test_swing_limits.py",
-    "swing.leg_reach._GAINING": "tests/planner/swing/test_swing_limits.py",
+    "swing.quintics.PEAK": "tests/planner/swing/test_swing_limits.py",
+    "swing.quintics.BRAKING": "tests/planner/swing/test_swing_limits.py",
+    "swing.quintics.GAINING": "tests/planner/swing/test_swing_limits.py",
 }
 """Test, or folder of tests, that notices a constant when it is changed."""
 
@@ -140,7 +140,8 @@ IN_BODIES = {
     "steps.step": {1e-9},
     "swing.heel_off": {64.0, 192.0, 384.0},
     "swing.leg_reach": {1e-9, 3.0, 6.0, 8.0, 10.0, 15.0, 36.0, 60.0, 96.0},
-    "swing.trajectory": {4.0, 9.0, 16.0, 20.0, 36.0, 60.0, 192.0, 360.0},
+    "swing.quintics": {4.0, 9.0, 16.0, 20.0, 36.0, 60.0, 192.0, 360.0},
+    "swing.trajectory": {4.0},
 }
 """Bare numbers in functions: coefficients of polynomials and of differences, roundings, and defaults of arguments."""
 

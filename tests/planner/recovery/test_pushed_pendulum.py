@@ -16,7 +16,7 @@ from surefoot.planner.planner import WalkingPlanner
 from surefoot.planner.references.com_height import Rise, SmoothHeight
 from surefoot.planner.steps.execution import Execution
 from surefoot.planner.steps.gait import GaitParameters
-from surefoot.planner.swing.leg_reach import PEAK
+from surefoot.planner.swing.quintics import PEAK
 from surefoot.planner.types import PhaseKind
 
 pytestmark = pytest.mark.unit

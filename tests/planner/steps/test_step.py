@@ -14,7 +14,8 @@ from surefoot.planner.steps.gait import GaitParameters
 from surefoot.planner.steps.schedule import Schedule
 from surefoot.planner.steps.step import room_left, shortest_swing
 from surefoot.planner.swing.course import Ground
-from surefoot.planner.swing.leg_reach import PEAK, LegReach
+from surefoot.planner.swing.leg_reach import LegReach
+from surefoot.planner.swing.quintics import PEAK
 from surefoot.planner.swing.trajectory import start_swing
 
 pytestmark = pytest.mark.unit

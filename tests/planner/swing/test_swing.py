@@ -1,7 +1,10 @@
+import math
+
 import numpy as np
 import pytest
 
 from surefoot.planner.parameters import PlannerParameters
+from surefoot.planner.swing.quintics import PEAK
 from surefoot.planner.swing.trajectory import SwingCourse, start_swing
 from surefoot.planner.types import Foot
 
@@ -12,11 +15,12 @@ GLIDING = [0, 1, 3, 4, 5]
 TARGET = np.array([1.4, 0.15, 0.0, 0.2, -0.15, 0.0])
 
 
-def swing(height=0.0, clearance=0.05, glide=(2.0, 2.4, 2.8)):
+def swing(height=0.0, clearance=0.05, glide=(2.0, 2.4, 2.8), lifting=math.inf):
     target = TARGET + np.array([0.0, 0.0, height, 0.0, 0.0, 0.0])
     begin, apex, end = ((time - 2.0) / 0.8 for time in glide)
     course = SwingCourse(apex, begin, end, clearance)
-    return start_swing(Foot.LEFT, START, target, 2.0, 40, course, PlannerParameters(touchdown_lead=0.0))
+    parameters = PlannerParameters(touchdown_lead=0.0)
+    return start_swing(Foot.LEFT, START, target, 2.0, 40, course, parameters, lifting=lifting)
 
 
 @pytest.mark.parametrize("height", [0.0, 0.15, -0.15])
@@ -117,6 +121,40 @@ def test_a_swing_that_is_put_off_does_not_go_beyond_its_target(time, delay):
     assert np.diff(way).min() > -1e-9
     assert way.max() < before.target[0] + 1e-9
     assert before.glide_end - 0.02 <= after.glide_end <= before.glide_end + delay + 0.02
+
+
+def heights(trajectory, time):
+    """Of the sole, its speed and its acceleration, from an instant until the touchdown."""
+    times = np.linspace(time, trajectory.touchdown_time - 2e-9, 300).tolist()
+    return np.array([trajectory.evaluate(instant)[:, 2] for instant in times])
+
+
+@pytest.mark.parametrize("left", [0.08, 0.1, 0.14, 0.2, 0.3])
+@pytest.mark.parametrize("time", [2.0, 2.1, 2.2, 2.3, 2.5])
+def test_a_hurried_swing_is_lifted_and_lowered_no_harder_than_its_leg_can(time, left):
+    """Lower in place of harder; all that a foot can do that is high up already is to go down at once."""
+    free, bound = (swing(lifting=most).retimed(time, time + left - 2.8, 0.02) for most in (math.inf, 40.0))
+    hard, eased = heights(free, time), heights(bound, time)
+    np.testing.assert_allclose(eased[0, :2], hard[0, :2], atol=1e-9)
+    assert eased[-1, 0] == pytest.approx(0.0, abs=1e-6)
+    assert eased[:, 0].min() > -1e-6
+    at_once = 1.2 * PEAK * eased[0, 0] / left**2
+    assert np.abs(eased[:, 2]).max() < max(40.0, at_once)
+    if np.abs(hard[:, 2]).max() < 37.0:
+        np.testing.assert_allclose(eased, hard, atol=1e-9)
+
+
+@pytest.mark.parametrize("delay", [0.1, 0.2, 0.4])
+@pytest.mark.parametrize("time", [2.6, 2.7])
+def test_a_foot_on_its_way_down_that_gets_more_time_is_lifted_again(time, delay):
+    """In place of going on until it meets the ground too early, as one does of which no leg is known."""
+    free, bound = (swing(lifting=most).retimed(time, delay, 0.02) for most in (math.inf, 40.0))
+    assert bound.touchdown_time == free.touchdown_time == pytest.approx(2.8 + delay)
+    meets, clears = heights(free, time)[:, 0], heights(bound, time)[:, 0]
+    np.testing.assert_allclose(clears[0], meets[0])
+    half = len(meets) // 2
+    assert clears[half] > max(0.01, meets[half])
+    assert clears.min() > -1e-6
 
 
 def test_a_swing_that_will_go_beyond_its_target_is_not_hurried_by_a_delay():

@@ -246,7 +246,7 @@ class Execution:
 
     def fix_imminent(self, time: float) -> None:
         """Decide the next footstep where its foot now lands, shortly before it does."""
-        swing, frozen = self.swing, self._parameters.freeze_catching if self.adapted else self._parameters.freeze_time
+        swing, frozen = self.swing, self._parameters.freeze_catching if self.catching else self._parameters.freeze_time
         if swing is not None and not self.fixed and swing.touchdown_time - time <= frozen + CLOCK_ROUNDING:
             self.fix(swing.footstep)
 

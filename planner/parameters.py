@@ -273,7 +273,8 @@ class PlannerParameters:
         compliance_margin: change of a footstep that the paper's step law does not ask for [m].
         swing_speed: fastest mean speed of the swing foot to a shifted footstep, where the legs are not known [m/s].
         freeze_time: time before touchdown from which the footstep is fixed [s].
-        freeze_catching: likewise of a step that catches the body, since until then the DCM may go on elsewhere [s].
+        freeze_catching: likewise of a step that catches the body, since until then the DCM may go on elsewhere; not on
+            faces that were chosen [s].
         late_touchdown: longest wait of the phase clock for a touchdown [s].
         apex_share: share of single support after which the swing sole is highest; a late apex keeps the sole high while
             the leg is stretched furthest, shortly before touchdown [-].

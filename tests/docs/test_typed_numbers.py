@@ -62,7 +62,7 @@ FULL = world.RATE
 CODED = {
     "CONTRIBUTING.md": {"make dist": (_size(),)},
     "docs/architecture.md": {
-        "0.08 s before": (PLANNER.freeze_time,),
+        "0.08 s before": (PLANNER.freeze_time, PLANNER.freeze_catching),
         "read_input": (LIMITS.x, LIMITS.y, LIMITS.yaw),
     },
     "docs/benchmark-g1.md": {

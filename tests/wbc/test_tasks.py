@@ -128,7 +128,7 @@ def test_every_weight_matters(written):
 
 
 @pytest.mark.parametrize("kernels", ["1", "0"], ids=["compiled", "plain"])
-def test_the_height_counts_for_more_while_a_step_catches_the_body_and_as_before_after_it(
+def test_height_momentum_and_posture_count_otherwise_while_a_step_catches_the_body_and_as_before_after_it(
     robot, state, references, loaded, monkeypatch, kernels
 ):
     monkeypatch.setenv("SUREFOOT_NATIVE", kernels)
@@ -140,13 +140,17 @@ def test_the_height_counts_for_more_while_a_step_catches_the_body_and_as_before_
         )
         residual = controller.tasks.residual(np.ones(qp.g.size))
         seen.append((controller.tasks.rows.copy(), controller.tasks.target.copy(), qp.H.copy(), residual.copy()))
-    (rows, target, H, residual), (caught, aim, _, same), (after, target_after, H_after, _) = seen
+    (rows, target, H, residual), (caught, aim, H_caught, same), (after, target_after, H_after, _) = seen
     more = np.ones(len(target))
     more[2] = np.sqrt(weights.com_vertical_catching / weights.com_vertical)
+    more[3:6] = np.sqrt(weights.angular_momentum_catching / weights.angular_momentum)
     np.testing.assert_allclose(caught, more[:, None] * rows, rtol=1e-12)
     np.testing.assert_allclose(aim, more * target, rtol=1e-12)
     np.testing.assert_allclose(same, residual, rtol=1e-9, atol=1e-9)
     assert all((one == other).all() for one, other in ((after, rows), (target_after, target), (H_after, H)))
+    looser = np.diag((H - rows.T @ rows) - (H_caught - caught.T @ caught))[6:-12]
+    less = weights.upper_posture - weights.upper_posture_catching
+    np.testing.assert_allclose(looser, np.where(robot.leg_joints, 0.0, less), atol=1e-9)
 
 
 def placed(robot, q, v):

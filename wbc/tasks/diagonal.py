@@ -19,8 +19,13 @@ from surefoot.wbc.types import GRAVITY, Array, WbcReference
 class DiagonalTerm(Protocol):
     """A cost on single variables."""
 
-    def weigh(self, diagonal: Array) -> None:
-        """Add the weights of the variables, shape (nv + 12,)."""
+    def weigh(self, diagonal: Array, catching: bool) -> None:
+        """Add the weights of the variables, shape (nv + 12,), and count so from now on.
+
+        Args:
+            diagonal: to be added to.
+            catching: as where a step catches the body, in place of a walk.
+        """
 
     def write(self, terms: RobotTerms, reference: WbcReference, linear: Array) -> None:
         """Write weight times target of its variables into ``linear``, shape (nv + 12,), zero at first."""
@@ -36,7 +41,7 @@ class Regularisation:
         """``length``: size of the robot, by which a rotation counts [-]."""
         self._weight = weights.acceleration, weights.acceleration * length**2
 
-    def weigh(self, diagonal: Array) -> None:
+    def weigh(self, diagonal: Array, catching: bool) -> None:
         """See ``DiagonalTerm.weigh``."""
         diagonal[:3] += self._weight[0]
         diagonal[3:-12] += self._weight[1]
@@ -70,16 +75,21 @@ class Posture:
             arms: how the arms swing; None for arms that keep the posture.
             driven: which joints somebody else drives, and keep none, bool, shape (nj,); None for none.
         """
-        self._weight = np.where(leg_joints, weights.leg_posture, weights.upper_posture)
+        uppers = weights.upper_posture, weights.upper_posture_catching
+        self._weights = [np.where(leg_joints, weights.leg_posture, upper) for upper in uppers]
         if driven is not None:
-            self._weight = np.where(driven, 0.0, self._weight)
-        self._stiffness, self._damping = gains.posture[0] * self._weight, gains.posture[1] * self._weight
-        self._pull = self._stiffness * posture
-        self._arms = arms
+            self._weights = [np.where(driven, 0.0, weight) for weight in self._weights]
+        self._gains, self._posture, self._arms = gains.posture, posture, arms
+        # In place, since the kernel has views of them.
+        self._stiffness, self._damping, self._pull = np.zeros((3, len(posture)))
 
-    def weigh(self, diagonal: Array) -> None:
+    def weigh(self, diagonal: Array, catching: bool) -> None:
         """See ``DiagonalTerm.weigh``."""
-        diagonal[6:-12] += self._weight
+        weight, (stiffness, damping) = self._weights[catching], self._gains
+        np.multiply(stiffness, weight, out=self._stiffness)
+        np.multiply(damping, weight, out=self._damping)
+        np.multiply(self._stiffness, self._posture, out=self._pull)
+        diagonal[6:-12] += weight
 
     def write(self, terms: RobotTerms, reference: WbcReference, linear: Array) -> None:
         """See ``DiagonalTerm.write``."""
@@ -122,7 +132,7 @@ class ForceDistribution:
         """``wrench_unit``: of the wrench variables [N, N·m]."""
         self._force, self._moment, self._unit = weights.force, weights.moment, wrench_unit
 
-    def weigh(self, diagonal: Array) -> None:
+    def weigh(self, diagonal: Array, catching: bool) -> None:
         """See ``DiagonalTerm.weigh``."""
         diagonal[-12:] += np.tile([self._force] * 3 + [self._moment] * 3, 2) * self._unit**2
 

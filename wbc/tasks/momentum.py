@@ -66,7 +66,7 @@ class AngularMomentum:
     name, size = "angular momentum", 3
 
     def __init__(self, weights: TaskWeights, gains: TaskGains) -> None:
-        self.weight = weights.angular_momentum
+        self.weight, self.catching_weight = weights.angular_momentum, weights.angular_momentum_catching
         self._decay = gains.angular_momentum
         self._about_com = np.zeros((3, 6))
 

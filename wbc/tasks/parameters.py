@@ -23,11 +23,15 @@ class TaskWeights:
         "the same while a step is adapted to catch the body, whose swing would else lift it off its legs",
     )
     angular_momentum: float = number(2.0, "s^4/m^4", "rate of angular momentum over mass")
+    angular_momentum_catching: float = number(
+        0.2, "s^4/m^4", "the same while a step is adapted to catch the body, whose arms and trunk then bear its swing"
+    )
     orientation: float = number(1.0, "s^4", "angular acceleration of pelvis and torso")
     swing: float = number(
         10.0, "s^4/m^2", "linear acceleration of the swing foot, and angular one times the robot's size"
     )
     upper_posture: float = number(0.5, "s^4", "joint acceleration of waist, arms and head")
+    upper_posture_catching: float = number(0.05, "s^4", "the same while a step is adapted to catch the body")
     leg_posture: float = number(1e-5, "s^4", "joint acceleration of the legs")
     acceleration: float = number(
         1e-5, "s^4/m^2", "any generalised acceleration, an angular one times the robot's size", positive=True

@@ -52,8 +52,9 @@ class TaskStack:
             raise ValueError(f"tasks {', '.join(name for name, _ in self.layout)}: each needs a name of its own")
         self.rows, self.target = np.zeros((sum(sizes), variables)), np.zeros(sum(sizes))
         self.diagonal, self.linear = np.zeros(variables), np.zeros(variables)
-        for term in terms:
-            term.weigh(self.diagonal)
+        self._weighing = [term.weigh for term in terms]
+        for weigh in self._weighing:
+            weigh(self.diagonal, False)
         # In place, since tasks and kernels have views of it.
         self._scale, self._unscale, self._catching = scale, self._unscales[False].copy(), False
         # A view costs as much to make as to use, so each task's part of the rows gets its name once.
@@ -101,6 +102,9 @@ class TaskStack:
         self._catching = catching
         np.copyto(self._scale, self._scales[catching])
         np.copyto(self._unscale, self._unscales[catching])
+        self.diagonal[:] = 0.0
+        for weigh in self._weighing:
+            weigh(self.diagonal, catching)
 
     def write(self, terms: RobotTerms, reference: WbcReference) -> None:
         """Write H and g of the QP for this state and reference."""

@@ -39,7 +39,7 @@ LIMIT_NOTE = (
 _TICK = 1e-6
 """Of two times nearer than this, neither is earlier [s]."""
 
-_EVERY, _LATER = 0.01, 0.2
+_EVERY, _LATER = 0.02, 0.2
 """Spacing of the times at which a foot is tried to land, and by how much that may be after the clock's [s]."""
 
 

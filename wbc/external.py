@@ -11,8 +11,8 @@ of De Luca and Mattone (ICRA 2003), with means over spans and their medians in p
 from a push, which has done what it does when it is over and may be hard: of what is new only little counts.
 
 Forces that sensors tell are late, and a low pass makes them later. They are held against momentum and CoM of the time
-when they acted: in a walk of 0.8 m/s forces of 4 ms ago, held against the momentum of now, were a moment of 8 N·m on a
-robot of 33 kg that nobody exerted, since what the feet push is far below the CoM.
+when they acted. Held against the momentum of now, forces of 4 ms ago told a moment of 8 N·m that nobody exerted, on a
+robot of 33 kg at 0.8 m/s: what the feet push is far below the CoM.
 
 Times, forces and moments below are the reference robot's (see `surefoot.similarity`).
 """

@@ -12,8 +12,8 @@ pytestmark = pytest.mark.physics
 
 UNSURE = {"footstep_error_max": 0.0055, "foot_slip_max": 0.004, "stance_tilt_max": 0.036}
 """Bounds of the fast G1 from sensors, for one landing: the last but one, in four seeds 4.3 to 4.9 mm, 2.8 to 3.6 mm and
-0.030 to 0.033 rad. An ankle that nears its end yields wholly where its sole is behind its target by however little: in
-this swing by 1 mrad, while with the truth it is ahead by 2. The sole turns by 0.03 rad and lands at 0.3 m/s."""
+0.030 to 0.033 rad. An ankle near its end yields wholly once its sole is behind its target. In this swing it is behind
+by 1 mrad; with the truth it is ahead by 2. The sole turns by 0.03 rad and lands at 0.3 m/s."""
 
 
 @pytest.mark.parametrize(

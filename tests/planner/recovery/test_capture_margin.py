@@ -292,6 +292,18 @@ def test_a_swing_is_hurried_from_its_first_plan_on(stand):
     assert first.phase.left < GAIT.single_support - 0.05
 
 
+def test_a_step_that_catches_the_body_moves_until_shortly_before_it_lands(stand):
+    def late_shift(**keys):
+        _, made, _ = plans(stand, 1.2, **keys)
+        pairs = [(a, b) for a, b in itertools.pairwise(made) if a.swing is not None and b.swing is not None]
+        left = [(a, b) for a, b in pairs if 0.03 < b.swing.touchdown_time - b.time < 0.07 and b.balance.catching]
+        same = [(a, b) for a, b in left if a.footsteps[0].step == b.footsteps[0].step]
+        assert same
+        return max(float(np.abs(b.footsteps[0].position - a.footsteps[0].position).max()) for a, b in same)
+
+    assert late_shift(freeze_catching=0.08) < 1e-6 < 1e-4 < late_shift()
+
+
 def test_who_falls_was_outside_before(stand):
     """Pushed to its right, over the foot that stands."""
     _, made, fallen = plans(stand, aside=-1.4)

@@ -106,7 +106,7 @@ _put = object.__setattr__
 _OMEGA = 4
 """Place of the pendulum's rate in a point of the kernel, which is read at every tick [-]."""
 
-_IN_POINT: Mapping[str, slice | int] = {
+IN_POINT: Mapping[str, slice | int] = {
     "com": slice(7, 10),
     "com_velocity": slice(16, 19),
     "com_acceleration": slice(25, 28),
@@ -179,9 +179,9 @@ class PlanSample:
 
         def __getattr__(self, name: str) -> Any:
             """A field that has not been read before."""
-            if name not in _IN_POINT:
+            if name not in IN_POINT:
                 raise AttributeError(f"{type(self).__name__} has no attribute '{name}'")
-            place = _IN_POINT[name]
+            place = IN_POINT[name]
             value = self.point[place] if isinstance(place, slice) else self.point.item(place)
             _put(self, name, value)
             return value

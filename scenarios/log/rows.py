@@ -1,6 +1,5 @@
 """Rows of the log: one message for each of several channels at once, with what is derived from the rest."""
 
-import struct
 from collections.abc import Callable, Iterable, Mapping, Sequence
 from dataclasses import field
 from itertools import zip_longest
@@ -64,6 +63,7 @@ class RowLayout:
         more_vectors: name and size of vectors that only `derive` needs; they come after the others.
         more_numbers: names of numbers that only `derive` needs; they come after the others.
         compiled: gives a kernel that does what `derive` does, to one row.
+        at: columns of the fields of `vectors` in what vectors make up; side by side in their order if None.
         standing: whether most vectors of a row are the very arrays of the row before, whose memory kernels then read.
     """
 
@@ -75,6 +75,7 @@ class RowLayout:
     more_numbers: Sequence[str] = ()
     compiled: CompiledDerive | None = None
     standing: bool = False
+    at: Mapping[Place, slice] | None = None
 
 
 class RowWriter:
@@ -92,14 +93,15 @@ class RowWriter:
         if sum(sizes) != sum(field.size for writer in writers.values() for field in writer.spec.fields):
             raise ValueError("a row must hold every field of its channels exactly once")
         self._at = (
-            _places((*_sizes(layout.vectors), *layout.more_vectors.items())),
+            layout.at or _places((*_sizes(layout.vectors), *layout.more_vectors.items())),
             _places((*_sizes(layout.numbers), *((name, 1) for name in layout.more_numbers))),
         )
         self._views, self._derived = (_views(layout.vectors), _views(layout.numbers)), _views(layout.derived)
         self._writers, self._derive = list(writers.values()), layout.derive
         self._vectors = np.zeros((capacity, _width(self._at[0])))
         self._numbers: list[tuple[float, ...]] = []
-        self._standing: Sequence[Array] | None = ()
+        self._standing: Sequence[Array] = ()
+        self._gather: Callable[[int], None] | None = None
         self._times: list[int] = []
         self._capacity, self._clock = capacity, clock
 
@@ -119,13 +121,18 @@ class RowWriter:
         self.again(time_ns, numbers)
 
     def again(self, time_ns: int, numbers: tuple[float, ...]) -> None:
-        """The same with the very arrays of the row before, whose values may be others; of standing rows."""
-        if self._standing:
-            np.concatenate(tuple(map(np.ndarray.ravel, self._standing)), out=self._vectors[len(self._times)])
+        """The same with the very arrays of the row before, with values of now; of standing rows, and without arrays."""
+        times = self._times
+        count = len(times)
+        if self._gather is not None:
+            self._gather(count)
+        elif self._standing:
+            np.concatenate(tuple(map(np.ndarray.ravel, self._standing)), out=self._vectors[count])
+        # Tuples wait as they are: to turn all of them into an array when the chunk is due takes less time than each.
         self._numbers.append(numbers)
-        self._times.append(time_ns)
-        if time_ns >= self._clock.due or len(self._times) == self._capacity:
-            self._clock.look(time_ns, len(self._times) == self._capacity)
+        times.append(time_ns)
+        if time_ns >= self._clock.due or count + 1 == self._capacity:
+            self._clock.look(time_ns, count + 1 == self._capacity)
 
     def drop(self) -> None:
         """Forget the rows that wait."""
@@ -141,9 +148,7 @@ class RowWriter:
         n = len(self._times)
         if not n:
             return
-        tables = (self._vectors[:n], np.array(self._numbers, np.float64))
-        if tables[1].shape[1] != _width(self._at[1]):
-            raise ValueError(f"a row of {tables[1].shape[1]} numbers, where there are places for {_width(self._at[1])}")
+        tables = (self._vectors[:n], self._waiting())
         for table, views, at in zip(tables, self._views, self._at, strict=True):
             for place, view in views:
                 view[:n] = table[:, at[place]].reshape(n, *view.shape[1:])
@@ -154,6 +159,13 @@ class RowWriter:
         for writer in self._writers:
             writer.fill(self._times)
         self.drop()
+
+    def _waiting(self) -> Array:
+        """Numbers of the rows that wait, shape (n, numbers)."""
+        table, width = np.array(self._numbers, np.float64), _width(self._at[1])
+        if table.shape[1] != width:
+            raise ValueError(f"a row of {table.shape[1]} numbers, where there are places for {width}")
+        return table
 
 
 def _sizes(group: Columns) -> list[tuple[tuple[str, str], int]]:
@@ -185,7 +197,7 @@ _HEADER = ("_sequence", "_log_time", "_publish_time", "_stamp")
 
 
 class CompiledRows(RowWriter):
-    """The same by kernels: a row is put into the messages of its channels as soon as it is there.
+    """The same by kernels, one of which puts all rows that wait into the messages of their channels.
 
     Args:
         layout: of the rows; what is derived has a kernel.
@@ -197,33 +209,37 @@ class CompiledRows(RowWriter):
     def __init__(self, layout: RowLayout, capacity: int, clock: Clock, kernels: Library) -> None:
         super().__init__(layout, capacity, clock)
         vectors, numbers = (_width(at) for at in self._at)
-        places = _places([(place, at.stop - at.start) for part in self._at for place, at in part.items()])
-        derived = _places(_sizes(layout.derived))
-        places |= {
-            place: slice(at.start + vectors + numbers, at.stop + vectors + numbers) for place, at in derived.items()
+        parts = (*self._at, _places(_sizes(layout.derived)))
+        places = {
+            place: slice(at.start + start, at.stop + start)
+            for part, start in zip(parts, (0, vectors, vectors + numbers), strict=True)
+            for place, at in part.items()
         }
-        row = np.zeros(_width(places))
-        self._row, self._announced = row[:vectors], numbers
-        # From plain numbers straight into memory: an array of them would take longer.
-        self._pack, self._bytes, self._behind = struct.Struct(f"{numbers}d").pack_into, row.data.cast("B"), 8 * vectors
-        steps: list[Callable[[], None]] = []
+        self._stands = layout.standing
         if layout.standing:
             self._sources, self._sizes = np.zeros((2, vectors), dtype=np.int64)
             self._source = kernels.fill(
-                "RowSources", count=0, sources=self._sources, sizes=self._sizes, values=self._row
+                "RowSources",
+                count=0,
+                sources=self._sources,
+                sizes=self._sizes,
+                width=vectors,
+                values=self._vectors,
             )
-            steps.append(kernels.bind("log_row_gather", self._source))
+            self._gather = kernels.bind("log_row_gather", self._source)
+        row = np.zeros(_width(places))
+        steps: list[Callable[[], None]] = []
         if layout.compiled is not None:
             steps.append(layout.compiled(kernels, lambda first, last: row[places[first].start : places[last].stop]))
-        self._standing = () if layout.standing else None
         before = kernels.calls(steps)
         if before is None:
             raise TypeError("what a row derives is no kernel")
+        self._table, self._stamps = np.zeros((capacity, numbers)), np.zeros(capacity, dtype=np.int64)
         self._put = self._bind(kernels, row, places, before)
 
     def _bind(
         self, kernels: Library, row: Array, places: Mapping[Place, slice], before: Bound
-    ) -> Callable[[int, int, int], None]:
+    ) -> Callable[[int, int], None]:
         records = [writer.records for writer in self._writers]
         views = [
             (writer.spec.topic, field.name, writer.view(field.name))
@@ -232,51 +248,43 @@ class CompiledRows(RowWriter):
         ]
         at = [places[topic, name] for topic, name, _ in views]
 
-        def numbers(values: Iterable[int]) -> NDArray[np.int64]:
+        def integers(values: Iterable[int]) -> NDArray[np.int64]:
             return np.array(list(values), dtype=np.int64)
 
         return kernels.bind(
-            "log_row_put",
+            "log_rows_put",
+            vectors=self._vectors,
+            vectors_width=self._vectors.shape[1],
+            numbers=self._table,
+            numbers_width=self._table.shape[1],
+            times=self._stamps,
             before=before,
             values=row,
             fields=len(views),
-            first=numbers(place.start for place in at),
-            sizes=numbers(place.stop - place.start for place in at),
-            whole=numbers(view.dtype == np.int32 for *_, view in views),
-            places=numbers(view.ctypes.data for *_, view in views),
-            strides=numbers(view.strides[0] for *_, view in views),
+            first=integers(place.start for place in at),
+            sizes=integers(place.stop - place.start for place in at),
+            whole=integers(view.dtype == np.int32 for *_, view in views),
+            places=integers(view.ctypes.data for *_, view in views),
+            strides=integers(view.strides[0] for *_, view in views),
             channels=len(records),
-            records=numbers(record.ctypes.data for record in records),
-            lengths=numbers(record.dtype.itemsize for record in records),
-            header=numbers(records[0][name].ctypes.data - records[0].ctypes.data for name in _HEADER),
+            records=integers(record.ctypes.data for record in records),
+            lengths=integers(record.dtype.itemsize for record in records),
+            header=integers(records[0][name].ctypes.data - records[0].ctypes.data for name in _HEADER),
         )
 
     def append(self, time_ns: int, numbers: tuple[float, ...], *vectors: Array) -> None:
-        """See `RowWriter`; numbers that are not as many as announced are refused at once."""
+        """See `RowWriter`."""
         standing = self._standing
-        if standing is None:
-            if vectors:
-                np.concatenate(vectors, out=self._row)
+        if not self._stands:
+            self._standing = vectors
         elif len(vectors) != len(standing) or not all(map(is_, vectors, standing)):
             self._look(vectors, standing)
         self.again(time_ns, numbers)
 
-    def again(self, time_ns: int, numbers: tuple[float, ...]) -> None:
-        """See `RowWriter`."""
-        if len(numbers) != self._announced:
-            raise ValueError(f"a row of {len(numbers)} numbers, where there are places for {self._announced}")
-        self._pack(self._bytes, self._behind, *numbers)
-        times = self._times
-        count = len(times)
-        self._put(count, time_ns, self._writers[0].total + count)
-        times.append(time_ns)
-        if time_ns >= self._clock.due or count + 1 == self._capacity:
-            self._clock.look(time_ns, count + 1 == self._capacity)
-
     def _look(self, vectors: Sequence[Array], before: Sequence[Array]) -> None:
         """Look where arrays are, which are kept as long as the kernel may read them."""
-        if sum(vector.size for vector in vectors) != len(self._row):
-            raise ValueError(f"vectors of a row that do not fill its {len(self._row)} places")
+        if sum(vector.size for vector in vectors) != self._vectors.shape[1]:
+            raise ValueError(f"vectors of a row that do not fill its {self._vectors.shape[1]} places")
         for k, (vector, last) in enumerate(zip_longest(vectors, before[: len(vectors)])):
             if vector is not last:
                 if vector.dtype != np.float64 or not vector.flags.c_contiguous:
@@ -286,7 +294,11 @@ class CompiledRows(RowWriter):
 
     def spread(self) -> None:
         """See `RowWriter`."""
-        if self._times:
-            for writer in self._writers:
-                writer.fill(self._times, stamped=True)
-            self.drop()
+        n = len(self._times)
+        if not n:
+            return
+        self._table[:n], self._stamps[:n] = self._waiting(), self._times
+        self._put(n, self._writers[0].total)
+        for writer in self._writers:
+            writer.fill(self._times, stamped=True)
+        self.drop()

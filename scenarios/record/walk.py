@@ -3,29 +3,44 @@
 import math
 import os
 from collections.abc import Callable
-from operator import attrgetter
 
 import numpy as np
 from numpy.typing import NDArray
 
 from surefoot.native.library import library
 from surefoot.planner.geometry import frame_rotation, greatest
-from surefoot.planner.plan import PlanSample, WalkPlan
+from surefoot.planner.plan import IN_POINT, PlanSample, WalkPlan
 from surefoot.planner.plan_kernel import POINT
 from surefoot.planner.steps.commands import Command
 from surefoot.planner.swing.heel_off import FootRoll
 from surefoot.planner.types import GRAVITY, CentroidalState, FeetState, Foot, Footstep, SolverStatus
 from surefoot.scenarios.log import LogWriter
-from surefoot.scenarios.log.rows import RowLayout
+from surefoot.scenarios.log.rows import Place, RowLayout
 from surefoot.scenarios.record import channels
 from surefoot.scenarios.record.channels import SUPPORT_VERTICES, Sizes
 from surefoot.values import dataclass
 
 Array = NDArray[np.float64]
 
-_SAMPLED = ("com", "com_velocity", "com_acceleration", "zmp", "dcm", "zmp_reference")
-_sampled = attrgetter(*_SAMPLED)
-"""What the reference of a tick has of a sample of the plan, under the same names."""
+
+def _in_point(name: str, size: int) -> slice:
+    place = IN_POINT[name]
+    start: int = place if isinstance(place, int) else place.start
+    return slice(start, start + size)
+
+
+_SAMPLED = {
+    **{name: _in_point(name, 3) for name in ("com", "com_velocity", "com_acceleration")},
+    **{name: _in_point(name, 2) for name in ("zmp", "dcm", "zmp_reference")},
+}
+_POSITION, _VELOCITY = _in_point("swing", 3), _in_point("swing_velocity", 3)
+_REFERENCE = {
+    **_SAMPLED,
+    "swing_position": _POSITION,
+    "swing_velocity": _VELOCITY,
+    "support": slice(POINT, POINT + 2 * SUPPORT_VERTICES),
+}
+"""What the reference of a tick has of a sample of the plan, and where: in a point, behind which is the support."""
 
 _STATE = {
     "measured_com": "measured.com",
@@ -80,9 +95,9 @@ class WalkRecorder:
 
     def __init__(self, writer: LogWriter, sizes: Sizes) -> None:
         reference = writer.channel(channels.reference(sizes))
-        vectors = (*_SAMPLED, "swing_position", "swing_velocity", "support")
+        at: dict[Place, slice] = {(reference.spec.topic, name): place for name, place in _REFERENCE.items()}
         numbers = ("omega", "roll", "phase", "stance", "step", "phase_time", "phase_duration", "support_count")
-        self._reference = writer.rows(RowLayout(((reference, vectors),), ((reference, numbers),), standing=True))
+        self._reference = writer.rows(RowLayout(((reference, tuple(_REFERENCE)),), ((reference, numbers),), at=at))
         self._state = writer.channel(channels.planner_state(sizes)).filler(_STATE)
         self._plan = writer.channel(channels.plan(sizes)).filler(_PLAN, ("slack", "held", "capture_margin"))
         self._footsteps = writer.channel(channels.footsteps(sizes)).filler({}, _FOOTSTEPS)
@@ -94,11 +109,6 @@ class WalkRecorder:
         self._looked = -1
         self._support = np.zeros((SUPPORT_VERTICES, 2))
         self._rolled = level, rates, position, velocity = np.zeros(6), np.zeros(6), np.zeros(3), np.zeros(3)
-        # The numbers of a sample that the kernel has made lie in one place, from which the row takes them.
-        self._point = np.zeros(POINT)
-        seen = PlanSample.of_point(0.0, self._point, (True, True), None)
-        self._sampled = *_sampled(seen), seen.swing[:3], seen.swing_velocity[:3], self._support
-        self._last: tuple[Array, ...] | None = None
         self._roll: Callable[[float, float, float], None] | None = None
         if kernels := library():
             self._roll = kernels.bind("roll_centre", level=level, rates=rates, position=position, velocity=velocity)
@@ -152,18 +162,11 @@ class WalkRecorder:
             sample.omega, *pitches, phase.kind, -1 if phase.stance is None else phase.stance, phase.step,
             phase.elapsed + sample.time - plan.time, phase.duration, len(plan.support_polygon),
         )  # fmt: skip
-        vectors = self._sampled
-        if sample.point is None:
-            vectors = *_sampled(sample), sample.swing[:3], sample.swing_velocity[:3], self._support
-        else:
-            self._point[:] = sample.point
+        point = _point(sample) if sample.point is None else sample.point
         if roll is not None and pitch and roll.foot is sample.swing_foot:
-            vectors = *vectors[:6], *self._centre(roll, sample), self._support
-        if vectors is self._last:
-            self._reference.again(time_ns, numbers)
-        else:
-            self._reference.append(time_ns, numbers, *vectors)
-            self._last = vectors
+            point = point.copy()
+            point[_POSITION], point[_VELOCITY] = self._centre(roll, sample)
+        self._reference.append(time_ns, numbers, point, self._support)
 
     def _centre(self, roll: FootRoll, sample: PlanSample) -> tuple[Array, Array]:
         """See `FootRoll.centre`."""
@@ -178,7 +181,7 @@ class WalkRecorder:
     def timing(self, time_ns: int, timing: TickTiming) -> None:
         """Wall-clock times of the tick, and once a simulated second the state of the process."""
         state, build, solve, plan, physics, log, tick, busy = timing
-        self._timing.append(
+        self._timing.again(
             time_ns,
             (1e6 * state, 1e6 * build, 1e6 * solve, 1e6 * plan, 1e6 * physics, 1e6 * log, 1e6 * tick, 1e6 * busy),
         )
@@ -195,6 +198,15 @@ def resident_memory() -> float:
             return float(int(file.read().split()[1]) * os.sysconf("SC_PAGE_SIZE"))
     except (OSError, ValueError, IndexError):
         return math.nan
+
+
+def _point(sample: PlanSample) -> Array:
+    """A sample as a point of the kernel, as far as the reference has it."""
+    point = np.zeros(POINT)
+    for name, place in _SAMPLED.items():
+        point[place] = getattr(sample, name)
+    point[_POSITION], point[_VELOCITY] = sample.swing[:3], sample.swing_velocity[:3]
+    return point
 
 
 def _pose(footstep: Footstep) -> tuple[float, ...]:

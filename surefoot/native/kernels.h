@@ -375,8 +375,13 @@ void calls_run(const Calls *calls);
 
 /* Counterpart of `scenarios.log.rows.RowWriter`; places and records are addresses, strides and lengths bytes. */
 typedef struct {
+    const double *vectors;
+    int64_t vectors_width;
+    const double *numbers;
+    int64_t numbers_width;
+    const int64_t *times;
     const Calls *before;
-    const double *values;
+    double *values;
     int64_t fields;
     const int64_t *first;
     const int64_t *sizes;
@@ -387,9 +392,9 @@ typedef struct {
     const int64_t *records;
     const int64_t *lengths;
     const int64_t *header;
-} LogRow;
+} LogRows;
 
-void log_row_put(const LogRow *row, int64_t number, int64_t time, int64_t sequence);
+void log_rows_put(const LogRows *rows, int64_t count, int64_t sequence);
 
 /* Counterpart of `scenarios.log.spec.Template.encode`; places are those of bytes in the message at an address. */
 typedef struct {
@@ -409,10 +414,11 @@ typedef struct {
     int64_t count;
     const int64_t *sources;
     const int64_t *sizes;
+    int64_t width;
     double *values;
 } RowSources;
 
-void log_row_gather(const RowSources *row);
+void log_row_gather(const RowSources *row, int64_t number);
 
 /* Counterpart of `scenarios.record.body.Recorder._derived`, for one row. */
 typedef struct {

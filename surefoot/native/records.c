@@ -4,32 +4,42 @@
 
 static char *at(int64_t address) { return (char *)(intptr_t)address; }
 
-/* Completes the row, and puts it into record `number` of each channel, with its time [ns] and its number in the file. */
-void log_row_put(const LogRow *row, int64_t number, int64_t time, int64_t sequence) {
+/* Puts the row into record `number` of each channel, with its time [ns] and its number in the file. */
+static void put_row(const LogRows *rows, int64_t number, int64_t time, int64_t sequence) {
     const uint32_t counted = (uint32_t)sequence;
-    calls_run(row->before);
-    for (int64_t c = 0; c < row->channels; c++) {
-        char *record = at(row->records[c]) + number * row->lengths[c];
-        memcpy(record + row->header[0], &counted, sizeof counted);
-        for (int i = 1; i < 4; i++) memcpy(record + row->header[i], &time, sizeof time);
+    for (int64_t c = 0; c < rows->channels; c++) {
+        char *record = at(rows->records[c]) + number * rows->lengths[c];
+        memcpy(record + rows->header[0], &counted, sizeof counted);
+        for (int i = 1; i < 4; i++) memcpy(record + rows->header[i], &time, sizeof time);
     }
-    for (int64_t f = 0; f < row->fields; f++) {
-        char *place = at(row->places[f]) + number * row->strides[f];
-        const double *values = row->values + row->first[f];
-        if (!row->whole[f]) {
-            memcpy(place, values, row->sizes[f] * sizeof(double));
+    for (int64_t f = 0; f < rows->fields; f++) {
+        char *place = at(rows->places[f]) + number * rows->strides[f];
+        const double *values = rows->values + rows->first[f];
+        if (!rows->whole[f]) {
+            memcpy(place, values, rows->sizes[f] * sizeof(double));
             continue;
         }
-        for (int64_t i = 0; i < row->sizes[f]; i++) {
+        for (int64_t i = 0; i < rows->sizes[f]; i++) {
             const int32_t value = (int32_t)values[i];
             memcpy(place + i * sizeof value, &value, sizeof value);
         }
     }
 }
 
-/* Fills a row from the arrays that it is made of. */
-void log_row_gather(const RowSources *row) {
-    double *values = row->values;
+/* Completes rows and puts them into the messages of their channels; the first has this number in the file. */
+void log_rows_put(const LogRows *rows, int64_t count, int64_t sequence) {
+    const int64_t m = rows->vectors_width, n = rows->numbers_width;
+    for (int64_t k = 0; k < count; k++) {
+        memcpy(rows->values, rows->vectors + k * m, m * sizeof(double));
+        memcpy(rows->values + m, rows->numbers + k * n, n * sizeof(double));
+        calls_run(rows->before);
+        put_row(rows, k, rows->times[k], sequence + k);
+    }
+}
+
+/* Fills a row of a table from the arrays that it is made of. */
+void log_row_gather(const RowSources *row, int64_t number) {
+    double *values = row->values + number * row->width;
     for (int64_t k = 0; k < row->count; values += row->sizes[k++])
         memcpy(values, (const void *)(intptr_t)row->sources[k], row->sizes[k] * sizeof(double));
 }

@@ -1,7 +1,8 @@
 """Channels of a log under way: values are copied into preallocated message records, which wait for their chunk."""
 
 import struct
-from collections.abc import Callable, Mapping, Sequence, Set
+from collections.abc import Callable, Iterable, Mapping, Sequence, Set
+from itertools import chain
 from operator import attrgetter
 
 import numpy as np
@@ -86,8 +87,9 @@ class ChannelWriter(Waiting):
         self._views: tuple[NDArray[np.generic], ...] = tuple(self._records[name] for name in self._names)
         self._stamps = tuple(self._records[name] for name in ("_log_time", "_stamp", "_publish_time"))
         self._sequence, self._index = self._records["_sequence"], np.zeros((capacity, 2), "<u8")
-        self._bytes = self._records.view(np.uint8).reshape(capacity, -1)
-        self._offsets = np.arange(capacity, dtype=np.uint64) * np.uint64(self._records.dtype.itemsize)
+        self._bytes, self._entries = (each.view(np.uint8).ravel().data for each in (self._records, self._index))
+        self._size = self._records.dtype.itemsize
+        self._offsets = np.arange(capacity, dtype=np.uint64) * np.uint64(self._size)
 
     def append(self, time_ns: int, *values: ArrayLike) -> None:
         """Add a message; the values are copied.
@@ -191,23 +193,24 @@ class ChannelWriter(Waiting):
         self._stamped = False
         self.total += n
         self.drop()
-        index = self._index[:n]
-        index[:, 0], index[:, 1] = stamps, self._offsets[:n]
-        index[:, 1] += np.uint64(offset)
-        return self._bytes[:n].data.cast("B"), index_record(self.channel_id, index)
+        index = self._index
+        index[:n, 0] = stamps
+        np.add(self._offsets[:n], np.uint64(offset), out=index[:n, 1])
+        return self._bytes[: n * self._size], index_record(self.channel_id, self._entries[: n * _ENTRY])
 
 
-def message_index(channel_id: int, times_ns: ArrayLike, offsets: ArrayLike) -> bytes:
-    """MessageIndex record of a channel's messages in a chunk: times [ns] and byte offsets, shape (n,) each."""
-    times = np.asarray(times_ns, "<u8")
-    index = np.empty((len(times), 2), "<u8")
-    index[:, 0], index[:, 1] = times, offsets
-    return index_record(channel_id, index)
+_ENTRY = 16
+"""Bytes of a message's entry in the index of its channel: time and offset."""
 
 
-def index_record(channel_id: int, index: NDArray[np.uint64]) -> bytes:
-    """The same of times and offsets side by side, shape (n, 2)."""
-    entries = index.tobytes()
+def message_index(channel_id: int, times_ns: Iterable[int], offsets: Iterable[int]) -> bytes:
+    """MessageIndex record of a channel's messages in a chunk: times [ns] and byte offsets, as many of each."""
+    entries = tuple(chain.from_iterable(zip(times_ns, offsets, strict=True)))
+    return index_record(channel_id, struct.pack(f"<{len(entries)}Q", *entries))
+
+
+def index_record(channel_id: int, entries: bytes | memoryview) -> bytes:
+    """The same of times and offsets as they stand in it."""
     return _INDEX_HEADER.pack(Opcode.MESSAGE_INDEX, len(entries) + 6, channel_id, len(entries)) + entries
 
 
@@ -240,13 +243,14 @@ class MessageWriter(Waiting):
 
     def take(self, offset: int) -> tuple[bytes, bytes]:
         """See `Waiting`."""
-        blocks, offsets = [], []
-        for time, data in zip(self.times, self._waiting, strict=True):
+        blocks: list[bytes] = []
+        offsets = []
+        for number, (time, data) in enumerate(zip(self.times, self._waiting, strict=True), start=self.total):
             offsets.append(offset)
             length = _HEADER.size - PREFIX_BYTES + len(data)
-            blocks.append(_HEADER.pack(Opcode.MESSAGE, length, self.channel_id, self.total, time, time) + data)
-            offset += len(blocks[-1])
-            self.total += 1
+            blocks += (_HEADER.pack(Opcode.MESSAGE, length, self.channel_id, number, time, time), data)
+            offset += _HEADER.size + len(data)
+        self.total += self.count
         index = message_index(self.channel_id, self.times, offsets)
         self.drop()
         return b"".join(blocks), index

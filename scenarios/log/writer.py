@@ -227,7 +227,8 @@ class LogWriter:
         waiting = [channel for channel in self._channels if channel.count]
         if not waiting:
             return
-        start, end = min(min(c.times) for c in waiting), max(max(c.times) for c in waiting)
+        times = [channel.times for channel in waiting]
+        start, end = min(map(min, times)), max(map(max, times))
         blocks, indexes, offset = [], [], 0
         for channel in waiting:
             block, index = channel.take(offset)

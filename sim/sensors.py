@@ -30,8 +30,11 @@ class SensorReader:
     accelerometer needs no kinematics.
     """
 
-    def __init__(self, model: mujoco.MjModel, data: mujoco.MjData, description: RobotDescription) -> None:
-        self._model, self._data = model, data
+    def __init__(
+        self, model: mujoco.MjModel, data: mujoco.MjData, description: RobotDescription, pushes: PushSchedule
+    ) -> None:
+        """Look at a world; `pushes` are those of its latest steps."""
+        self._model, self._data, self._pushes = model, data, pushes
         base = model.body(description.pelvis_body).id
         _check_imu(model, description, base)
         soles = [model.site(name).id for name in description.sole_sites]
@@ -60,33 +63,31 @@ class SensorReader:
         self._views = q[7:], v[6:], torque, v[3:6], felt, wrench, q, v, _read_only(self._push)
         """Of a measurement, from the joints' positions to the push."""
 
-    def read(self, time: float, pushes: PushSchedule) -> Measurement:
-        """Everything at `time` [s]; `pushes` are the forces of the step that ended there."""
+    def read(self, time: float) -> Measurement:
+        """Everything at `time` [s], where a step of the world ended."""
         mujoco.mj_rnePostConstraint(self._model, self._data)
-        self._push[:] = pushes.mean
+        pushed = bool(self._pushes.active)
+        if pushed:
+            self._without_pushes()
         if self._read_compiled is None:
-            self._read(pushes)
+            self._read(self._contact if pushed else self._external)
         else:
-            if pushes.active:
-                self._without_pushes(pushes)
-            else:
-                self._contact[...] = self._external
-            self._read_compiled()
+            self._read_compiled(pushed)
         nonfoot_contact, self_contact = self._touch.read()
         return _a_measurement(time, *self._views, nonfoot_contact, self_contact)
 
-    def _read(self, pushes: PushSchedule) -> None:
-        """Fill the buffers but for the pushes."""
+    def _read(self, contact: Array) -> None:
+        """Fill the buffers; the terrain's forces on the bodies as MuJoCo has them, shape (nbody, 6) [N m, N]."""
+        self._push[:] = self._pushes.mean
         mujoco_to_pinocchio(self._qpos, self._qvel, self._q, self._v)
         self._torque[:] = self._joint_force
         np.subtract(self._qacc_base, self._gravity, out=self._specific_force)
         np.dot(self._specific_force, self._base_rotation, out=self._accelerometer)
-        contact = self._without_pushes(pushes) if pushes.active else self._external
         com = self._com.tolist()
         for wrench, (foot, position, rotation) in zip(self._wrench, self._soles, strict=True):
             wrench[:] = _at_sole(contact[foot].tolist(), com, position.tolist(), rotation.tolist())
 
-    def _compiled(self, kernels: Library, data: mujoco.MjData) -> Callable[[], None]:
+    def _compiled(self, kernels: Library, data: mujoco.MjData) -> Callable[[int], None]:
         """The kernel that does what `_read` does."""
         (left, *at_left), (right, *at_right) = self._soles
         return kernels.bind(
@@ -100,8 +101,11 @@ class SensorReader:
             base_rotation=self._base_rotation,
             gravity=self._gravity,
             com=self._com,
-            left_external=self._contact[left],
-            right_external=self._contact[right],
+            push=self._pushes.mean,
+            left_external=self._external[left],
+            right_external=self._external[right],
+            left_contact=self._contact[left],
+            right_contact=self._contact[right],
             left_position=at_left[0],
             right_position=at_right[0],
             left_rotation=at_left[1],
@@ -111,18 +115,18 @@ class SensorReader:
             torque=self._torque,
             accelerometer=self._accelerometer,
             wrench=self._wrench,
+            pushed=self._push,
         )
 
-    def _without_pushes(self, pushes: PushSchedule) -> Array:
+    def _without_pushes(self) -> None:
         """External forces of the bodies minus the pushes: what the terrain does."""
         self._contact[:] = self._external
-        for body, force in pushes.active:
+        for body, force in self._pushes.active:
             row = self._contact[body]
             row[:3] -= np.cross(self._body_com[body] - self._com, force)
             row[3:] -= force
             if np.abs(row).max() < ROUND_OFF * np.abs(force).max():
                 row[:] = 0.0
-        return self._contact
 
 
 def _at_sole(

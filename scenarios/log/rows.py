@@ -1,8 +1,9 @@
 """Rows of the log: one message for each of several channels at once, with what is derived from the rest."""
 
+import struct
 from collections.abc import Callable, Iterable, Mapping, Sequence
 from dataclasses import field
-from itertools import zip_longest
+from itertools import chain, zip_longest
 from operator import is_
 
 import numpy as np
@@ -63,6 +64,7 @@ class RowLayout:
         more_vectors: name and size of vectors that only `derive` needs; they come after the others.
         more_numbers: names of numbers that only `derive` needs; they come after the others.
         compiled: gives a kernel that does what `derive` does, to one row.
+        fresh: whether nobody writes into a row's vectors any more: they are copied when the chunk is due.
         at: columns of the fields of `vectors` in what vectors make up; side by side in their order if None.
         standing: whether most vectors of a row are the very arrays of the row before, whose memory kernels then read.
     """
@@ -75,6 +77,7 @@ class RowLayout:
     more_numbers: Sequence[str] = ()
     compiled: CompiledDerive | None = None
     standing: bool = False
+    fresh: bool = False
     at: Mapping[Place, slice] | None = None
 
 
@@ -101,6 +104,7 @@ class RowWriter:
         self._vectors = np.zeros((capacity, _width(self._at[0])))
         self._numbers: list[tuple[float, ...]] = []
         self._standing: Sequence[Array] = ()
+        self._fresh: list[Array] | None = [] if layout.fresh else None
         self._gather: Callable[[int], None] | None = None
         self._times: list[int] = []
         self._capacity, self._clock = capacity, clock
@@ -117,7 +121,10 @@ class RowWriter:
             ValueError: the vectors do not fill the row, or the numbers of a row of this chunk did not.
             LogError: the chunk that this row completes cannot be written.
         """
-        self._standing = vectors
+        if self._fresh is None:
+            self._look(vectors)
+        else:
+            self._fresh += vectors
         self.again(time_ns, numbers)
 
     def again(self, time_ns: int, numbers: tuple[float, ...]) -> None:
@@ -128,16 +135,22 @@ class RowWriter:
             self._gather(count)
         elif self._standing:
             np.concatenate(tuple(map(np.ndarray.ravel, self._standing)), out=self._vectors[count])
-        # Tuples wait as they are: to turn all of them into an array when the chunk is due takes less time than each.
+        # Tuples wait as they are: to put all of them into memory when the chunk is due takes less time than one by one.
         self._numbers.append(numbers)
         times.append(time_ns)
         if time_ns >= self._clock.due or count + 1 == self._capacity:
             self._clock.look(time_ns, count + 1 == self._capacity)
 
+    def _look(self, vectors: tuple[Array, ...]) -> None:
+        """Take arrays that are copied now, and by `again`."""
+        self._standing = vectors
+
     def drop(self) -> None:
         """Forget the rows that wait."""
         self._times.clear()
         self._numbers.clear()
+        if self._fresh:
+            self._fresh.clear()
 
     def spread(self) -> None:
         """Hand the rows that wait over to the channels.
@@ -148,7 +161,7 @@ class RowWriter:
         n = len(self._times)
         if not n:
             return
-        tables = (self._vectors[:n], self._waiting())
+        tables = (self._vectors[:n], np.array(self._flat(n), np.float64).reshape(n, -1))
         for table, views, at in zip(tables, self._views, self._at, strict=True):
             for place, view in views:
                 view[:n] = table[:, at[place]].reshape(n, *view.shape[1:])
@@ -160,12 +173,15 @@ class RowWriter:
             writer.fill(self._times)
         self.drop()
 
-    def _waiting(self) -> Array:
-        """Numbers of the rows that wait, shape (n, numbers)."""
-        table, width = np.array(self._numbers, np.float64), _width(self._at[1])
-        if table.shape[1] != width:
-            raise ValueError(f"a row of {table.shape[1]} numbers, where there are places for {width}")
-        return table
+    def _flat(self, n: int) -> list[float]:
+        """Numbers of the rows that wait, one row after the other, while the vectors are put into their table."""
+        if self._fresh:
+            np.concatenate(self._fresh, axis=None, out=self._vectors[:n].reshape(-1))
+        width = _width(self._at[1])
+        wrong = {len(numbers) for numbers in self._numbers} - {width}
+        if wrong:
+            raise ValueError(f"a row of {min(wrong)} numbers, where there are places for {width}")
+        return list(chain.from_iterable(self._numbers))
 
 
 def _sizes(group: Columns) -> list[tuple[tuple[str, str], int]]:
@@ -215,7 +231,6 @@ class CompiledRows(RowWriter):
             for part, start in zip(parts, (0, vectors, vectors + numbers), strict=True)
             for place, at in part.items()
         }
-        self._stands = layout.standing
         if layout.standing:
             self._sources, self._sizes = np.zeros((2, vectors), dtype=np.int64)
             self._source = kernels.fill(
@@ -272,17 +287,14 @@ class CompiledRows(RowWriter):
             header=integers(records[0][name].ctypes.data - records[0].ctypes.data for name in _HEADER),
         )
 
-    def append(self, time_ns: int, numbers: tuple[float, ...], *vectors: Array) -> None:
-        """See `RowWriter`."""
-        standing = self._standing
-        if not self._stands:
-            self._standing = vectors
-        elif len(vectors) != len(standing) or not all(map(is_, vectors, standing)):
-            self._look(vectors, standing)
-        self.again(time_ns, numbers)
-
-    def _look(self, vectors: Sequence[Array], before: Sequence[Array]) -> None:
+    def _look(self, vectors: tuple[Array, ...]) -> None:
         """Look where arrays are, which are kept as long as the kernel may read them."""
+        before = self._standing
+        if self._gather is None:
+            self._standing = vectors
+            return
+        if len(vectors) == len(before) and all(map(is_, vectors, before)):
+            return
         if sum(vector.size for vector in vectors) != self._vectors.shape[1]:
             raise ValueError(f"vectors of a row that do not fill its {self._vectors.shape[1]} places")
         for k, (vector, last) in enumerate(zip_longest(vectors, before[: len(vectors)])):
@@ -297,7 +309,10 @@ class CompiledRows(RowWriter):
         n = len(self._times)
         if not n:
             return
-        self._table[:n], self._stamps[:n] = self._waiting(), self._times
+        numbers = self._flat(n)
+        # Packed: numpy looks at the type of each number first.
+        struct.pack_into(f"{len(numbers)}d", self._table.data, 0, *numbers)
+        struct.pack_into(f"{n}q", self._stamps.data, 0, *self._times)
         self._put(n, self._writers[0].total)
         for writer in self._writers:
             writer.fill(self._times, stamped=True)

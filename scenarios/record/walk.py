@@ -97,7 +97,8 @@ class WalkRecorder:
         reference = writer.channel(channels.reference(sizes))
         at: dict[Place, slice] = {(reference.spec.topic, name): place for name, place in _REFERENCE.items()}
         numbers = ("omega", "roll", "phase", "stance", "step", "phase_time", "phase_duration", "support_count")
-        self._reference = writer.rows(RowLayout(((reference, tuple(_REFERENCE)),), ((reference, numbers),), at=at))
+        vectors = ((reference, tuple(_REFERENCE)),)
+        self._reference = writer.rows(RowLayout(vectors, ((reference, numbers),), fresh=True, at=at))
         self._state = writer.channel(channels.planner_state(sizes)).filler(_STATE)
         self._plan = writer.channel(channels.plan(sizes)).filler(_PLAN, ("slack", "held", "capture_margin"))
         self._footsteps = writer.channel(channels.footsteps(sizes)).filler({}, _FOOTSTEPS)
@@ -134,6 +135,7 @@ class WalkRecorder:
             [math.nan if step is None else step.touchdown_time for step in ahead],
         )
         vertices = plan.support_polygon
+        self._support = np.empty((SUPPORT_VERTICES, 2))  # a new one, since rows of the reference have kept the last
         self._support[: len(vertices)] = vertices
         self._support[len(vertices) :] = vertices[-1]
 

@@ -301,7 +301,24 @@ typedef struct {
 
 void load_sums_add(const LoadSums *sums);
 
-/* Counterpart of `sim.sensors.SensorReader.read`, after mj_rnePostConstraint and without pushes. */
+/* A simulated world before and after a step; counterpart of `sim.world._begun` and `_sound`. */
+typedef struct {
+    int64_t nq;
+    int64_t nv;
+    int64_t nu;
+    const double *qpos;
+    const double *qvel;
+    const double *qacc;
+    const double *torque;
+    double *last_qpos;
+    double *last_qvel;
+    double *pushed;
+} WorldStep;
+
+int64_t world_begun(const WorldStep *world);
+int64_t world_sound(const WorldStep *world, double most);
+
+/* Counterpart of `sim.sensors.SensorReader._read`; of a pushed robot the contacts are what is left of external forces. */
 typedef struct {
     int64_t nq;
     int64_t nv;
@@ -312,8 +329,11 @@ typedef struct {
     const double *base_rotation;
     const double *gravity;
     const double *com;
+    const double *push;
     const double *left_external;
     const double *right_external;
+    const double *left_contact;
+    const double *right_contact;
     const double *left_position;
     const double *right_position;
     const double *left_rotation;
@@ -323,9 +343,10 @@ typedef struct {
     double *torque;
     double *accelerometer;
     double *wrench;
+    double *pushed;
 } Sensors;
 
-void sensors_read(const Sensors *sensors);
+void sensors_read(const Sensors *sensors, int64_t is_pushed);
 
 /* Counterpart of the distances in `wbc.separation.Separation.write`; `poses` holds addresses, four for each pair. */
 typedef struct {

@@ -225,9 +225,9 @@ class BodyView:
 
     def events(self, time_ns: int, measurement: Measurement, report: WbcReport, plan: WalkPlan, fallen: bool) -> None:
         """Say what has changed since the last control tick."""
-        force = measurement.external_force
-        fallback = report.status >= _FALLBACK or plan.status.solver is _HELD
-        self._events.update(time_ns, report.active, bool(force.dot(force)), fallback, plan.status.falling, fallen)
+        pushed, status = any(measurement.external_force.tolist()), plan.status
+        fallback = report.status >= _FALLBACK or status.solver is _HELD
+        self._events.update(time_ns, report.active, pushed, fallback, status.falling, fallen)
 
     def picture(
         self, tick: int, time_ns: int, measurement: Measurement, terms: RobotTerms, plan: WalkPlan, sample: PlanSample

@@ -44,6 +44,22 @@ def test_a_row_has_what_its_arrays_hold_now_whether_or_not_they_are_those_of_bef
     np.testing.assert_array_equal(np.hstack(found), wanted)
 
 
+@pytest.mark.parametrize("switch", ["1", "0"])
+def test_arrays_that_nobody_writes_into_wait_for_their_chunk(kernels, tmp_path, monkeypatch, switch):
+    monkeypatch.setenv(VARIABLE, switch)
+    rng = np.random.default_rng(2)
+    given = [(rng.normal(size=8), rng.normal(size=(2, 2)), rng.normal()) for _ in range(200)]
+    at = {("/a", "x"): slice(4, 7), ("/a", "y"): slice(8, 12)}
+    with LogWriter(tmp_path / "log.mcap", {}) as writer:
+        channel = writer.channel(SPEC)
+        row = writer.rows(RowLayout(((channel, ("x", "y")),), ((channel, ("n",)),), fresh=True, at=at))
+        for tick, (point, y, n) in enumerate(given):
+            row.append(tick * 2_000_000, (n,), point, y)
+    channel = read(tmp_path / "log.mcap")["/a"]
+    found = [channel.field(name).reshape(200, -1) for name in ("x", "y", "n")]
+    np.testing.assert_array_equal(np.hstack(found), [(*point[4:7], *y.ravel(), n) for point, y, n in given])
+
+
 @pytest.mark.parametrize(
     "vectors",
     [

@@ -11,12 +11,13 @@ from types import SimpleNamespace
 import numpy as np
 import pytest
 from mcap.reader import make_reader
+from mcap.records import Chunk, ChunkIndex
 from mcap_protobuf.decoder import DecoderFactory
 
 import surefoot.scenarios.log.writer as log_writer
 from surefoot.scenarios.errors import LogError
 from surefoot.scenarios.log import AttachedFile, ChannelSpec, FieldSpec, LogWriter, read
-from surefoot.scenarios.log.encoding import Packed
+from surefoot.scenarios.log.encoding import Packed, _chunk_index, encoded
 from surefoot.scenarios.record import channels
 
 pytestmark = pytest.mark.unit
@@ -55,6 +56,13 @@ def full_disk_at(size):
         yield
     finally:
         resource.setrlimit(resource.RLIMIT_FSIZE, (soft, hard))
+
+
+@pytest.mark.parametrize("places", [{}, {7: 1000, 3: 2**40}])
+def test_the_index_of_a_chunk_is_that_of_the_mcap_library(places):
+    chunk = Chunk("lz4", b"packed", 2**50, 5, 0, 12345)
+    wanted = ChunkIndex(77, 99, "lz4", 6, 2**50, 321, places, 5, 12345)
+    assert _chunk_index(chunk, 99, 77, places, 321) == encoded(wanted)
 
 
 @pytest.mark.parametrize("compression", ["lz4", "zstd", ""])

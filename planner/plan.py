@@ -195,7 +195,7 @@ class PlanSample:
         )
 
 
-_OpenSample, _of_point = opened(PlanSample), PlanSample.of_point
+_OpenSample = opened(PlanSample)
 
 
 class PlanSampler:
@@ -213,6 +213,9 @@ class PlanSampler:
 
     Attributes:
         plan: the plan.
+        contacts: planned ones of the interval that was sampled last.
+        swing_foot: that swings in it, or None.
+        lands: from when on the foot bears load whose single support ends within the first interval [s].
     """
 
     def __init__(self, plan: WalkPlan, kernel: PlanKernel | None = None) -> None:
@@ -221,12 +224,13 @@ class PlanSampler:
         self._entered = (-1, False)
         self._touchdown = np.inf if plan.swing is None else plan.swing.touchdown_time - TOUCHING
         single = plan.phase.kind is PhaseKind.SINGLE
-        self._lands = plan.time + plan.phase.left - TOUCHING if single else np.inf
-        self._begin, self._length = plan.time, plan.sample_time
+        self.lands = plan.time + plan.phase.left - TOUCHING if single else np.inf
         self._start = plan.time
         self._table: Array
-        self._contacts = (True, True)
-        self._swing_foot: Foot | None = None
+        self.contacts = (True, True)
+        self.swing_foot: Foot | None = None
+        if kernel is not None:
+            kernel.take(plan.time, plan.sample_time, self._last, self._touchdown)
 
     def sample(self, time: float) -> PlanSample:
         """References at an instant.
@@ -234,11 +238,12 @@ class PlanSampler:
         Args:
             time: instant, not before the plan [s].
         """
-        self._go_to(time)
-        t = self._local(time)
+        self._go_to(self._place(time))
         if self._kernel is not None:
-            point = self._kernel.sample(t, t)[0]
-            return PlanSample.of_point(time, point, self._contacts_at(time), self._swing_foot)
+            points = self._kernel.sample(time, time)
+            assert points is not None
+            return PlanSample.of_point(time, points[0], self.contacts_at(time), self.swing_foot)
+        t = min(max(time - self._start, 0.0), self.plan.sample_time)
         t2 = t * t
         t3 = t2 * t
         values = np.array((1.0, t, t2, t3, t3 * t, t3 * t2)) @ self._table
@@ -256,9 +261,9 @@ class PlanSampler:
             com[:2] + velocity[:2] / omega,
             omega,
             stiffness,
-            self._contacts_at(time),
+            self.contacts_at(time),
             load,
-            self._swing_foot,
+            self.swing_foot,
             values[10:16],
             values[19:25],
             values[28:],
@@ -266,45 +271,44 @@ class PlanSampler:
 
     def tick(self, time: float, middle: float) -> tuple[PlanSample, PlanSample]:
         """The references at an instant, and what is to be done from there on over a time with that middle [s]."""
-        now = self._place(time)
-        if self._kernel is None or self._place(middle) != now:
+        if self._kernel is None or not self.goes_to(time, middle):
             sample = self.sample(time)
             return sample, sample.until(self.sample(middle))
-        if now != self._entered:
-            self._enter(*now)
-        points, foot = self._kernel.sample(self._local(time), self._local(middle)), self._swing_foot
-        contacts = late = self._contacts
-        if middle >= self._lands:
-            contacts, late = self._contacts_at(time), self._contacts_at(middle)
-        return _of_point(time, points[0], contacts, foot), _of_point(middle, points[1], late, foot)
+        points = self._kernel.sample(time, middle)
+        assert points is not None
+        now, late = self.contacts_at(time), self.contacts_at(middle)
+        foot = self.swing_foot
+        return PlanSample.of_point(time, points[0], now, foot), PlanSample.of_point(middle, points[1], late, foot)
+
+    def goes_to(self, time: float, middle: float) -> bool:
+        """Go to the interval of an instant, if another one is in the same, with the swing foot landed or not [s]."""
+        place = self._place(time)
+        if self._place(middle) != place:
+            return False
+        self._go_to(place)
+        return True
 
     def _place(self, time: float) -> tuple[int, bool]:
         """The interval of an instant, and whether the swing foot has landed by then."""
-        interval = int((time - self._begin) / self._length + 1e-6)
-        last = self._last
-        return 0 if interval < 0 else last if interval > last else interval, time >= self._touchdown
+        interval = int((time - self.plan.time) / self.plan.sample_time + 1e-6)
+        return min(max(interval, 0), self._last), time >= self._touchdown
 
-    def _go_to(self, time: float) -> None:
-        place = self._place(time)
+    def _go_to(self, place: tuple[int, bool]) -> None:
         if place != self._entered:
             self._enter(*place)
 
-    def _local(self, time: float) -> float:
-        """Time since the begin of the interval [s]."""
-        passed, length = time - self._start, self._length
-        return 0.0 if passed < 0.0 else length if passed > length else passed
-
-    def _contacts_at(self, time: float) -> tuple[bool, bool]:
-        return self._contacts if time < self._lands or self._entered[0] else (True, True)
+    def contacts_at(self, time: float) -> tuple[bool, bool]:
+        """Planned contacts at an instant of the interval that was sampled last [s]."""
+        return self.contacts if time < self.lands or self._entered[0] else (True, True)
 
     def _enter(self, i: int, landed: bool) -> None:
         """Prepare an interval: contacts, the foot that swings, and all functions of time."""
         plan = self.plan
         self._entered, self._start = (i, landed), plan.time + i * plan.sample_time
         left, right = plan.contacts[i].tolist()
-        self._contacts, self._swing_foot, swing = (left, right), None, None
+        self.contacts, self.swing_foot, swing = (left, right), None, None
         if plan.swing is not None and not plan.contacts[i, plan.swing.foot]:
-            self._swing_foot = plan.swing.foot
+            self.swing_foot = plan.swing.foot
             since = max(self._start, plan.swing.touchdown_time) if landed else self._start
             swing = plan.swing.coefficients(since)
             if self._kernel is None or since != self._start:
@@ -316,7 +320,8 @@ class PlanSampler:
                 plan.com, plan.com_velocity, plan.com_acceleration,
                 plan.zmp_reference, plan.zmp_offset, plan.omega, plan.stiffness, plan.load_left,
             )  # fmt: skip
-            self._kernel.enter(i, quantities, plan.jerk[i], swing, plan.sample_time)
+            foot = -1 if self.swing_foot is None else int(self.swing_foot)
+            self._kernel.enter(i, landed, self._start, quantities, plan.jerk[i], foot, swing)
 
     def _tabulated(self, i: int, swing: Array | None) -> Array:
         """An interval: 7 linear functions, 9 polynomials and their two derivatives as columns."""

@@ -85,7 +85,6 @@ class Controller:
         self.posture, self._leg = made_ready(walk, body)
         self.whole_body = whole_body_of(walk, body, self.posture, parts)
         self.senses = senses_of(walk, parts)
-        self._references = ReferenceMaker()
         self._faults = FaultSchedule(walk.faults, walk.rates.control) if walk.faults else None
         self._period = 1.0 / walk.rates.control
         self._output = Output(walk.control, walk.robot, walk.size, walk.rates.control)
@@ -100,6 +99,7 @@ class Controller:
         self._torques: TorqueWrench | None = None
         self._command = JointCommand(np.zeros(0))
         self.planning: Planning
+        self._references: ReferenceMaker
         self.state: RobotState
         self.report: WbcReport
 
@@ -128,6 +128,7 @@ class Controller:
 
     def _stand(self, q: Array) -> None:
         self.planning = Planning.of(self.walk, self.walk.planner(feet_at(self.body, q), self._leg))
+        self._references = ReferenceMaker(self.planning.kernel)
 
     @property
     def time(self) -> float:
@@ -184,13 +185,16 @@ class Controller:
         begin = time.perf_counter()
         self._observe(readings, now)
         state_time = time.perf_counter() - begin
-        self.sample, until, plan_time = self.planning.follow(now, self._output.period, self._measured)
+        plan_time = self.planning.follow(now, self._measured)
+        # What is decided now acts until the next command, so that it is to do what is planned for the middle of that;
+        # the state is held against that of now, from which on it does so.
+        middle = now + 0.5 * self._output.period
+        self.sample, reference = self._references.tick(self.planning.sampler, now, middle)
         if now < self._next:
             self.spent = Spent(state_time, plan_time)
             return self._command
         if self._output.holds:
             self._next = self._output.after(now)
-        reference = self._references.reference(self.planning.plan, until)
         sensing = foot_sensing(self.estimate, self.wrench, self._estimates, self._torques)
         fails = self._faults is not None and self._faults.active("qp_failure", self.planning.tick(now))
         if self.whole_body.driven is not None:

@@ -197,7 +197,8 @@ class PointMass:
 
     def control(self, tick: int, now: float) -> tuple[PlanSample, Spent]:
         """See `Walker`."""
-        sample, until, spent = self.planning.follow(now, self._period, self.measured)
+        spent = self.planning.follow(now, self.measured)
+        sample, until = self.planning.sampler.tick(now, now + 0.5 * self._period)
         self._force = mean_force(self._pushes, self._now, self._period)
         self._support = self._support_of(until.contacts)
         return sample, Spent(plan=spent)

@@ -12,7 +12,7 @@ from numpy.typing import NDArray
 from surefoot.errors import ParameterError
 from surefoot.guard import OWN_GUARD, Guard
 from surefoot.native.library import library
-from surefoot.planner.plan import Planner, PlanSample, PlanSampler, WalkPlan
+from surefoot.planner.plan import Planner, PlanSampler, WalkPlan
 from surefoot.planner.plan_kernel import PlanKernel
 from surefoot.planner.steps.commands import Command
 from surefoot.planner.types import CentroidalState, FeetState, Foot, Footstep, PhaseKind
@@ -83,6 +83,7 @@ class Planning:
         planner: what plans.
         plan: the latest plan; there is none before the first `update`.
         sampler: of the latest plan.
+        kernel: of all samplers; None of plain Python.
         recorder: of its channels; None for no record.
     """
 
@@ -98,12 +99,12 @@ class Planning:
     ) -> None:
         self.planner, self._sensing, self.recorder, self._faults = planner, sensing, recorder, faults
         self._guard = guard
-        self._plan_rate, self._rate = rates.planner, rates.control
+        self._plan_rate, self._rate, self._rounding = rates.planner, rates.control, ROUNDING / rates.control
         self._due = 0
         self.plan: WalkPlan
         self.sampler: PlanSampler
         kernels = library()
-        self._kernel = PlanKernel(kernels) if kernels else None
+        self.kernel = PlanKernel(kernels) if kernels else None
         self._started = False
         self._commands = deque(sorted(commands, key=lambda command: command.time))
         self._told = False
@@ -120,38 +121,31 @@ class Planning:
         """The number of the control tick of an instant [s]."""
         return round(now * self._rate)
 
-    def follow(
-        self, now: float, period: float, measure: Callable[[], Measured]
-    ) -> tuple[PlanSample, PlanSample, float]:
-        """Plan where a plan is due, and look the plan up.
+    def follow(self, now: float, measure: Callable[[], Measured]) -> float:
+        """Plan where a plan is due.
 
         A plan is that of its place on the planner's own clock, whenever the readings come: what is measured since is
         taken back to there. Plans that were due while no readings came are made up for.
 
         Args:
             now: instant of what is measured, which goes on from call to call [s].
-            period: time for which what is decided now acts [s].
             measure: gives what is measured; asked only where a plan is due.
 
         Returns:
-            the sample of now; that of what is to be done for the period, its state that of now and all else that of its
-            middle (see `PlanSample.until`); and the wall-clock time that planning took [s].
+            the wall-clock time that planning took [s].
 
         Raises:
             RunFault: nothing was measured for too long.
         """
-        spent = 0.0
-        if self._due / self._plan_rate <= now + ROUNDING / self._rate:
-            begin = time.perf_counter()
-            self._catch_up(now, measure)
-            spent = time.perf_counter() - begin
-        # What is decided now acts until the next tick, so that it is to do what is planned for the middle of that; the
-        # state is held against that of now, from which on it does so.
-        return *self.sampler.tick(now, now + 0.5 * period), spent
+        if self._due / self._plan_rate > now + self._rounding:
+            return 0.0
+        begin = time.perf_counter()
+        self._catch_up(now, measure)
+        return time.perf_counter() - begin
 
     def _catch_up(self, now: float, measure: Callable[[], Measured]) -> None:
         """Make the plans that are due; see `follow`."""
-        latest = now + ROUNDING / self._rate
+        latest = now + self._rounding
         if (self._due + MOST_MISSED) / self._plan_rate < now:
             raise RunFault(
                 f"nothing was measured for {now - (self._due - 1) / self._plan_rate:.3f} s before {now:.3f} s"
@@ -184,7 +178,7 @@ class Planning:
         self._tell(tick)
         update: Callable[[CentroidalState, FeetState], WalkPlan] = self._guard.function(self.planner.update, taken_plan)
         self.plan = update(sensed.given, feet)
-        self.sampler = PlanSampler(self.plan, self._kernel)
+        self.sampler = PlanSampler(self.plan, self.kernel)
         self._started = True
         if self.recorder is not None:
             self._record(self.recorder, now_ns, before, feet)

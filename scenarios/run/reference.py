@@ -5,10 +5,9 @@ from collections.abc import Callable
 
 import numpy as np
 
-from surefoot.native.library import Library, library
 from surefoot.planner.geometry import sole_rates, sole_rotation
-from surefoot.planner.plan import PlanSample, WalkPlan
-from surefoot.planner.plan_kernel import POINT
+from surefoot.planner.plan import PlanSample, PlanSampler, WalkPlan
+from surefoot.planner.plan_kernel import PlanKernel
 from surefoot.planner.types import PhaseKind
 from surefoot.wbc.types import WbcReference
 
@@ -61,58 +60,92 @@ def whole_body_reference(plan: WalkPlan, sample: PlanSample) -> WbcReference:
     )
 
 
-class ReferenceMaker:
-    """Does what `whole_body_reference` does, tick by tick, by a kernel where there is one."""
+_OTHER_INTERVAL = -2
+"""What the kernel gives where an instant is not within the interval that it holds [-]."""
 
-    def __init__(self) -> None:
-        kernels = library()
-        self._fill = None if kernels is None else self._compile(kernels)
+_ROLL, _ROLLING = slice(49, 52), 53
+"""Where the numbers of a reference have the roll of a foot, and which foot rolls [-]."""
+
+
+class ReferenceMaker:
+    """Samples plans, and does what `whole_body_reference` does, tick by tick, by one kernel where there is one.
+
+    Args:
+        kernel: of the samplers that it is given; None for plain Python.
+    """
+
+    def __init__(self, kernel: PlanKernel | None) -> None:
+        self._fill = None if kernel is None else self._compile(kernel)
         self._plan: WalkPlan | None = None
 
-    def _compile(self, kernels: Library) -> Callable[[int, int], None]:
-        self._point, self._yaw, self._roll = np.zeros(POINT), np.zeros(2), np.zeros(3)
-        self._normal, self._landing = np.zeros((2, 3)), np.zeros(3)
-        reference, self._numbers = kernels.buffer("Reference")
-        return kernels.bind(
-            "plan_reference_fill",
-            point=self._point,
+    def _compile(self, kernel: PlanKernel) -> Callable[[float, float], int]:
+        self._yaw, self._normal, self._landing = np.zeros(2), np.zeros((2, 3)), np.zeros(3)
+        reference, self._numbers = kernel.kernels.buffer("Reference")
+        self._now = kernel.now
+        self._bound = kernel.kernels.fill(
+            "PlanReference",
+            interval=kernel.bound,
             yaw=self._yaw,
             normal=self._normal,
             landing_normal=self._landing,
-            roll=self._roll,
+            rolling_foot=-1,
+            roll_start=0.0,
+            roll_end=0.0,
+            roll_angle=0.0,
             reference=reference,
         )
+        return kernel.kernels.bind("plan_reference_fill", self._bound)
 
-    def reference(self, plan: WalkPlan, sample: PlanSample) -> WbcReference:
-        """See `whole_body_reference`."""
-        if self._fill is None or sample.point is None:
-            return whole_body_reference(plan, sample)
+    def tick(self, sampler: PlanSampler, time: float, middle: float) -> tuple[PlanSample, WbcReference]:
+        """The references of a plan at an instant, and what is to be done from there on over a time of that middle [s].
+
+        See `PlanSampler.tick` and `whole_body_reference`.
+        """
+        plan = sampler.plan
+        if self._fill is None:
+            return self._plain(sampler, time, middle)
         if plan is not self._plan:
             self._take(plan)
-        time, phase, roll = sample.time, plan.phase, plan.roll
-        foot, rolling, passed = -1, -1, time - plan.time
-        if sample.swing_foot is not None:
-            foot = int(sample.swing_foot)
-        if roll is not None:
-            self._roll[:] = roll.evaluate(time)
-            rolling = int(roll.foot) if roll.rolling(time) else -1
-        self._point[:] = sample.point
-        self._fill(foot, rolling)
-        progress = min(1.0, (phase.elapsed + passed) / phase.duration) if foot >= 0 and self._lasts else 0.0
-        left = max(0.0, phase.left - passed)
-        return WbcReference.of_numbers(
-            self._numbers.copy(), sample.contacts, left, self._lifting, foot, progress, rolling, plan.balance.catching
+        rolling = self._fill(time, middle)
+        if rolling == _OTHER_INTERVAL:
+            if not sampler.goes_to(time, middle):
+                return self._plain(sampler, time, middle)
+            rolling = self._fill(time, middle)
+        contacts = late = sampler.contacts
+        if middle >= sampler.lands:
+            contacts, late = sampler.contacts_at(time), sampler.contacts_at(middle)
+        swings, passed, numbers = sampler.swing_foot, middle - plan.time, self._numbers.copy()
+        foot, progress, left = -1, 0.0, self._left - passed
+        if swings is not None:
+            foot = int(swings)
+            if self._lasts:
+                progress = min(1.0, (self._elapsed + passed) / self._duration)
+        if self._scaled is not None:
+            numbers[_ROLL] = self._scaled.evaluate(middle)
+            rolling = int(self._scaled.foot) if self._scaled.rolling(middle) else -1
+            numbers[_ROLLING] = rolling
+        return PlanSample.of_point(time, self._now.copy(), contacts, swings), WbcReference.of_numbers(
+            numbers, late, left if left > 0.0 else 0.0, self._lifting, foot, progress, rolling, self._catching
         )
+
+    def _plain(self, sampler: PlanSampler, time: float, middle: float) -> tuple[PlanSample, WbcReference]:
+        sample, until = sampler.tick(time, middle)
+        return sample, whole_body_reference(sampler.plan, until)
 
     def _take(self, plan: WalkPlan) -> None:
         """What stays the same until the next plan."""
-        self._plan, phase = plan, plan.phase
+        self._plan, phase, roll, bound = plan, plan.phase, plan.roll, self._bound.struct
         lifts = phase.kind is PhaseKind.DOUBLE and phase.leads_to > 0
-        self._lifting = int(plan.footsteps[0].foot) if lifts else -1
+        self._lifting, self._catching = int(plan.footsteps[0].foot) if lifts else -1, plan.balance.catching
+        self._elapsed, self._left, self._duration = phase.elapsed, phase.left, phase.duration
         self._lasts = math.isfinite(phase.duration)
         for k, foothold in enumerate(plan.footholds):
             self._yaw[k], self._normal[k] = foothold.yaw, foothold.normal
         if plan.footsteps:
             self._landing[:] = plan.footsteps[0].normal
-        if plan.roll is None:
-            self._roll[:] = NO_ROLL
+        # The kernel knows no clock but the time.
+        self._scaled = None if roll is None or roll.scaling is None or roll.scaling.steady else roll
+        bound.rolling_foot = -1
+        if roll is not None and self._scaled is None:
+            bound.rolling_foot, bound.roll_start, bound.roll_end = int(roll.foot), roll.start, roll.end
+            bound.roll_angle = roll.angle

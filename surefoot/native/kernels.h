@@ -362,28 +362,39 @@ typedef struct {
 
 int64_t pairs_due(const Pairs *pairs);
 
-/* Counterpart of `planner.plan.PlanSampler`: an interval between two samples, and two points within it. */
+/* Counterpart of `planner.plan.PlanSampler`: a plan, its interval that was entered last, and two points within that. */
 typedef struct {
+    double begin;
+    double length;
+    int64_t last;
+    double touchdown;
+    int64_t entered;
+    int64_t landed;
+    double start;
+    int64_t swing_foot;
     const double *ends;
     const double *swing;
     double *table;
     double *points;
 } PlanInterval;
 
-void plan_interval_enter(const PlanInterval *interval, double length);
-void plan_interval_sample(const PlanInterval *interval, double now, double middle);
+void plan_interval_enter(const PlanInterval *interval);
+int64_t plan_interval_sample(const PlanInterval *interval, double now, double middle);
 
-/* Counterpart of `scenarios.run.reference.whole_body_reference`: where the feet stand and one will land. */
+/* Counterpart of `scenarios.run.reference.whole_body_reference`: where the feet stand, one will land and one rolls. */
 typedef struct {
-    const double *point;
+    const PlanInterval *interval;
     const double *yaw;
     const double *normal;
     const double *landing_normal;
-    const double *roll;
+    int64_t rolling_foot;
+    double roll_start;
+    double roll_end;
+    double roll_angle;
     Reference *reference;
 } PlanReference;
 
-void plan_reference_fill(const PlanReference *plan, int64_t swing_foot, int64_t rolling_foot);
+int64_t plan_reference_fill(const PlanReference *plan, double now, double middle);
 
 /* Kernels without numbers of their own, one after another: addresses of functions and of their structs. */
 typedef struct {

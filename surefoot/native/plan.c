@@ -22,9 +22,9 @@ static void quintic(const double *start, const double *end, double t, double *co
     coefficients[5] = (6.0 * gap - 3.0 * speed + 0.5 * bend) / (t3 * t * t);
 }
 
-/* Fills the table of an interval of a length from what the plan has at both its ends, and the swing's polynomials. */
-void plan_interval_enter(const PlanInterval *interval, double length) {
-    const double *ends = interval->ends;
+/* Fills the table of an interval from what the plan has at both its ends, and the swing's polynomials. */
+void plan_interval_enter(const PlanInterval *interval) {
+    const double *ends = interval->ends, length = interval->length;
     /* Widths of the linear quantities: ZMP reference, ZMP offset, frequency, stiffness, load. */
     static const int widths[5] = {2, 2, 1, 1, 1};
     double *table = interval->table, height[2][3], coefficients[6];
@@ -68,12 +68,27 @@ static void evaluate(const double *table, double t, double *point) {
     }
 }
 
-/* Two points of an interval: at its local time `now`; at `middle`, with positions and velocities of now. */
-void plan_interval_sample(const PlanInterval *interval, double now, double middle) {
+/* Whether an instant is within the interval that was entered last, with its swing foot landed or not as it was then. */
+static int is_within(const PlanInterval *plan, double time) {
+    const double place = (time - plan->begin) / plan->length + 1e-6;
+    const int64_t i = place < 0.0 ? 0 : place > (double)plan->last ? plan->last : (int64_t)place;
+    return i == plan->entered && (time >= plan->touchdown) == plan->landed;
+}
+
+/* Time since the begin of the interval. */
+static double local(const PlanInterval *plan, double time) {
+    const double passed = time - plan->start;
+    return passed < 0.0 ? 0.0 : passed > plan->length ? plan->length : passed;
+}
+
+/* Two points: at `now`; at `middle`, with positions and velocities of now. Zero where the interval is not theirs. */
+int64_t plan_interval_sample(const PlanInterval *interval, double now, double middle) {
     double *point = interval->points;
-    evaluate(interval->table, now, point);
-    evaluate(interval->table, middle, point + POINT);
+    if (!is_within(interval, now) || !is_within(interval, middle)) return 0;
+    evaluate(interval->table, local(interval, now), point);
+    evaluate(interval->table, local(interval, middle), point + POINT);
     memcpy(point + POINT + LINEAR, point + LINEAR, 2 * MOTIONS * sizeof(double));
+    return 1;
 }
 
 /* Counterpart of `planner.geometry.sole_rates`, of angles yaw, pitch, roll. */
@@ -102,10 +117,25 @@ static void sole_rotation(const double *angles, double *R) {
     memcpy(R, rows, sizeof rows);
 }
 
-/* Fills the reference from a point of the plan; of the foot that swings, -1 for none, yaw and normal are its own. */
-void plan_reference_fill(const PlanReference *plan, int64_t swing_foot, int64_t rolling_foot) {
-    const double *point = plan->point, *swing = point + LINEAR + 3, *rate = point + RATES + 3;
+/* Counterpart of `planner.swing.heel_off.FootRoll.evaluate` of a clock that goes as the time does. */
+static void roll_evaluate(const PlanReference *plan, double time, double *roll) {
+    const double span = plan->roll_end - plan->roll_start, s = (time - plan->roll_start) / span;
+    memset(roll, 0, 3 * sizeof(double));
+    if (!(s > 0.0 && s < 1.0)) return;
+    const double w = s * (1.0 - s), tilt = 1.0 - 2.0 * s;
+    roll[0] = plan->roll_angle * (64.0 * pow(w, 3.0));
+    roll[1] = plan->roll_angle * (192.0 * pow(w, 2.0) * tilt) / span;
+    roll[2] = plan->roll_angle * (384.0 * w * (pow(tilt, 2.0) - w)) / pow(span, 2.0);
+}
+
+/* Samples the plan (see `plan_interval_sample`) and fills the reference from the second point; of the foot that swings
+ * yaw and normal are its own. Gives the foot that rolls then, -1 for none, -2 where the interval is another. */
+int64_t plan_reference_fill(const PlanReference *plan, double now, double middle) {
+    if (!plan_interval_sample(plan->interval, now, middle)) return -2;
+    const double *point = plan->interval->points + POINT, *swing = point + LINEAR + 3, *rate = point + RATES + 3;
     const double *bend = point + BENDS + 3;
+    const int64_t swing_foot = plan->interval->swing_foot;
+    int64_t rolling_foot = -1;
     Reference *reference = plan->reference;
     double yaw[2] = {plan->yaw[0], plan->yaw[1]};
     memcpy(reference->com, point + LINEAR, sizeof reference->com);
@@ -132,9 +162,14 @@ void plan_reference_fill(const PlanReference *plan, int64_t swing_foot, int64_t 
     reference->heading_rate = 0.5 * rate[3];
     reference->load_share[0] = point[6];
     reference->load_share[1] = 1.0 - point[6];
-    memcpy(reference->roll, plan->roll, sizeof reference->roll);
+    if (plan->rolling_foot >= 0) {
+        roll_evaluate(plan, middle, reference->roll);
+        if (plan->roll_start < middle && middle < plan->roll_end) rolling_foot = plan->rolling_foot;
+    } else
+        memset(reference->roll, 0, sizeof reference->roll);
     reference->swing_foot = (double)swing_foot;
     reference->rolling_foot = (double)rolling_foot;
+    return rolling_foot;
 }
 
 /* Centre and velocity of a sole that is turned about its toe edge by a pitch, which changes at a rate. */

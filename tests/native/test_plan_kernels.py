@@ -6,6 +6,7 @@ import numpy as np
 import pytest
 
 import surefoot
+from surefoot.planner.model.time_scaling import TimeScaling
 from surefoot.planner.plan import PlanSample, PlanSampler
 from surefoot.planner.plan_kernel import PlanKernel
 from surefoot.planner.swing.heel_off import FootRoll
@@ -46,15 +47,31 @@ def plans(request):
 
 
 def test_samples_and_references_are_those_of_plain_python(kernels, plans):
-    kernel, maker = PlanKernel(kernels), ReferenceMaker()
-    for plan in plans[::3]:
+    kernel = PlanKernel(kernels)
+    maker, rolled = ReferenceMaker(kernel), 0
+    for plan in [*plans[::3], *_scaled(plans[1::6])]:
         plain, compiled = PlanSampler(plan), PlanSampler(plan, kernel)
         for ahead in (0.0, 0.004, 0.018, 0.0195, 0.02, 0.31, 10.0):
             times = plan.time + ahead, plan.time + ahead + 0.001
-            for one, other in zip(plain.tick(*times), compiled.tick(*times), strict=True):
+            now, until = plain.tick(*times)
+            for one, other in zip((now, until), compiled.tick(*times), strict=True):
                 assert_alike(one, other, PlanSample)
-                assert_alike(whole_body_reference(plan, one), maker.reference(plan, other), WbcReference)
-            assert_alike(plain.sample(times[0]), compiled.sample(times[0]), PlanSample)
+            sample, reference = maker.tick(compiled, *times)
+            assert_alike(now, sample, PlanSample)
+            assert_alike(whole_body_reference(plan, until), reference, WbcReference)
+            assert_alike(now, compiled.sample(times[0]), PlanSample)
+            if reference.numbers is not None:
+                assert reference.numbers[-1] == reference.rolling_foot
+                rolled += reference.rolling_foot >= 0
+    assert bool(rolled) == any(plan.roll is not None for plan in plans)
+
+
+def _scaled(plans):
+    """Plans with feet that roll by a clock that goes faster."""
+    for plan in plans:
+        if plan.roll is not None:
+            scaling = TimeScaling(plan.sample_time, 10.0).scaled(15.0, 12.0)
+            yield replace(plan, roll=replace(plan.roll, scaling=scaling, told=plan.time))
 
 
 def test_samples_are_fresh_at_every_call(kernels, plans):
@@ -67,8 +84,8 @@ def test_samples_are_fresh_at_every_call(kernels, plans):
 
 def test_a_reference_that_is_changed_does_not_keep_the_numbers_of_the_old_one(kernels, plans):
     plan = plans[1]
-    sample, _ = PlanSampler(plan, PlanKernel(kernels)).tick(plan.time, plan.time + 0.001)
-    reference = ReferenceMaker().reference(plan, sample)
+    kernel = PlanKernel(kernels)
+    sample, reference = ReferenceMaker(kernel).tick(PlanSampler(plan, kernel), plan.time, plan.time + 0.001)
     assert reference.numbers is not None
     assert replace(reference, heading=1.0).numbers is None
     assert replace(sample, omega=1.0).point is None

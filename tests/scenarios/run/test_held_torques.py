@@ -1,6 +1,6 @@
 import pytest
 
-from surefoot.scenarios.run.planning import Planning
+from surefoot.planner.plan import PlanSampler
 from surefoot.scenarios.run.simulation import Simulation
 from surefoot.scenarios.setup.load import load as load_scenario
 
@@ -9,14 +9,14 @@ pytestmark = pytest.mark.unit
 
 def test_what_is_decided_for_a_tick_is_what_is_planned_for_its_middle(monkeypatch):
     """A torque is held for a tick; planned for its begin, the ZMP would lag by half of it."""
-    acted, follow = [], Planning.follow
+    acted, tick = [], PlanSampler.tick
 
     def noted(*given):
-        sample, until, spent = follow(*given)
+        sample, until = tick(*given)
         acted.append(until.time)
-        return sample, until, spent
+        return sample, until
 
-    monkeypatch.setattr(Planning, "follow", noted)
+    monkeypatch.setattr(PlanSampler, "tick", noted)
     with Simulation(load_scenario("walk", ("fidelity=pendulum",))) as simulation:
         ticks = [simulation.step() for _ in range(20)]
         rate = simulation.walk.rates.control

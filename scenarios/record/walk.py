@@ -8,7 +8,7 @@ import numpy as np
 from numpy.typing import NDArray
 
 from surefoot.native.library import library
-from surefoot.planner.geometry import frame_rotation, greatest
+from surefoot.planner.geometry import frame_rotation
 from surefoot.planner.plan import IN_POINT, PlanSample, WalkPlan
 from surefoot.planner.plan_kernel import POINT
 from surefoot.planner.steps.commands import Command
@@ -63,7 +63,8 @@ _PLAN = {
 
 _FOOTSTEPS = ("current_left", "current_right", "next", "next_foot", "touchdown_time")
 
-_NO_FOOTSTEP = (math.nan,) * 4
+_NO_FOOTSTEPS: tuple[tuple[float, ...], ...] = (math.nan,) * 12, (-1,) * 3, (math.nan,) * 3
+"""Places, feet and times of three footsteps that there are not."""
 
 
 TickTiming = tuple[float, float, float, float, float, float, float, float]
@@ -122,18 +123,14 @@ class WalkRecorder:
     def plan(self, time_ns: int, plan: WalkPlan) -> None:
         """A new plan with its horizon and footsteps."""
         status, balance = plan.status, plan.balance
-        slack, held = (greatest(status.zmp_slack), greatest(status.terminal_slack)), status.solver is SolverStatus.HELD
+        slack = max(status.zmp_slack.tolist()), max(status.terminal_slack.tolist())
+        held = (status.solver is SolverStatus.HELD,)
         self._plan(time_ns, plan, slack, held, (balance.planned, balance.movable))
-        ahead = [*plan.footsteps, *[None] * (3 - len(plan.footsteps))]
-        self._footsteps(
-            time_ns,
-            None,
-            _pose(plan.footholds[Foot.LEFT]),
-            _pose(plan.footholds[Foot.RIGHT]),
-            [_NO_FOOTSTEP if step is None else _pose(step) for step in ahead],
-            [-1 if step is None else int(step.foot) for step in ahead],
-            [math.nan if step is None else step.touchdown_time for step in ahead],
-        )
+        poses, feet, times = _NO_FOOTSTEPS
+        for step in reversed(plan.footsteps):
+            poses, feet, times = (*_pose(step), *poses[:8]), (step.foot, *feet[:2]), (step.touchdown_time, *times[:2])
+        left, right = plan.footholds
+        self._footsteps(time_ns, None, _pose(left), _pose(right), poses, feet, times)
         vertices = plan.support_polygon
         self._support = np.empty((SUPPORT_VERTICES, 2))  # a new one, since rows of the reference have kept the last
         self._support[: len(vertices)] = vertices

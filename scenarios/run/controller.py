@@ -200,9 +200,11 @@ class Controller:
         if self.whole_body.driven is not None:
             self._tell(self.whole_body.driven, driven_joints)
         self.report = report = self.whole_body.update(reference, sensing, fails)
-        self.senses.told(reference, report)
+        if self.senses.listens:
+            self.senses.told(reference, report)
         self._landed, self._load = report.active, report.load
-        self.spent = Spent(state_time, plan_time, report.build_time, report.solve_time)
+        # A named tuple's own constructor goes through Python.
+        self.spent = tuple.__new__(Spent, (state_time, plan_time, report.build_time, report.solve_time))
         # What falls gives way; the controller goes on, unheard, since estimator and planner take its contacts.
         falling, state = self._gives_way and self.planning.plan.status.falling, self.state
         torque = self._giving_way.torque(state.q[7:], state.v[6:]) if falling else report.torque

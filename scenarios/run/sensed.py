@@ -19,7 +19,7 @@ from surefoot.scenarios.setup.walk import Walk
 from surefoot.sim.measurement import Measurement
 from surefoot.sim.sensor_errors import SensorErrors
 from surefoot.similarity import GRAVITY
-from surefoot.values import maker
+from surefoot.values import opened
 from surefoot.wbc.estimation.estimate import Deviation, Estimate, Planned
 from surefoot.wbc.estimation.estimator import Footing, SensedState
 from surefoot.wbc.estimation.kinematics import ImuMount
@@ -29,7 +29,7 @@ from surefoot.wbc.types import Array, FootSensing, WbcReference, WbcReport
 
 _OPTIONS = ("sensing", "options")
 
-_a_sensing = maker(FootSensing)
+_OpenSensing = opened(FootSensing)
 
 SWAY, SWAY_TIME = (0.3, 1.0), 0.1
 """Angular velocity and acceleration of a walking pelvis, RMS, and how long they keep their sign [rad/s, m/s^2, s]."""
@@ -127,6 +127,7 @@ class Senses:
     Attributes:
         is_truth: whether it hands on the true state.
         reads: whether it is given what sensors say, in place of the measurement.
+        listens: whether it wants to know what was decided; see `told`.
 
     Raises:
         MisfitError: it is of neither kind.
@@ -144,6 +145,7 @@ class Senses:
             self._estimate = part.estimate
         self._last: Estimate | None = None
         self._told: Callable[[Planned], None] | None = part.told if self.reads and told else None
+        self.listens = self._told is not None
 
     def __call__(self, readings: Readings | Measurement) -> Estimate:
         """The estimate of a tick, with the wrenches of the sensors where the estimator has none of its own.
@@ -182,13 +184,15 @@ def foot_sensing(estimate: Estimate, wrench: Array, wanted: bool, inferred: Torq
         inferred: what makes these wrenches of the joints' torques, for an estimate that tells none; None of wrenches
             that are felt.
     """
-    forces, felt = (wrench.item(2), wrench.item(8)), wrench if wanted else None
-    age, sure = estimate.wrench_age + (0.0 if inferred is None else inferred.late), estimate.deviation
-    if sure is not None:
-        return FootSensing(forces, felt, estimate.contact, (sure.force, sure.moment), age)
+    made, age, sure = _OpenSensing(), estimate.wrench_age, estimate.deviation
+    made.normal_force, made.wrench = (wrench.item(2), wrench.item(8)), wrench if wanted else None
+    made.contact, made.load_deviation = estimate.contact, (0.0, 0.0)
     if inferred is not None:
-        return FootSensing(forces, felt, estimate.contact, inferred.deviation, age)
-    return _a_sensing(forces, felt, estimate.contact, wrench_age=age)
+        made.load_deviation, age = inferred.deviation, age + inferred.late
+    if sure is not None:
+        made.load_deviation = sure.force, sure.moment
+    made.wrench_age, made.__class__ = age, FootSensing
+    return made  # type: ignore[no-any-return]
 
 
 def unsure(deviation: Deviation, state: CentroidalState, feet: FeetState) -> tuple[CentroidalState, FeetState]:

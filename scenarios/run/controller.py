@@ -91,8 +91,7 @@ class Controller:
         self._next = -math.inf
         self._estimates = walk.sensing.force_estimate
         self._toe = 0.5 * walk.robot.sole_length if walk.gait.heel_off else 0.0
-        self._gives_way = walk.control.give_way is not False
-        self._giving_way = GivingWay(body.limits, walk.size)
+        self._giving_way = None if walk.control.give_way is False else GivingWay(body.limits, walk.size)
         self._landed, self._load = (True, True), NO_LOAD
         self._landing: Landing | None = None
         self._begin, self._now = math.nan, -math.inf
@@ -206,8 +205,9 @@ class Controller:
         # A named tuple's own constructor goes through Python.
         self.spent = tuple.__new__(Spent, (state_time, plan_time, report.build_time, report.solve_time))
         # What falls gives way; the controller goes on, unheard, since estimator and planner take its contacts.
-        falling, state = self._gives_way and self.planning.plan.status.falling, self.state
-        torque = self._giving_way.torque(state.q[7:], state.v[6:]) if falling else report.torque
+        state, torque = self.state, report.torque
+        if self._giving_way is not None and self.planning.plan.status.falling:
+            torque = self._giving_way.torque(state.q[7:], state.v[6:])
         if self._output.servo:
             self._command = self._output.command(torque, state.q[7:], state.v[6:], report.acceleration[6:])
         elif self._command.torque is not torque:

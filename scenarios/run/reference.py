@@ -8,7 +8,7 @@ import numpy as np
 from surefoot.planner.geometry import sole_rates, sole_rotation
 from surefoot.planner.plan import PlanSample, PlanSampler, WalkPlan
 from surefoot.planner.plan_kernel import PlanKernel
-from surefoot.planner.types import PhaseKind
+from surefoot.planner.types import Footstep, PhaseKind
 from surefoot.wbc.types import WbcReference
 
 NO_ROLL = (0.0, 0.0, 0.0)
@@ -67,6 +67,9 @@ _ROLL, _ROLLING = slice(49, 52), 53
 """Where the numbers of a reference have the roll of a foot, and which foot rolls [-]."""
 
 
+_a_sample, _a_reference = PlanSample.of_point, WbcReference.of_numbers
+
+
 class ReferenceMaker:
     """Samples plans, and does what `whole_body_reference` does, tick by tick, by one kernel where there is one.
 
@@ -77,6 +80,7 @@ class ReferenceMaker:
     def __init__(self, kernel: PlanKernel | None) -> None:
         self._fill = None if kernel is None else self._compile(kernel)
         self._plan: WalkPlan | None = None
+        self._footholds: tuple[Footstep, Footstep] | None = None
 
     def _compile(self, kernel: PlanKernel) -> Callable[[float, float], int]:
         self._yaw, self._normal, self._landing = np.zeros(2), np.zeros((2, 3)), np.zeros(3)
@@ -117,14 +121,14 @@ class ReferenceMaker:
         swings, passed, numbers = sampler.swing_foot, middle - plan.time, self._numbers.copy()
         foot, progress, left = -1, 0.0, self._left - passed
         if swings is not None:
-            foot = int(swings)
-            if self._lasts:
-                progress = min(1.0, (self._elapsed + passed) / self._duration)
+            foot, progress = int(swings), (self._elapsed + passed) / self._duration  # zero of a phase without an end
+            if progress > 1.0:
+                progress = 1.0
         if self._scaled is not None:
             numbers[_ROLL] = self._scaled.evaluate(middle)
             rolling = int(self._scaled.foot) if self._scaled.rolling(middle) else -1
             numbers[_ROLLING] = rolling
-        return PlanSample.of_point(time, self._now.copy(), contacts, swings), WbcReference.of_numbers(
+        return _a_sample(time, self._now.copy(), contacts, swings), _a_reference(
             numbers, late, left if left > 0.0 else 0.0, self._lifting, foot, progress, rolling, self._catching
         )
 
@@ -138,9 +142,10 @@ class ReferenceMaker:
         lifts = phase.kind is PhaseKind.DOUBLE and phase.leads_to > 0
         self._lifting, self._catching = int(plan.footsteps[0].foot) if lifts else -1, plan.balance.catching
         self._elapsed, self._left, self._duration = phase.elapsed, phase.left, phase.duration
-        self._lasts = math.isfinite(phase.duration)
-        for k, foothold in enumerate(plan.footholds):
-            self._yaw[k], self._normal[k] = foothold.yaw, foothold.normal
+        if plan.footholds is not self._footholds:
+            self._footholds = plan.footholds
+            for k, foothold in enumerate(plan.footholds):
+                self._yaw[k], self._normal[k] = foothold.yaw, foothold.normal
         if plan.footsteps:
             self._landing[:] = plan.footsteps[0].normal
         # The kernel knows no clock but the time.

@@ -14,8 +14,9 @@ from surefoot.lazy import face
 
 if TYPE_CHECKING:
     from surefoot.forces import ExternalLoad
+    from surefoot.wbc.answer import WbcAnswer
     from surefoot.wbc.cone import Sole
-    from surefoot.wbc.controller import WbcAnswer, WholeBodyController
+    from surefoot.wbc.controller import WholeBodyController
     from surefoot.wbc.ik import PostureIk, PostureResult, PostureTarget
     from surefoot.wbc.limits import JointLimits
     from surefoot.wbc.model import BodyFrames, RobotTerms
@@ -48,8 +49,9 @@ if not TYPE_CHECKING:  # a type checker shall still refuse names that are not th
     __getattr__, __dir__ = face(
         __name__,
         {
+            "answer": ("WbcAnswer",),
             "cone": ("Sole",),
-            "controller": ("WbcAnswer", "WholeBodyController"),
+            "controller": ("WholeBodyController",),
             "ik": ("PostureIk", "PostureResult", "PostureTarget"),
             "limits": ("JointLimits",),
             "model": ("BodyFrames", "RobotTerms"),

@@ -9,7 +9,7 @@ from typing import TYPE_CHECKING, Any
 import numpy as np
 import pinocchio as pin
 
-from surefoot.forces import NO_LOAD, ExternalLoad
+from surefoot.forces import ExternalLoad
 from surefoot.native.library import Bound, Library
 from surefoot.wbc.types import Array, WbcReference
 from surefoot.wbc.zmp import UNLOADED
@@ -31,6 +31,9 @@ class CompiledTerms:
     Attributes:
         kernels: the library.
         bound: the terms as other kernels take them.
+        q: where they read the configuration, shape (nq,) [m, -, rad].
+        v: where they read the velocity, shape (nv,) [m/s, rad/s].
+        update: fills all arrays of the state that q and v hold; returns whether that is finite.
     """
 
     def __init__(
@@ -42,9 +45,9 @@ class CompiledTerms:
         torso_motion: tuple[Array, Array, Array],
     ) -> None:
         self.kernels, self._data = kernels, terms.data
-        self._q, self._v = np.zeros(terms.model.nq), np.zeros(terms.model.nv)
+        self.q, self.v = np.zeros(terms.model.nq), np.zeros(terms.model.nv)
         self._mass, self._force, self._moment = np.array([terms.mass]), np.zeros(3), np.zeros(3)
-        self._to_sole, self._loaded = np.zeros((2, 6, 6)), False
+        self._to_sole = np.zeros((2, 6, 6))
         own = {
             name: getattr(terms, name)
             for name in (
@@ -56,12 +59,13 @@ class CompiledTerms:
         self.bound = kernels.fill(
             "Terms",
             **own,
+            nq=terms.model.nq,
             nv=terms.model.nv,
             mass=self._mass,
             load_force=self._force,
             load_moment=self._moment,
-            q=self._q,
-            v=self._v,
+            q=self.q,
+            v=self.v,
             joint_jacobian_columns=terms.data.J,
             linear_momentum=terms.data.hg.linear,
             base_rotation_columns=terms.base_rotation,
@@ -70,7 +74,7 @@ class CompiledTerms:
             torso=self._frame(terms, torso, *torso_motion),
             to_sole=self._to_sole,
         )
-        self._update = kernels.bind("terms_update", self.bound)
+        self.update = kernels.bind("terms_update", self.bound)
         self._wrench, self._level, self._yaw, self._zmp = np.zeros((2, 6)), np.zeros((2, 3)), np.zeros(2), np.zeros(3)
         self._see = kernels.bind(
             "feet_see",
@@ -83,17 +87,9 @@ class CompiledTerms:
         )
         self._shift, self.unshift = (kernels.bind(name, self.bound) for name in ("terms_shift", "terms_unshift"))
 
-    def update(self, q: Array, v: Array, mass: float) -> None:
-        """Fill all arrays of the state q, shape (nq,), and v, shape (nv,), with the model's mass [kg] and no load."""
-        self._q[...], self._v[...] = q, v  # numpy.copyto goes through Python first
-        if self._loaded:
-            self.bear(mass, NO_LOAD)
-            self._loaded = False
-        self._update()
-
     def bear(self, mass: float, load: ExternalLoad) -> None:
         """Let other kernels count with a load and the total mass [kg]."""
-        self._mass[0], self._loaded = mass, True
+        self._mass[0] = mass
         self._force[:], self._moment[:] = load.force, load.moment
 
     def shift(self, k: int, forward: float, pitch: float) -> Array:
@@ -176,21 +172,19 @@ class CompiledTick:
         kernels: the library.
         terms: as kernels take them.
         reference: likewise.
+        numbers: memory of that, as ``WbcReference.numbers``, shape (54,) [SI].
     """
 
     def __init__(self, terms: CompiledTerms) -> None:
         self.kernels, self.terms = terms.kernels, terms.bound
-        self.reference, self._numbers = self.kernels.buffer("Reference")
+        self.reference, self.numbers = self.kernels.buffer("Reference")
 
     def refer(self, reference: WbcReference) -> None:
-        """Take the reference of this tick."""
+        """Take the reference of this tick, which no kernel has made."""
         r = reference
-        if r.numbers is not None:
-            self._numbers[...] = r.numbers
-            return
         rest = (*_NUMBERS(r), *r.load_share, *r.roll, r.swing_foot, r.rolling_foot)
         parts = (*_VECTORS(r), r.swing_rotation.ravel(), r.ground_normal.ravel(), rest)
-        np.concatenate(parts, out=self._numbers)
+        np.concatenate(parts, out=self.numbers)
 
     def bench(self, scale: Array, rows: Array, target: Array) -> Bound:
         """Where a task writes: its rows, shape (size, n), and its target; ``scale`` as in ``Task.write``."""

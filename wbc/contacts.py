@@ -1,6 +1,6 @@
 """Which contacts the whole-body QP holds, and how much load each may take: plan and feeling combined."""
 
-from surefoot.values import dataclass, maker
+from surefoot.values import dataclass
 from surefoot.wbc.parameters import ContactParameters
 from surefoot.wbc.types import FootSensing, WbcReference
 
@@ -20,9 +20,6 @@ class ContactState:
     felt: tuple[bool, bool]
     force_cap: tuple[float, float]
     rolling: int = -1
-
-
-_a_state = maker(ContactState)
 
 
 class ContactSchedule:
@@ -46,45 +43,62 @@ class ContactSchedule:
         self._parameters = parameters
         self.weight = weight
         self._period = control_period
-        self._active = [True, True]
-        self._ticks_felt = [parameters.felt_ticks, parameters.felt_ticks]
+        self._active = True, True
+        self._least, self._ticks = parameters.felt_force, parameters.felt_ticks
+        self._ticks_felt = [self._ticks, self._ticks]
         self._loading = [1.0, 1.0]
+        self._last = ContactState(self._active, self._active, (3.0 * weight, 3.0 * weight))
+        self._found: tuple[object, ...] = ()
 
     def update(self, reference: WbcReference, sensing: FootSensing) -> ContactState:
-        """Contacts of this tick from the plan, and from what an estimator decided or else the normal forces."""
-        felt, held, planned = sensing.contact, self._active, reference.planned_contact
+        """Contacts of this tick from the plan, and from what an estimator decided or else the normal forces.
+
+        The same object as long as nothing changes.
+        """
+        felt, active, planned = sensing.contact, self._active, reference.planned_contact
         if felt is None:
-            felt = (self._feel(0, sensing.normal_force[0]), self._feel(1, sensing.normal_force[1]))
-        if not (held[0] and held[1] and planned[0] and planned[1]):
-            for k in (0, 1):
-                early = not planned[k] and reference.swing_progress >= self._parameters.early_progress
-                if not held[k]:
-                    if felt[k] and (planned[k] or early):
-                        held[k] = True
-                        self._loading[k] = 0.0
-                elif not planned[k] and not early and held[1 - k]:
-                    held[k] = False
-        active = (held[0], held[1])
-        rolling = reference.rolling_foot if active[0] and active[1] else -1
-        return _a_state(active, felt, (self._cap(0, reference), self._cap(1, reference)), rolling)
+            left, right = sensing.normal_force
+            ticks = self._ticks_felt
+            ticks[0] = ticks[0] + 1 if left > self._least else 0
+            ticks[1] = ticks[1] + 1 if right > self._least else 0
+            felt = (ticks[0] >= self._ticks, ticks[1] >= self._ticks)
+        if active != planned or felt[0] > active[0] or felt[1] > active[1]:
+            self._active = active = self._held(reference, felt)
+        rolling = -1
+        if active[0] and active[1]:
+            cap, rolling = self._caps(reference), reference.rolling_foot
+        else:
+            cap = (3.0 * self.weight, 0.0) if active[0] else (0.0, 3.0 * self.weight)
+        found = active, felt, cap, rolling
+        if found != self._found:
+            self._found, self._last = found, ContactState(*found)
+        return self._last
 
-    def _feel(self, k: int, normal_force: float) -> bool:
-        touches = normal_force > self._parameters.felt_force
-        self._ticks_felt[k] = self._ticks_felt[k] + 1 if touches else 0
-        return self._ticks_felt[k] >= self._parameters.felt_ticks
+    def _held(self, reference: WbcReference, felt: tuple[bool, bool]) -> tuple[bool, bool]:
+        """Contacts after what plan and feeling change of them."""
+        held, planned = list(self._active), reference.planned_contact
+        for k in (0, 1):
+            early = not planned[k] and reference.swing_progress >= self._parameters.early_progress
+            if not held[k]:
+                if felt[k] and (planned[k] or early):
+                    held[k] = True
+                    self._loading[k] = 0.0
+            elif not planned[k] and not early and held[1 - k]:
+                held[k] = False
+        return held[0], held[1]
 
-    def _cap(self, k: int, reference: WbcReference) -> float:
-        parameters = self._parameters
-        if not self._active[k]:
-            return 0.0
-        if not self._active[1 - k]:
-            return 3.0 * self.weight
-        if not reference.planned_contact[k]:
-            return parameters.early_cap
-        if self._loading[k] < 1.0:
-            self._loading[k] = min(1.0, self._loading[k] + self._period / parameters.loading_time)
-        cap = parameters.early_cap + self._loading[k] * (3.0 * self.weight - parameters.early_cap)
-        if reference.lifting_foot == k and self._loading[1 - k] >= 1.0:
-            remaining = min(1.0, reference.time_to_switch / parameters.unloading_time)
-            cap = min(cap, self.weight * (reference.load_share[k] + parameters.share_margin * remaining))
-        return cap
+    def _caps(self, reference: WbcReference) -> tuple[float, float]:
+        """Loads that both feet may take while both are held [N]."""
+        parameters, most, caps = self._parameters, 3.0 * self.weight, [0.0, 0.0]
+        for k in (0, 1):
+            if not reference.planned_contact[k]:
+                caps[k] = parameters.early_cap
+                continue
+            if self._loading[k] < 1.0:
+                self._loading[k] = min(1.0, self._loading[k] + self._period / parameters.loading_time)
+            cap = parameters.early_cap + self._loading[k] * (most - parameters.early_cap)
+            if reference.lifting_foot == k and self._loading[1 - k] >= 1.0:
+                remaining = min(1.0, reference.time_to_switch / parameters.unloading_time)
+                cap = min(cap, self.weight * (reference.load_share[k] + parameters.share_margin * remaining))
+            caps[k] = cap
+        return caps[0], caps[1]

@@ -2,15 +2,18 @@
 
 import math
 import time
-from collections.abc import Sequence
+from collections.abc import Callable, Sequence
 from dataclasses import replace
+from functools import partial
 
 import numpy as np
 import pinocchio as pin
 from numpy.typing import NDArray
 
 from surefoot.forces import NO_LOAD
-from surefoot.values import dataclass, maker
+from surefoot.native.library import Bound
+from surefoot.values import maker
+from surefoot.wbc.answer import AnswerReader, WbcAnswer
 from surefoot.wbc.arm_swing import ArmSwing
 from surefoot.wbc.balance import SupportRegion
 from surefoot.wbc.compiled import CompiledTick
@@ -24,7 +27,7 @@ from surefoot.wbc.model import BodyFrames, RobotTerms
 from surefoot.wbc.parameters import WbcParameters
 from surefoot.wbc.qp import UNBOUNDED, WRENCH_UNIT, QpData, QpLayout, allocate
 from surefoot.wbc.separation import Separation
-from surefoot.wbc.solvers import EqualityFirst, QpSolution, equalities_only, in_turn
+from surefoot.wbc.solvers import EqualityFirst, QpSolution, QpSolver, equalities_only, in_turn
 from surefoot.wbc.tasks.default import default_tasks
 from surefoot.wbc.tasks.diagonal import ForceDistribution, Posture, Regularisation
 from surefoot.wbc.tasks.registry import TaskLayout
@@ -37,34 +40,11 @@ from surefoot.wbc.types import GRAVITY, Array, FootSensing, RobotState, SolveSta
 ACCEPTED_VIOLATION = 1e-3
 """A solution that breaks a row by more than this (N, N·m, m/s^2) is not used, whatever its solver says."""
 
-FADE, FADE_DAMPING = 0.05, 0.02
-"""Time in which the last torque fades out [s], and torque of a joint's damper at 1 rad/s meanwhile over its largest one
-[s/rad].
-
-Constants here are the reference robot's; see `surefoot.similarity`."""
-
 _a_report = maker(WbcReport)
 
 # Members are looked up by name at each access.
-_SOFTENED = SolveStatus.SOFTENED
-_IN_TURN = (SolveStatus.SOLVED, _SOFTENED, SolveStatus.SECOND_SOLVER)
-
-
-@dataclass(frozen=True, slots=True)
-class WbcAnswer:
-    """What a solution means for the robot. Arrays are overwritten by the next one.
-
-    Attributes:
-        torque: joint torques within their limits, shape (nj,) [N·m].
-        acceleration: planned generalised acceleration, shape (nv,) [m/s^2, rad/s^2].
-        wrench: planned contact wrenches, in the sole frames, shape (2, 6) [N, N·m].
-        task_error: residuals of all tasks before weighting, shape (rows,) [m/s^2, rad/s^2, N, N m].
-    """
-
-    torque: Array
-    acceleration: Array
-    wrench: Array
-    task_error: Array
+_SOLVED, _SOFTENED = SolveStatus.SOLVED, SolveStatus.SOFTENED
+_IN_TURN = (_SOLVED, _SOFTENED, SolveStatus.SECOND_SOLVER)
 
 
 class WholeBodyController:
@@ -130,9 +110,8 @@ class WholeBodyController:
         self.terms = RobotTerms(model, frames, WRENCH_UNIT * size.factor("N"))
         self.layout = QpLayout(model.nv, CONE_ROWS, parameters.separation.slots if limbs is not None else 0)
         self.qp: QpData = allocate(self.layout)
-        self._separation = (
-            Separation(model, limbs, parameters.separation, self.terms.compiled) if limbs is not None else None
-        )
+        shapes = pin.GeometryModel() if limbs is None else limbs
+        self._separation = Separation(model, shapes, parameters.separation, self.terms.compiled)
         gaps = self.layout.separation
         self._gap_rows = self.qp.A[gaps, : model.nv]
         self._gap_lower = self.qp.bounds_lower[self.layout.variables :][gaps]
@@ -147,6 +126,7 @@ class WholeBodyController:
         )
         self._region = SupportRegion(sole.half_length, sole.half_width, parameters.balance.polygon_share)
         self._region_contacts: tuple[tuple[bool, bool], int] | None = None
+        self._contacts: ContactState | None = None
         swings = arm_joints and parameters.arm_swing and not (driven is not None and driven[list(arm_joints)].any())
         arms = ArmSwing(arm_joints, parameters.arm_swing, arm_back) if arm_joints and swings else None
         weights, gains, toe = parameters.weights, parameters.gains, sole.half_length
@@ -164,17 +144,12 @@ class WholeBodyController:
         self._observer = LoadObserver(self.terms.mass, control_period, size, self.terms.compiled)
         self.driven = None if driven is None or not driven.any() else DrivenRows(self.layout, driven, control_period)
         fixed = None if self.driven is None else self.driven.fixed
-        self._solvers = in_turn(parameters.solver, parameters.second_solver, self.layout.soft, fixed)
-        if isinstance(self._solvers[0], EqualityFirst):
-            self._solvers[0].prepare(self.qp)
         self._limits, self._toe = limits, toe
-        self._fading = control_period / (FADE * size.time), FADE_DAMPING * size.time
         self._seen: list[tuple[int, Array]] = []
-        self._torque_rows, self._wrench_flat = self.qp.A[self.layout.torque_rows], np.zeros(12)
-        wrench, error = self._wrench_flat.reshape(2, 6), np.zeros_like(self.tasks.target)
-        self._answer = WbcAnswer(np.zeros(self.layout.joints), np.zeros(self.layout.nv), wrench, error)
+        self._reader = AnswerReader(self.qp, self.layout, self.tasks, limits.torque, control_period, size, self._tick)
         if self._tick is not None:
             self._compile(self._tick)
+        self._ask(in_turn(parameters.solver, parameters.second_solver, self.layout.soft, fixed))
 
     @property
     def task_layout(self) -> TaskLayout:
@@ -194,24 +169,31 @@ class WholeBodyController:
             sensing: what the feet feel.
             fail_solvers: pretend that both QP solvers failed, to exercise the fallback.
         """
-        start = time.perf_counter()
+        start, terms = time.perf_counter(), self.terms
         if sensing.wrench is not None:
-            load = self._observer.update(self.terms, sensing.wrench, sensing.load_deviation, sensing.wrench_age)
+            load = self._observer.update(terms, sensing.wrench, sensing.load_deviation, sensing.wrench_age)
             if load is not NO_LOAD:
-                self.terms.bear(load)
-            self.schedule.weight = self.terms.mass * GRAVITY
+                terms.bear(load)
+            self.schedule.weight = terms.mass * GRAVITY
         contacts = self.schedule.update(reference, sensing)
-        qp = self.build(self.terms, reference, contacts)
-        built = time.perf_counter()
-        status, solution = self.solve(qp, fail_solvers)
-        answer = self.interpret(self.terms, solution)
-        solved = time.perf_counter()
-        iterations, violation, dual = 0, math.inf, math.nan
-        if solution is not None:
-            iterations, violation, dual = solution.iterations, solution.violation, solution.dual_residual
+        qp = self.build(terms, reference, contacts)
+        built, at_once = time.perf_counter(), None if fail_solvers else self._at_once
+        violation = math.inf if at_once is None else at_once()
+        if violation <= self._sure:
+            answer, status, iterations, dual = self._reader.answer, _SOLVED, 0, math.nan
+            if self._seen:
+                self._reader.see_soles(self._seen)
+        else:
+            status, solution = (
+                self.solve(qp, fail_solvers) if at_once is None else self._settle(qp, self._first_goes_on(violation))
+            )
+            answer = self.interpret(terms, solution)
+            iterations, violation, dual = 0, math.inf, math.nan
+            if solution is not None:
+                iterations, violation, dual = solution.iterations, solution.violation, solution.dual_residual
         return _a_report(
             answer.torque, status, iterations, violation, dual, answer.acceleration, answer.wrench, contacts.active,
-            contacts.felt, answer.task_error, built - start, solved - built, self.terms.load,
+            contacts.felt, answer.task_error, built - start, time.perf_counter() - built, terms.load,
         )  # fmt: skip
 
     def build(self, terms: RobotTerms, reference: WbcReference, contacts: ContactState) -> QpData:
@@ -220,90 +202,100 @@ class WholeBodyController:
         The terms of a rolling foot are seen from its toe edge from here on, those of a leaning one from its line (see
         ``RobotTerms.shift_foot``).
         """
-        self._shift(terms, reference, contacts)
-        holding = (contacts.active, contacts.rolling)
-        # The line on which a leaning foot stands moves over its sole.
-        if (terms.leaning is not None or holding != self._region_contacts) and np.isfinite(terms.sole_position).all():
-            self._region.rebuild(terms.contact_position, terms.contact_rotation, contacts.active, contacts.rolling)
-            self._region_contacts = holding
-        if self._tick is None or terms is not self.terms:
+        if reference.rolling_foot >= 0 or self._seen or terms.is_shifted or terms.leaning is not None:
+            self._shift(terms, reference, contacts)
+        tick, gaps = self._tick, self._separation
+        if contacts is not self._contacts or terms.leaning is not None:
+            self._hold(terms, contacts)
+        if tick is None or terms is not self.terms:
             self.tasks.write(terms, reference)
             self._hard.write(terms, terms.q, terms.v, contacts, reference.ground_normal, reference.roll[1:])
+            gaps.write(terms.data, terms.v, self._gap_rows, self._gap_lower, UNBOUNDED)
         else:
-            self._tick.refer(reference)
-            self.tasks.write_compiled(terms, reference)
-            self._hard.write_compiled(contacts)
+            if reference.numbers is None:
+                tick.refer(reference)
+            else:
+                tick.numbers[...] = reference.numbers
+            if reference.catching is not self.tasks.catching or not self.tasks.is_alone:
+                self.tasks.write_others(terms, reference)
+            (left, right), (left_cap, right_cap) = contacts.active, contacts.force_cap
+            due = self._write_compiled(left, right, contacts.rolling, left_cap, right_cap)
+            if due or not gaps.is_clear:
+                gaps.write_due(due, terms.data, terms.v, self._gap_rows, self._gap_lower, UNBOUNDED)
         if self.driven is not None:
             self.driven.write(self.qp, terms.bias, terms.v)
-        if self._separation is not None:
-            self._separation.write(terms.data, terms.v, self._gap_rows, self._gap_lower, UNBOUNDED)
         return self.qp
+
+    def _hold(self, terms: RobotTerms, contacts: ContactState) -> None:
+        """Stand on other contacts than those of the tick before."""
+        if self._tick is not None and terms is self.terms:
+            self._hard.follow(contacts)
+        holding = (contacts.active, contacts.rolling)
+        # The line on which a leaning foot stands moves over its sole.
+        if terms.leaning is not None or holding != self._region_contacts:
+            if not np.isfinite(terms.sole_position).all():
+                return
+            self._region.rebuild(terms.contact_position, terms.contact_rotation, contacts.active, contacts.rolling)
+            self._region_contacts = holding
+        self._contacts = contacts
 
     def solve(self, qp: QpData, fail_solvers: bool = False) -> tuple[SolveStatus, QpSolution | None]:
         """A solution by the first solver whose answer holds, else by the equalities alone; None if there is none.
 
         What holds no limits at all throws the robot. So before that some of the soft ones are broken.
         """
-        if not fail_solvers:
-            for status, solver in zip(_IN_TURN, self._solvers, strict=True):
+        return _of_equalities(qp) if fail_solvers else self._settle(qp, self._solvers[0].solve(qp))
+
+    def _settle(self, qp: QpData, solution: QpSolution | None) -> tuple[SolveStatus, QpSolution | None]:
+        """The same after what the first solver says."""
+        for status, solver in zip(_IN_TURN, self._solvers, strict=True):
+            if status is not _SOLVED:
                 solution = solver.solve(qp)
-                if solution is not None and solution.violation <= ACCEPTED_VIOLATION:
-                    # What may break limits has broken none where it answers for a solver that failed.
-                    if status is _SOFTENED and qp.violation(solution.x) <= ACCEPTED_VIOLATION:
-                        status = SolveStatus.SECOND_SOLVER
-                    return status, solution
-        solution = equalities_only(qp)
-        return (SolveStatus.HELD if solution is None else SolveStatus.EQUALITIES_ONLY), solution
+            if solution is not None and solution.violation <= ACCEPTED_VIOLATION:
+                # What may break limits has broken none where it answers for a solver that failed.
+                if status is _SOFTENED and qp.violation(solution.x) <= ACCEPTED_VIOLATION:
+                    status = SolveStatus.SECOND_SOLVER
+                return status, solution
+        return _of_equalities(qp)
 
     def interpret(self, terms: RobotTerms, solution: QpSolution | None) -> WbcAnswer:
         """Torque, acceleration, wrenches and task errors of a solution of the QP last built, from the same terms.
 
         Without a solution the last torque fades; acceleration, wrenches and task errors stay as they were.
         """
-        answer = self._answer
+        reader = self._reader
         if solution is None:
-            self._fade(answer.torque, terms.v)
-            return answer
-        if self._tick is None or terms is not self.terms:
-            self._read(terms, solution.x)
+            reader.fade(terms.v)
         else:
-            self._x[...] = solution.x
-            self._read_compiled()
-        for foot, to_sole in self._seen:
-            answer.wrench[foot] = to_sole @ answer.wrench[foot]
-        return answer
+            reader.read(terms, solution.x, terms is self.terms)
+            reader.see_soles(self._seen)
+        return reader.answer
 
-    def _read(self, terms: RobotTerms, x: Array) -> None:
-        """Fill the answer, with wrenches in the frames of the QP."""
-        answer, nv = self._answer, self.layout.nv
-        np.matmul(self._torque_rows, x, out=answer.torque)
-        np.add(answer.torque, terms.bias[6:], out=answer.torque)
-        self._clip(answer.torque)
-        answer.acceleration[:] = x[:nv]
-        np.multiply(x[nv:], terms.wrench_unit, out=self._wrench_flat)
-        answer.task_error[:] = self.tasks.residual(x)
+    def _ask(self, solvers: tuple[QpSolver, QpSolver, QpSolver]) -> None:
+        """Ask these in turn from now on.
+
+        The kernels of the first one also read its answer, in one call, unless a class below solves or reads otherwise.
+        """
+        self._solvers, first, own = solvers, solvers[0], type(self)
+        self._at_once: Callable[[], float] | None = None
+        self._sure = -math.inf
+        bound = self._reader.bound
+        if bound is None or not isinstance(first, EqualityFirst) or (equalities := first.prepare(self.qp)) is None:
+            return
+        self._reader.read_from(equalities.x)
+        if own.solve is WholeBodyController.solve and own.interpret is WholeBodyController.interpret:
+            self._at_once, self._sure = equalities.answering(bound), equalities.accuracy
+            self._first_goes_on = partial(first.go_on, equalities)
 
     def _compile(self, tick: CompiledTick) -> None:
-        answer, self._x = self._answer, np.zeros(self.layout.variables)
-        self._read_compiled = tick.kernels.bind(
-            "answer_read",
-            terms=tick.terms,
-            stack=self.tasks.bound,
-            joints=self.layout.joints,
-            torque_rows=self._torque_rows,
-            torque_limit=np.ascontiguousarray(self._limits.torque, dtype=np.float64),
-            x=self._x,
-            torque=answer.torque,
-            acceleration=answer.acceleration,
-            wrench=self._wrench_flat,
-            task_error=answer.task_error,
-        )
+        due = self._separation.due
+        assert due is not None
+        parts: dict[str, Bound] = {"tasks": self.tasks.calls, "hard": self._hard.bound, "pairs": due.bound}
+        self._write_compiled = tick.kernels.bind("qp_build", **parts)
 
     def _shift(self, terms: RobotTerms, reference: WbcReference, contacts: ContactState) -> None:
         """See a rolling foot from its toe edge, a leaning one from its line, others from their soles."""
         rolling, self._seen = reference.rolling_foot, []
-        if rolling < 0 and terms.leaning is None and not terms.is_shifted:
-            return
         for foot in (0, 1):
             if foot == rolling and (rolling == contacts.rolling or not contacts.active[rolling]):
                 self._seen.append((foot, terms.shift_foot(foot, self._toe, reference.roll[0])))
@@ -312,13 +304,8 @@ class WholeBodyController:
             else:
                 terms.unshift(foot)
 
-    def _clip(self, torque: Array) -> None:
-        np.minimum(torque, self._limits.torque, out=torque)
-        np.maximum(torque, -self._limits.torque, out=torque)
 
-    def _fade(self, torque: Array, v: Array) -> None:
-        """Fade the last torque out while damping the joints whose velocity is known."""
-        rate = np.where(np.isfinite(v[6:]), v[6:], 0.0)
-        share, damping = self._fading
-        torque += share * (-damping * self._limits.torque * rate - torque)
-        self._clip(torque)
+def _of_equalities(qp: QpData) -> tuple[SolveStatus, QpSolution | None]:
+    """What holds the equalities alone, which is the last resort."""
+    solution = equalities_only(qp)
+    return (SolveStatus.HELD if solution is None else SolveStatus.EQUALITIES_ONLY), solution

@@ -72,8 +72,8 @@ class HardConstraints:
 
     def _compile(self, tick: CompiledTick, qp: QpData, leaning: bool) -> None:
         bounds = self._joints
-        self._write_rows = tick.kernels.bind(
-            "hard_rows_write",
+        self.bound = tick.kernels.fill(
+            "HardRows",
             terms=tick.terms,
             reference=tick.reference,
             variables=len(qp.g),
@@ -97,12 +97,11 @@ class HardConstraints:
             upper=qp.bounds_upper,
         )
 
-    def write_compiled(self, contacts: ContactState) -> None:
-        """The same as ``write`` by the kernel, for the terms and the reference of its tick."""
+    def follow(self, contacts: ContactState) -> None:
+        """What of ``write`` the kernel leaves to Python where these contacts are not those of the tick before."""
         if contacts.rolling != self._rolling:
             self._roll(contacts.rolling)
         self._active = contacts.active
-        self._write_rows(*contacts.active, contacts.rolling, *contacts.force_cap)
 
     def _bind(self, qp: QpData, layout: QpLayout) -> None:
         # A view costs as much to make as to use, so the parts of rows and bounds get their names once.

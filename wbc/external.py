@@ -165,10 +165,16 @@ class LoadObserver:
                 multiples of it, and nothing is found where it is infinite [N, N·m].
             age: time since these wrenches acted [s].
         """
-        self._deviation = deviation
         self._age += age
         if self._add is not None:
-            return self._update_compiled(wrench, self._add)
+            self._count += 1
+            self._wrench[...] = wrench
+            if 0 < self._count < self._ticks:
+                self._add()
+                return self.load
+        self._deviation = deviation
+        if self._add is not None:
+            return self._turn_compiled(self._add)
         self._past.append(self._moving(terms))
         if self._momentum is None:
             self._momentum, self._age = self._past[-1], 0.0
@@ -194,29 +200,26 @@ class LoadObserver:
         then: Array = younger + (late - int(late)) * (older - younger)
         return then
 
-    def _update_compiled(self, wrench: Array, add: Callable[[], None]) -> ExternalLoad:
-        """The same by kernels, for the terms that they are bound to."""
-        self._count += 1
+    def _turn_compiled(self, add: Callable[[], None]) -> ExternalLoad:
+        """Begin the first span, or end one, by kernels, for the terms that they are bound to."""
         if self._count == 0:
             self._begin()
             self._age = 0.0
             return self.load
-        self._wrench[...] = wrench
         add()
-        if self._count == self._ticks:
-            self._count = 0
-            self._bound_span.struct.late = self._late_by()
-            if not self._known:
-                self._late = True
-                self._end(False)
-                self._filled[0] = 0
-                return self.load
-            if self._deviation != self._wide_for:
-                self._wide_for = self._deviation
-                for limits, now in zip(self._limits, self._limits_now(), strict=True):
-                    limits[:] = now
-            if self._end(not self._late or int(self._filled[0]) + 1 >= SPANS):
-                self._tell()
+        self._count = 0
+        self._bound_span.struct.late = self._late_by()
+        if not self._known:
+            self._late = True
+            self._end(False)
+            self._filled[0] = 0
+            return self.load
+        if self._deviation != self._wide_for:
+            self._wide_for = self._deviation
+            for limits, now in zip(self._limits, self._limits_now(), strict=True):
+                limits[:] = now
+        if self._end(not self._late or int(self._filled[0]) + 1 >= SPANS):
+            self._tell()
         return self.load
 
     @property

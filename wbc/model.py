@@ -1,5 +1,7 @@
 """The Pinocchio terms of one state, computed once and shared by every task, contact and limit."""
 
+import math
+
 import numpy as np
 import pinocchio as pin
 
@@ -52,6 +54,8 @@ class RobotTerms:
         model_mass: total mass of the model [kg].
         mass: total mass [kg].
         load: what else acts on the robot.
+        is_finite: whether q and v of the last update are.
+        is_shifted: whether a foot is seen from elsewhere than its sole.
         wrench_unit: of the QP's wrench variables [N, N·m].
         mass_matrix: M, shape (nv, nv) [kg, kg·m, kg·m^2].
         bias: Coriolis, centrifugal, gravity and load terms h, shape (nv,) [N, N·m].
@@ -126,7 +130,7 @@ class RobotTerms:
         self.sole_wrench_map = np.zeros((6, 12))
         torso = np.zeros((6, nv)), np.zeros(6), np.zeros(6)
         self.torso_jacobian, self.torso_velocity, self.torso_bias = (part[3:] for part in torso)
-        self._shifted = [False, False]
+        self._shifted, self.is_shifted, self.is_finite = [False, False], False, True
         return torso
 
     def update(self, q: Array, v: Array) -> None:
@@ -134,17 +138,22 @@ class RobotTerms:
         self.q, self.v = q, v
         # Leaves in data.a the velocity-product accelerations, those of zero generalised acceleration.
         pin.computeAllTerms(self.model, self.data, q, v)
-        if self.compiled is not None:
+        compiled = self.compiled
+        if self.load is not NO_LOAD:
             self.mass, self.load = self.model_mass, NO_LOAD
-            self.compiled.update(q, v, self.mass)
-            self._shifted[:] = False, False
+            if compiled is not None:
+                compiled.bear(self.mass, NO_LOAD)
+        if self.is_shifted:
+            self._shifted[:], self.is_shifted = (False, False), False
+        if compiled is not None:
+            compiled.q[...], compiled.v[...] = q, v  # numpy.copyto goes through Python first
+            self.is_finite = compiled.update() != 0
             return
+        self.is_finite = math.isfinite(q.dot(q) + v.dot(v))
         np.divide(self._linear_momentum, self.model_mass, out=self.com_velocity)
-        self.mass, self.load = self.model_mass, NO_LOAD
         self.base_angular_velocity[:] = v[3:6]
         self._update_sole(0)
         self._update_sole(1)
-        self._shifted[:] = False, False
         self._update_torso()
 
     def bear(self, load: ExternalLoad) -> None:
@@ -212,7 +221,7 @@ class RobotTerms:
             What takes a wrench from the new frame to the sole's, shape (6, 6) [-, m].
         """
         self.unshift(k)
-        self._shifted[k] = True
+        self._shifted[k] = self.is_shifted = True
         if self.compiled is not None and self.leaning is None:
             return self.compiled.shift(k, forward, pitch)
         turned = pin.SE3(pin.utils.rotate("y", -pitch), np.array([forward, 0.0, 0.0]))
@@ -235,12 +244,8 @@ class RobotTerms:
         """See foot k from its sole again, as after an update."""
         if self._shifted[k]:
             self._shifted[k] = False
+            self.is_shifted = self._shifted[1 - k]
             (self._update_sole if self.compiled is None else self.compiled.unshift)(k)
-
-    @property
-    def is_shifted(self) -> bool:
-        """Whether a foot is seen from elsewhere than its sole."""
-        return self._shifted[0] or self._shifted[1]
 
     def _update_torso(self) -> None:
         model, data, frame = self.model, self.data, self._torso

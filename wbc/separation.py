@@ -22,6 +22,10 @@ class Separation:
     pushed apart (its last term counts as zero), because two standing feet could not obey, and one that touches is left
     to the contact forces. (Faverjon and Tournassoud,
     ICRA 1987, is the first such damper on distances.)
+
+    Attributes:
+        due: pairs that have to be measured; None in plain Python, which measures all of them.
+        is_clear: whether the rows that were written last hold no pair.
     """
 
     def __init__(
@@ -48,9 +52,10 @@ class Separation:
             for pair in geometry.collisionPairs
         ]
         self._points, self._row = np.zeros((3, 3)), np.zeros(model.nv)
-        self._clear: Array | None = None  # rows that were last written without any pair
+        self._written: Array | None = None
+        self.is_clear = False
         self._rates = [self._compiled(compiled, *joints) for joints in self._joints] if compiled else None
-        self._due = _DuePairs(compiled, geometry, self._joints, parameters.attention) if compiled else None
+        self.due = DuePairs(compiled, geometry, self._joints, parameters.attention) if compiled else None
 
     def write(self, data: pin.Data, v: Array, rows: Array, lower: Array, unbounded: float) -> None:
         """Write the rows of the nearest pairs; unused ones become zero rows without a bound.
@@ -62,18 +67,25 @@ class Separation:
             lower: lower bounds of the rows, shape (slots,).
             unbounded: value of an absent bound.
         """
-        p = self._parameters
-        if self._due is None:
-            distances = self._all_distances(data)
+        if self.due is None:
+            self._write(data, v, rows, lower, unbounded, self._all_distances(data))
         else:
-            due = self._due.find()
-            if not due and self._clear is rows:
-                return
-            distances = self._due_distances(data, due, self._due.distances)
-            if not distances and self._clear is rows:
-                return
-        self._clear = None if distances else rows
+            self.write_due(self.due.find(), data, v, rows, lower, unbounded)
+
+    def write_due(self, count: int, data: pin.Data, v: Array, rows: Array, lower: Array, unbounded: float) -> None:
+        """The same where so many pairs are known to be due."""
+        assert self.due is not None
+        due = self.due.numbers[:count].tolist()
+        self._write(data, v, rows, lower, unbounded, self._due_distances(data, due, self.due.distances))
+
+    def _write(
+        self, data: pin.Data, v: Array, rows: Array, lower: Array, unbounded: float, distances: dict[int, float]
+    ) -> None:
+        p = self._parameters
         near = [k for k, distance in distances.items() if 0.0 < distance < p.attention]
+        if not near and self.is_clear and self._written is rows:
+            return
+        self._written, self.is_clear = rows, not near
         near.sort(key=distances.__getitem__)
         for slot in range(p.slots):
             if slot >= len(near):
@@ -135,7 +147,7 @@ class Separation:
         return row
 
 
-class _DuePairs:
+class DuePairs:
     """Pairs that can have come near since their distance was measured last, which most of a robot's limbs never do.
 
     Args:
@@ -146,6 +158,10 @@ class _DuePairs:
 
     Attributes:
         distances: as measured last, shape (pairs,) [m].
+        numbers: of the pairs that were found last, in its first places, shape (pairs,) [-].
+        bound: these pairs as other kernels take them.
+        find: finds those that are due in the state of the terms, each of which is then to be measured there; returns
+            how many they are.
     """
 
     def __init__(
@@ -162,11 +178,11 @@ class _DuePairs:
             centres.append(shape.placement.act(np.array(shape.geometry.aabb_center)))
             radii.append(shape.geometry.aabb_radius)
         poses = [compiled.pose(joint) for pair in joints for joint in pair]
-        self.distances, self._due = np.full(len(joints), -np.inf), np.zeros(len(joints), dtype=np.int64)
+        self.distances, self.numbers = np.full(len(joints), -np.inf), np.zeros(len(joints), dtype=np.int64)
         # The kernel follows addresses, so what is there must live as long as this.
         self._poses = poses
-        self._find = compiled.kernels.bind(
-            "pairs_due",
+        self.bound = compiled.kernels.fill(
+            "Pairs",
             count=len(joints),
             poses=np.array([part.ctypes.data for pose in poses for part in pose], dtype=np.int64),
             centres=np.array(centres).reshape(-1, 3),
@@ -174,10 +190,6 @@ class _DuePairs:
             attention=attention,
             places=np.zeros((len(joints), 12)),
             distances=self.distances,
-            due=self._due,
+            due=self.numbers,
         )
-
-    def find(self) -> Sequence[int]:
-        """Their numbers, in the state of the terms; each is to be measured there."""
-        count = self._find()
-        return self._due[:count].tolist() if count else ()
+        self.find = compiled.kernels.bind("pairs_due", self.bound)

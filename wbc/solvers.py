@@ -9,8 +9,8 @@ import numpy as np
 from numpy.typing import NDArray
 from proxsuite import proxqp
 
-from surefoot.native.library import Library, library
-from surefoot.values import dataclass, maker
+from surefoot.native.library import Bound, Library, library
+from surefoot.values import dataclass
 from surefoot.wbc.parameters import SOLVER_NAMES
 from surefoot.wbc.qp import EQUALITY_ROWS, FOOT_ROWS, QpData
 from surefoot.wbc.types import Array
@@ -34,9 +34,6 @@ class QpSolution:
     violation: float
     iterations: int
     dual_residual: float = float("nan")
-
-
-_a_solution = maker(QpSolution)
 
 
 class QpSolver(Protocol):
@@ -164,22 +161,33 @@ class EqualityFirst:
         """``accuracy``: largest violation that counts as none."""
         self._accuracy = accuracy
         self._full = Daqp(accuracy)
-        kernels = library()
-        self._compiled = None if kernels is None else CompiledEqualities(kernels, accuracy)
+        self._kernels = library()
+        self._compiled: CompiledEqualities | None = None
 
-    def prepare(self, qp: QpData) -> None:
-        """Bind the kernel to a QP that is to be solved, which else the first ``solve`` of it does."""
-        if self._compiled is not None:
-            self._compiled.bind(qp)
+    def prepare(self, qp: QpData) -> "CompiledEqualities | None":
+        """The kernels bound to a QP that is to be solved, which else its first ``solve`` does; None without kernels."""
+        if self._kernels is not None:
+            self._compiled = CompiledEqualities(self._kernels, self._accuracy, qp)
+        return self._compiled
 
     def solve(self, qp: QpData) -> QpSolution | None:
         """See ``QpSolver.solve``."""
         compiled = self._compiled
-        solution = equalities_only(qp) if compiled is None else compiled.solve(qp)
+        if compiled is None or compiled.qp is not qp:
+            compiled = self.prepare(qp)
+        if compiled is not None:
+            return self.go_on(compiled, compiled.run())
+        solution = equalities_only(qp)
         if solution is not None and solution.violation <= self._accuracy:
             return solution
-        active = None if solution is None or compiled is None else compiled.activate()
-        return active or self._full.solve(qp)
+        return self._full.solve(qp)
+
+    def go_on(self, compiled: "CompiledEqualities", violation: float) -> QpSolution | None:
+        """The minimiser of a QP whose solution under the equalities alone, just found, has that violation."""
+        if violation <= self._accuracy:
+            return compiled.solution(violation)
+        active = compiled.activate() if math.isfinite(violation) else None
+        return active or self._full.solve(compiled.qp)
 
 
 def equalities_only(qp: QpData) -> QpSolution | None:
@@ -207,18 +215,34 @@ def equalities_only(qp: QpData) -> QpSolution | None:
 
 
 class CompiledEqualities:
-    """Does what ``equalities_only`` does by a kernel, which is bound anew to another QP; another goes on from there."""
+    """Does for one QP what ``equalities_only`` does, by a kernel; another goes on from there.
 
-    def __init__(self, kernels: Library, accuracy: float) -> None:
-        self._kernels, self._accuracy = kernels, accuracy
-        self._qp: QpData | None = None
+    Args:
+        kernels: the library.
+        accuracy: largest violation that counts as none.
+        qp: which is solved as it is at each call.
 
-    def solve(self, qp: QpData) -> QpSolution | None:
-        """See ``equalities_only``."""
-        if qp is not self._qp:
-            self.bind(qp)
-        violation = self._run(self._split)
-        return _a_solution(self._x.copy(), violation, 0) if math.isfinite(violation) else None
+    Attributes:
+        accuracy: likewise.
+        qp: likewise.
+        x: the solution found last, shape (n,).
+    """
+
+    def __init__(self, kernels: Library, accuracy: float, qp: QpData) -> None:
+        self._kernels, self.accuracy, self.qp = kernels, accuracy, qp
+        self._bind(qp)
+
+    def run(self) -> float:
+        """Solve; returns the violation at x, which is not finite where there is no solution."""
+        return float(self._run(self._split))
+
+    def solution(self, violation: float, iterations: int = 0) -> QpSolution:
+        """What was found last as a value."""
+        return QpSolution(self.x.copy(), violation, iterations)
+
+    def answering(self, answer: Bound) -> Callable[[], float]:
+        """``run`` by a kernel that also fills an answer, of the same x, where the violation counts as none."""
+        return self._kernels.bind("qp_answer", qp=self._bound, answer=answer, split=self._split, accuracy=self.accuracy)
 
     def activate(self) -> QpSolution | None:
         """The minimiser of the QP last solved under all of its constraints; None where few active ones do not do."""
@@ -227,15 +251,14 @@ class CompiledEqualities:
             return None
         violation = self._violation()
         # Beside what counts as none there is rounding, as of DAQP, which scales its rows.
-        return QpSolution(self._x.copy(), violation, rounds) if violation <= 100.0 * self._accuracy else None
+        return self.solution(violation, rounds) if violation <= 100.0 * self.accuracy else None
 
-    def bind(self, qp: QpData) -> None:
-        """Work on another QP from now on."""
+    def _bind(self, qp: QpData) -> None:
         n, rows, eq = qp.g.shape[0], qp.A.shape[0], EQUALITY_ROWS
         # A right side for each equality and for the gradient, and room to make their number a multiple of four.
         width = eq + 4
-        self._x, self._split = np.zeros(n), n - 2 * FOOT_ROWS
-        bound = self._kernels.fill(
+        self.x, self._split = np.zeros(n), n - 2 * FOOT_ROWS
+        self._bound = bound = self._kernels.fill(
             "EqualityQp",
             variables=n,
             equalities=eq,
@@ -249,7 +272,7 @@ class CompiledEqualities:
             right_sides=np.zeros((n, width)),
             schur=np.zeros((eq, width)),
             multipliers=np.zeros(eq),
-            x=self._x,
+            x=self.x,
         )
         self._run = self._kernels.bind("equality_qp_solve", bound)
         self._violation = self._kernels.bind("qp_violation", bound)
@@ -257,14 +280,13 @@ class CompiledEqualities:
             "active_qp_solve",
             qp=bound,
             most=MOST_ACTIVE,
-            tolerance=self._accuracy,
+            tolerance=self.accuracy,
             normals=np.zeros((MOST_ACTIVE, n)),
             columns=np.zeros((MOST_ACTIVE + 1, eq + MOST_ACTIVE)),
             multipliers=np.zeros(MOST_ACTIVE),
             active=np.zeros(MOST_ACTIVE, dtype=np.int64),
             work=np.zeros(2 * n + eq + MOST_ACTIVE),
         )
-        self._qp = qp
 
 
 SOLVERS: dict[str, Callable[[], QpSolver]] = dict(zip(SOLVER_NAMES, (EqualityFirst, Daqp, ProxQp), strict=True))

@@ -224,8 +224,8 @@ class WbcReport:
         felt: contacts felt by the feet, (left, right).
         task_error: residuals of all tasks before weighting, shape (rows,) [m/s^2, rad/s^2, N, N m]; names and sizes of
             the tasks are ``WholeBodyController.task_layout``.
-        build_time: wall-clock time of terms and assembly [s].
-        solve_time: wall-clock time of the solve [s].
+        build_time: wall-clock time of load, contacts and assembly [s].
+        solve_time: wall-clock time of the solve and of what it means [s].
         load: with which it counted.
     """
 

@@ -224,10 +224,10 @@ class Controller:
             self.wrench = self._inferred(readings, state, passed)
         if self._faults is not None and self._faults.active("state_nan", self.planning.tick(now)):
             state = RobotState(np.full_like(state.q, np.nan), state.v)
-        if not math.isfinite(state.q.dot(state.q) + state.v.dot(state.v)):
+        self.terms: RobotTerms = self.whole_body.observe(state)
+        if not self.terms.is_finite:
             raise RunFault(f"the measured state is not finite at {now:.3f} s")
         self.state = state
-        self.terms: RobotTerms = self.whole_body.observe(state)
 
     def _tell(self, driven: DrivenRows, told: JointCommand | None) -> None:
         """Tell the whole-body controller what drives the joints that are not its own."""

@@ -41,6 +41,7 @@ typedef struct {
 
 /* Counterpart of `wbc.model.RobotTerms`, whose names these are. */
 typedef struct {
+    int64_t nq;
     int64_t nv;
     double model_mass;
     double wrench_unit;
@@ -74,7 +75,7 @@ typedef struct {
     double *to_sole;
 } Terms;
 
-void terms_update(const Terms *terms);
+int64_t terms_update(const Terms *terms);
 void terms_unshift(const Terms *terms, int64_t foot);
 void terms_shift(const Terms *terms, int64_t foot, double forward, double pitch);
 
@@ -253,6 +254,38 @@ typedef struct {
 
 double distance_rate(const Distance *distance);
 
+/* Counterpart of the distances in `wbc.separation.Separation.write`; `poses` holds addresses, four for each pair. */
+typedef struct {
+    int64_t count;
+    const int64_t *poses;
+    const double *centres;
+    const double *radii;
+    double attention;
+    double *places;
+    const double *distances;
+    int64_t *due;
+} Pairs;
+
+int64_t pairs_due(const Pairs *pairs);
+
+/* Kernels without numbers of their own, one after another: addresses of functions and of their structs. */
+typedef struct {
+    int64_t count;
+    const int64_t *functions;
+    const int64_t *structs;
+} Calls;
+
+void calls_run(const Calls *calls);
+
+/* Counterpart of `wbc.controller.WholeBodyController.build`, but for the rows of pairs that are due. */
+typedef struct {
+    const Calls *tasks;
+    const HardRows *hard;
+    const Pairs *pairs;
+} QpBuild;
+
+int64_t qp_build(const QpBuild *build, int64_t left, int64_t right, int64_t rolling, double left_cap, double right_cap);
+
 /* Counterpart of `wbc.solvers.equalities_only`; H is split where its first variables do not meet the others. */
 typedef struct {
     int64_t variables;
@@ -287,6 +320,16 @@ typedef struct {
 } Answer;
 
 void answer_read(const Answer *answer);
+
+/* The QP under its equalities alone, and what its solution means where it violates no more than the accuracy. */
+typedef struct {
+    const EqualityQp *qp;
+    const Answer *answer;
+    int64_t split;
+    double accuracy;
+} QpAnswer;
+
+double qp_answer(const QpAnswer *both);
 
 /* Counterpart of `wbc.external.LoadObserver.update` within a span. */
 typedef struct {
@@ -348,20 +391,6 @@ typedef struct {
 
 void sensors_read(const Sensors *sensors, int64_t is_pushed);
 
-/* Counterpart of the distances in `wbc.separation.Separation.write`; `poses` holds addresses, four for each pair. */
-typedef struct {
-    int64_t count;
-    const int64_t *poses;
-    const double *centres;
-    const double *radii;
-    double attention;
-    double *places;
-    const double *distances;
-    int64_t *due;
-} Pairs;
-
-int64_t pairs_due(const Pairs *pairs);
-
 /* Counterpart of `planner.plan.PlanSampler`: a plan, its interval that was entered last, and two points within that. */
 typedef struct {
     double begin;
@@ -395,15 +424,6 @@ typedef struct {
 } PlanReference;
 
 int64_t plan_reference_fill(const PlanReference *plan, double now, double middle);
-
-/* Kernels without numbers of their own, one after another: addresses of functions and of their structs. */
-typedef struct {
-    int64_t count;
-    const int64_t *functions;
-    const int64_t *structs;
-} Calls;
-
-void calls_run(const Calls *calls);
 
 /* Counterpart of `scenarios.log.rows.RowWriter`; places and records are addresses, strides and lengths bytes. */
 typedef struct {

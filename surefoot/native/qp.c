@@ -132,3 +132,10 @@ void answer_read(const Answer *answer) {
         answer->task_error[t] = (dot(stack->rows + n * t, x, n) - stack->target[t]) * stack->unscale[t];
     }
 }
+
+/* Solves and, where that is the minimiser, reads in one call; returns the violation as `equality_qp_solve` does. */
+double qp_answer(const QpAnswer *both) {
+    const double violation = equality_qp_solve(both->qp, both->split);
+    if (violation <= both->accuracy) answer_read(both->answer);
+    return violation;
+}

@@ -89,6 +89,14 @@ void hard_rows_write(const HardRows *rows, int64_t left, int64_t right, int64_t 
     joint_bounds(rows, held);
 }
 
+/* Tasks, their cost and the hard rows in one call; returns how many pairs of limbs are due to be measured. */
+int64_t qp_build(const QpBuild *build, int64_t left, int64_t right, int64_t rolling, double left_cap,
+                 double right_cap) {
+    calls_run(build->tasks);
+    hard_rows_write(build->hard, left, right, rolling, left_cap, right_cap);
+    return pairs_due(build->pairs);
+}
+
 /* Adds n'(J v) of a point of a body; the columns are those of the joints that move it. */
 static void add_point(const Distance *distance, double sign, const double *normal, const double *point, int64_t count,
                       const int64_t *columns) {

@@ -52,8 +52,11 @@ static void sole_update(const Terms *terms, const Sole *sole) {
     dual_action(sole->rotation, sole->position, sole->wrench_map, 12);
 }
 
-/* Counterpart of `RobotTerms.update` behind computeAllTerms. */
-void terms_update(const Terms *terms) {
+/* Counterpart of `RobotTerms.update` behind computeAllTerms; returns whether the state is finite. */
+int64_t terms_update(const Terms *terms) {
+    double sum = 0.0;
+    for (int64_t i = 0; i < terms->nq; i++) sum += terms->q[i] * terms->q[i];
+    for (int64_t i = 0; i < terms->nv; i++) sum += terms->v[i] * terms->v[i];
     for (int i = 0; i < 3; i++) {
         terms->com_velocity[i] = terms->linear_momentum[i] / terms->model_mass;
         terms->base_angular_velocity[i] = terms->v[3 + i];
@@ -61,6 +64,7 @@ void terms_update(const Terms *terms) {
     sole_update(terms, terms->left);
     sole_update(terms, terms->right);
     frame_update(terms, terms->torso);
+    return isfinite(sum) != 0;
 }
 
 /* Counterpart of `RobotTerms.unshift`. */

@@ -46,8 +46,8 @@ def test_random_problems_with_many_active_inequalities(kernels):
     most, given_up = 0, 0
     for _ in range(200):
         qp = random_qp(rng, 2.0)
-        solver = CompiledEqualities(kernels, 1e-9)
-        if solver.solve(qp).violation <= 1e-9:
+        solver = CompiledEqualities(kernels, 1e-9, qp)
+        if solver.run() <= 1e-9:
             continue
         mine, right = solver.activate(), daqp.solve(qp)
         given_up += mine is None
@@ -62,7 +62,7 @@ def test_what_contradicts_itself_is_given_up(kernels):
     qp = random_qp(np.random.default_rng(2), 2.0)
     qp.A[-1] = qp.A[-2]
     qp.bounds_lower[-2:], qp.bounds_upper[-2:] = (-UNBOUNDED, 5.0), (-5.0, UNBOUNDED)
-    solver = CompiledEqualities(kernels, 1e-9)
-    assert solver.solve(qp) is not None
+    solver = CompiledEqualities(kernels, 1e-9, qp)
+    assert np.isfinite(solver.run())
     assert solver.activate() is None
     assert EqualityFirst().solve(qp) is None

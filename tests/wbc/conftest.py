@@ -55,8 +55,9 @@ class Robot:
         tasks: Sequence[Task] = (),
         arm_back: tuple[float, float] = (1.0, 1.0),
         driven: np.ndarray | None = None,
+        kind: type[WholeBodyController] = WholeBodyController,
     ) -> WholeBodyController:
-        return WholeBodyController(
+        return kind(
             self.model, self.frames, Sole(HALF_SOLE, HALF_SOLE, 0.8), self.limits, self.standing[7:], self.leg_joints,
             PERIOD, parameters or WbcParameters(), limbs, self.shoulders, tasks,
             arm_back=arm_back, driven=driven,

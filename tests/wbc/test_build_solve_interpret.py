@@ -33,6 +33,18 @@ def test_an_update_is_build_solve_and_interpret(robot, state, reference):
         np.testing.assert_array_equal(getattr(answer, name), getattr(report, name), err_msg=name)
 
 
+@pytest.mark.parametrize("part", ["build", "solve", "interpret"])
+def test_an_update_asks_a_class_below_for_the_part_that_it_does_its_own_way(robot, state, reference, part):
+    usual, asked = robot.controller(), []
+    below = type("Below", (type(usual),), {part: lambda self, *given: asked.append(part) or own(self, *given)})
+    own, other = getattr(type(usual), part), robot.controller(kind=below)
+    for controller in (usual, other):
+        controller.observe(state)
+    torque = usual.update(reference, SENSED).torque
+    np.testing.assert_array_equal(other.update(reference, SENSED).torque, torque)
+    assert asked == [part]
+
+
 def test_a_copied_qp_outlives_the_next_build_and_solves_the_same(robot, state, references):
     controller = robot.controller()
     terms = controller.observe(state)

@@ -94,3 +94,10 @@ def test_contacts_that_an_estimator_decided_are_taken_whatever_the_forces_say(sc
     assert schedule.update(swinging(0.9), FootSensing((900.0, 300.0), contact=(True, False))).felt == (True, False)
     state = schedule.update(swinging(0.9), FootSensing((900.0, 0.0), contact=(True, True)))
     assert state.felt == (True, True) and state.active == (True, True)
+
+
+def test_contacts_that_stay_as_they_are_are_the_same_object(schedule):
+    first = schedule.update(swinging(0.1), FootSensing((900.0, 0.0)))
+    assert schedule.update(swinging(0.2), FootSensing((850.0, 1.0))) is first
+    schedule.weight = 2.0 * WEIGHT
+    assert schedule.update(swinging(0.2), FootSensing((850.0, 1.0))) is not first

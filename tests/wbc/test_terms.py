@@ -2,6 +2,7 @@ import numpy as np
 import pinocchio as pin
 import pytest
 
+from surefoot.native.library import VARIABLE
 from surefoot.wbc.model import BodyFrames, RobotTerms
 
 pytestmark = pytest.mark.unit
@@ -85,6 +86,20 @@ def test_an_update_leaves_nothing_of_the_state_before(robot, rng):
     for name, value in vars(fresh).items():
         if isinstance(value, np.ndarray):
             np.testing.assert_array_equal(getattr(used, name), value, err_msg=name)
+
+
+@pytest.mark.parametrize("plain", [False, True])
+def test_terms_tell_whether_their_state_is_finite(robot, state, monkeypatch, plain):
+    if plain:
+        monkeypatch.setenv(VARIABLE, "0")
+    terms = terms_at(robot, state.q, state.v)
+    assert terms.is_finite
+    for values in (state.q.copy(), state.v.copy()):
+        values[9] = np.nan
+        terms.update(*((values, state.v) if len(values) == len(state.q) else (state.q, values)))
+        assert not terms.is_finite
+    terms.update(state.q, state.v)
+    assert terms.is_finite
 
 
 def test_an_unknown_frame_is_named(robot):

@@ -5,6 +5,7 @@ from typing import cast
 
 import numpy as np
 
+from surefoot.native.library import Bound
 from surefoot.wbc.compiled import CompiledTick
 from surefoot.wbc.model import RobotTerms
 from surefoot.wbc.qp import QpData
@@ -26,6 +27,9 @@ class TaskStack:
         target: t, shape (rows,).
         diagonal: D, shape (n,).
         linear: d, shape (n,).
+        catching: whether tasks count as they do where a step catches the body.
+        is_alone: whether kernels do all that ``write`` does while that stays so; else ``write_others`` comes before.
+        bound: rows and targets as kernels take them, and ``calls`` what these do in one call; of kernels alone.
     """
 
     def __init__(
@@ -56,7 +60,7 @@ class TaskStack:
         for weigh in self._weighing:
             weigh(self.diagonal, False)
         # In place, since tasks and kernels have views of it.
-        self._scale, self._unscale, self._catching = scale, self._unscales[False].copy(), False
+        self._scale, self._unscale, self.catching = scale, self._unscales[False].copy(), False
         # A view costs as much to make as to use, so each task's part of the rows gets its name once.
         ends = np.cumsum(sizes)
         places = [slice(end - size, end) for size, end in zip(sizes, ends, strict=True)]
@@ -92,14 +96,14 @@ class TaskStack:
             H=self._H,
             g=self._g,
         )
-        assemble = tick.kernels.bind("stack_assemble", self.bound)
-        # Targets of others stand between, so that there are two calls where others are.
-        self._first = tick.kernels.sequence(self._kernels) if self._others else None
-        self._last = assemble if self._others else tick.kernels.sequence([*self._kernels, assemble])
+        self._assemble = tick.kernels.bind("stack_assemble", self.bound)
+        calls = None if self._others else tick.kernels.calls([*self._kernels, self._assemble])
+        self.is_alone = calls is not None
+        self.calls = calls or cast(Bound, tick.kernels.calls([]))
 
     def _weigh(self, catching: bool) -> None:
         """Let tasks count as they do where a step catches the body, or as they do else."""
-        self._catching = catching
+        self.catching = catching
         np.copyto(self._scale, self._scales[catching])
         np.copyto(self._unscale, self._unscales[catching])
         self.diagonal[:] = 0.0
@@ -108,7 +112,7 @@ class TaskStack:
 
     def write(self, terms: RobotTerms, reference: WbcReference) -> None:
         """Write H and g of the QP for this state and reference."""
-        if reference.catching is not self._catching:
+        if reference.catching is not self.catching:
             self._weigh(reference.catching)
         wanted: list[float] = []
         for write, scale, rows in self._tasks:
@@ -123,15 +127,17 @@ class TaskStack:
         self._g += self.linear
         np.negative(self._g, out=self._g)
 
-    def write_compiled(self, terms: RobotTerms, reference: WbcReference) -> None:
-        """The same as ``write`` by kernels, after the reference was given to their tick."""
-        if reference.catching is not self._catching:
+    def write_others(self, terms: RobotTerms, reference: WbcReference) -> None:
+        """What of ``write`` the kernels' calls leave to Python, after the reference was given to their tick."""
+        if reference.catching is not self.catching:
             self._weigh(reference.catching)
-        if self._first is not None:
-            self._first()
-            for write, scale, rows, target in self._others:
-                target[:] = np.reshape(tuple(write(terms, reference, scale, rows)), target.shape)
-        self._last()
+        if self.is_alone:
+            return
+        for kernel in self._kernels:
+            kernel()
+        for write, scale, rows, target in self._others:
+            target[:] = np.reshape(tuple(write(terms, reference, scale, rows)), target.shape)
+        self._assemble()
 
     def residual(self, x: Array) -> Array:
         """Residuals J x - a of all tasks at the solution x, shape (rows,); those of a task without weight are zero."""

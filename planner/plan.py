@@ -231,6 +231,7 @@ class PlanSampler:
         self.swing_foot: Foot | None = None
         if kernel is not None:
             kernel.take(plan.time, plan.sample_time, self._last, self._touchdown)
+            self._enter(0, plan.time >= self._touchdown)  # where it is asked first
 
     def sample(self, time: float) -> PlanSample:
         """References at an instant.

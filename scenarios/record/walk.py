@@ -63,8 +63,7 @@ _PLAN = {
 
 _FOOTSTEPS = ("current_left", "current_right", "next", "next_foot", "touchdown_time")
 
-_NO_FOOTSTEPS: tuple[tuple[float, ...], ...] = (math.nan,) * 12, (-1,) * 3, (math.nan,) * 3
-"""Places, feet and times of three footsteps that there are not."""
+_NO_FOOTSTEP = (math.nan,) * 4
 
 
 TickTiming = tuple[float, float, float, float, float, float, float, float]
@@ -110,6 +109,7 @@ class WalkRecorder:
         self._process = writer.channel(channels.process(sizes))
         self._looked = -1
         self._support = np.zeros((SUPPORT_VERTICES, 2))
+        self._polygon = b""
         self._rolled = level, rates, position, velocity = np.zeros(6), np.zeros(6), np.zeros(3), np.zeros(3)
         self._roll: Callable[[float, float, float], None] | None = None
         if kernels := library():
@@ -124,17 +124,23 @@ class WalkRecorder:
         """A new plan with its horizon and footsteps."""
         status, balance = plan.status, plan.balance
         slack = max(status.zmp_slack.tolist()), max(status.terminal_slack.tolist())
-        held = (status.solver is SolverStatus.HELD,)
-        self._plan(time_ns, plan, slack, held, (balance.planned, balance.movable))
-        poses, feet, times = _NO_FOOTSTEPS
-        for step in reversed(plan.footsteps):
-            poses, feet, times = (*_pose(step), *poses[:8]), (step.foot, *feet[:2]), (step.touchdown_time, *times[:2])
-        left, right = plan.footholds
-        self._footsteps(time_ns, None, _pose(left), _pose(right), poses, feet, times)
+        self._plan(time_ns, plan, slack, status.solver is SolverStatus.HELD, (balance.planned, balance.movable))
+        ahead = [*plan.footsteps, *[None] * (3 - len(plan.footsteps))]
+        self._footsteps(
+            time_ns,
+            None,
+            _pose(plan.footholds[Foot.LEFT]),
+            _pose(plan.footholds[Foot.RIGHT]),
+            [_NO_FOOTSTEP if step is None else _pose(step) for step in ahead],
+            [-1 if step is None else int(step.foot) for step in ahead],
+            [math.nan if step is None else step.touchdown_time for step in ahead],
+        )
         vertices = plan.support_polygon
-        self._support = np.empty((SUPPORT_VERTICES, 2))  # a new one, since rows of the reference have kept the last
-        self._support[: len(vertices)] = vertices
-        self._support[len(vertices) :] = vertices[-1]
+        if (shown := vertices.tobytes()) != self._polygon:
+            self._polygon = shown
+            self._support = np.empty((SUPPORT_VERTICES, 2))  # a new one, since rows of the reference have kept the last
+            self._support[: len(vertices)] = vertices
+            self._support[len(vertices) :] = vertices[-1]
 
     def touchdown(self, time_ns: int, planned: Footstep, feet: FeetState) -> None:
         """A footstep taken: as last planned, and where the sole is."""

@@ -184,18 +184,19 @@ class Controller:
         begin = time.perf_counter()
         self._observe(readings, now)
         state_time = time.perf_counter() - begin
-        plan_time = self.planning.follow(now, self._measured)
+        planning = self.planning
+        plan_time = planning.follow(now, self._measured) if now >= planning.due else 0.0
         # What is decided now acts until the next command, so that it is to do what is planned for the middle of that;
         # the state is held against that of now, from which on it does so.
         middle = now + 0.5 * self._output.period
-        self.sample, reference = self._references.tick(self.planning.sampler, now, middle)
+        self.sample, reference = self._references.tick(planning.sampler, now, middle)
         if now < self._next:
             self.spent = Spent(state_time, plan_time)
             return self._command
         if self._output.holds:
             self._next = self._output.after(now)
         sensing = foot_sensing(self.estimate, self.wrench, self._estimates, self._torques)
-        fails = self._faults is not None and self._faults.active("qp_failure", self.planning.tick(now))
+        fails = self._faults is not None and self._faults.active("qp_failure", planning.tick(now))
         if self.whole_body.driven is not None:
             self._tell(self.whole_body.driven, driven_joints)
         self.report = report = self.whole_body.update(reference, sensing, fails)
@@ -206,7 +207,7 @@ class Controller:
         self.spent = tuple.__new__(Spent, (state_time, plan_time, report.build_time, report.solve_time))
         # What falls gives way; the controller goes on, unheard, since estimator and planner take its contacts.
         state, torque = self.state, report.torque
-        if self._giving_way is not None and self.planning.plan.status.falling:
+        if self._giving_way is not None and planning.plan.status.falling:
             torque = self._giving_way.torque(state.q[7:], state.v[6:])
         if self._output.servo:
             self._command = self._output.command(torque, state.q[7:], state.v[6:], report.acceleration[6:])

@@ -197,7 +197,7 @@ class PointMass:
 
     def control(self, tick: int, now: float) -> tuple[PlanSample, Spent]:
         """See `Walker`."""
-        spent = self.planning.follow(now, self.measured)
+        spent = self.planning.follow(now, self.measured) if now >= self.planning.due else 0.0
         sample, until = self.planning.sampler.tick(now, now + 0.5 * self._period)
         self._force = mean_force(self._pushes, self._now, self._period)
         self._support = self._support_of(until.contacts)

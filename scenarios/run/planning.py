@@ -1,5 +1,6 @@
 """The planner under a controller or a point mass: on its own clock, told and logged."""
 
+import math
 import time
 from collections import deque
 from collections.abc import Callable, Sequence
@@ -82,6 +83,7 @@ class Planning:
     Attributes:
         planner: what plans.
         plan: the latest plan; there is none before the first `update`.
+        due: from when on the next plan is [s].
         sampler: of the latest plan.
         kernel: of all samplers; None of plain Python.
         recorder: of its channels; None for no record.
@@ -99,8 +101,8 @@ class Planning:
     ) -> None:
         self.planner, self._sensing, self.recorder, self._faults = planner, sensing, recorder, faults
         self._guard = guard
-        self._plan_rate, self._rate, self._rounding = rates.planner, rates.control, ROUNDING / rates.control
-        self._due = 0
+        self._plan_rate, self._rate = rates.planner, rates.control
+        self._made, self.due = 0, -math.inf
         self.plan: WalkPlan
         self.sampler: PlanSampler
         kernels = library()
@@ -110,6 +112,7 @@ class Planning:
         self._told = False
         self._aim: Footstep | None = None
         self._landing: Footstep | None = None
+        self._swinging: Foot | None = None
 
     @classmethod
     def of(cls, walk: Walk, planner: Planner) -> "Planning":
@@ -122,7 +125,7 @@ class Planning:
         return round(now * self._rate)
 
     def follow(self, now: float, measure: Callable[[], Measured]) -> float:
-        """Plan where a plan is due.
+        """Make the plans that are due.
 
         A plan is that of its place on the planner's own clock, whenever the readings come: what is measured since is
         taken back to there. Plans that were due while no readings came are made up for.
@@ -137,27 +140,21 @@ class Planning:
         Raises:
             RunFault: nothing was measured for too long.
         """
-        if self._due / self._plan_rate > now + self._rounding:
-            return 0.0
         begin = time.perf_counter()
-        self._catch_up(now, measure)
-        return time.perf_counter() - begin
-
-    def _catch_up(self, now: float, measure: Callable[[], Measured]) -> None:
-        """Make the plans that are due; see `follow`."""
-        latest = now + self._rounding
-        if (self._due + MOST_MISSED) / self._plan_rate < now:
+        if (self._made + MOST_MISSED) / self._plan_rate < now:
             raise RunFault(
-                f"nothing was measured for {now - (self._due - 1) / self._plan_rate:.3f} s before {now:.3f} s"
+                f"nothing was measured for {now - (self._made - 1) / self._plan_rate:.3f} s before {now:.3f} s"
             )
-        while (due := self._due / self._plan_rate) <= latest:
-            state, zmp, feet = measure()
+        while self.due <= now:
+            due, (state, zmp, feet) = self._made / self._plan_rate, measure()
             late = now - due
             if abs(late) * self._rate > ROUNDING:
                 state = replace(state, time=due, com=state.com - late * state.com_velocity)
-            self._due += 1
+            self._made += 1
+            self.due = self._made / self._plan_rate - ROUNDING / self._rate
             tick = self.tick(now)
             self.update(tick, tick * 1_000_000_000 // self._rate, state, zmp, feet)
+        return time.perf_counter() - begin
 
     def update(self, tick: int, now_ns: int, state: CentroidalState, zmp: NDArray[np.float64], feet: FeetState) -> None:
         """Measure and plan; a frozen planner only measures, but the first plan is made whatever the faults say.
@@ -175,20 +172,21 @@ class Planning:
             self.recorder.planner_state(now_ns, sensed)
         if self._started and self._faults.active("planner_freeze", tick):
             return
-        self._tell(tick)
+        if self._commands:
+            self._tell(tick)
         update: Callable[[CentroidalState, FeetState], WalkPlan] = self._guard.function(self.planner.update, taken_plan)
         self.plan = update(sensed.given, feet)
         self.sampler = PlanSampler(self.plan, self.kernel)
         self._started = True
         if self.recorder is not None:
-            self._record(self.recorder, now_ns, before, feet)
+            self._record(self.recorder, now_ns, feet)
 
-    def _record(self, recorder: WalkRecorder, now_ns: int, before: WalkPlan | None, feet: FeetState) -> None:
+    def _record(self, recorder: WalkRecorder, now_ns: int, feet: FeetState) -> None:
         recorder.plan(now_ns, self.plan)
         if self._told:
             recorder.command(now_ns, self.orders)
             self._told = False
-        self._book(recorder, now_ns, before, feet)
+        self._book(recorder, now_ns, feet)
 
     def command(self, command: Command, now: float) -> None:
         """Tell the planner something at an instant [s], from the next plan on.
@@ -227,14 +225,15 @@ class Planning:
         while self._commands and self._commands[0].time * self._rate <= tick + ROUNDING:
             self._say(self._commands.popleft())
 
-    def _book(self, recorder: WalkRecorder, now_ns: int, before: WalkPlan | None, feet: FeetState) -> None:
+    def _book(self, recorder: WalkRecorder, now_ns: int, feet: FeetState) -> None:
         """Record a footstep once its swing is over and its foot has touched down, which it may never do.
 
         What was planned of it is what the last plan before the touchdown said: the planner moves the footstep of a foot
         that has touched down early to where it stands.
         """
-        swinging = _swinging(self.plan)
-        if before is not None and (foot := _swinging(before)) is not None and swinging is not foot:
+        before, self._swinging = self._swinging, _swinging(self.plan)
+        swinging = self._swinging
+        if before is not None and swinging is not before:
             self._landing = self._aim
         landing = self._landing
         if landing is not None and landing.foot is swinging:

@@ -9,6 +9,7 @@ Robot geoms have contype 2 and conaffinity 3: they touch a terrain of contype 1 
 import math
 from collections.abc import Iterable, Iterator, Mapping
 from enum import Enum
+from functools import lru_cache
 from xml.etree import ElementTree
 
 from surefoot.models.actuator import Actuator
@@ -144,6 +145,7 @@ def add_defaults(root: ElementTree.Element) -> None:
         ElementTree.SubElement(ElementTree.SubElement(top, "default", {"class": role.value}), "geom", attributes)
 
 
+@lru_cache(maxsize=8)
 def without_looks(mjcf: str) -> str:
     """A robot's text without the meshes that are only drawn; one without such meshes as it is."""
     root = ElementTree.fromstring(mjcf)

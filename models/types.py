@@ -125,7 +125,7 @@ _OF_JOINTS = (
 )
 
 
-@dataclass(frozen=True, slots=True)
+@dataclass(frozen=True, slots=True, eq=False)
 class RobotDescription:
     """A robot, complete: `mjcf` is read by MuJoCo and by Pinocchio, the rest repeats facts of that text.
 

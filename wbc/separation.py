@@ -54,7 +54,7 @@ class Separation:
         self._points, self._row = np.zeros((3, 3)), np.zeros(model.nv)
         self._written: Array | None = None
         self.is_clear = False
-        self._rates = [self._compiled(compiled, *joints) for joints in self._joints] if compiled else None
+        self._compiled, self._rates = compiled, dict[int, Callable[[], float]]()
         self.due = DuePairs(compiled, geometry, self._joints, parameters.attention) if compiled else None
 
     def write(self, data: pin.Data, v: Array, rows: Array, lower: Array, unbounded: float) -> None:
@@ -92,7 +92,7 @@ class Separation:
                 rows[slot:], lower[slot:] = 0.0, -unbounded
                 return
             gap = max(distances[near[slot]] - p.clearance, 0.0)
-            if self._rates is None:
+            if self._compiled is None:
                 row = self._gradient(data, near[slot])
                 rate = float(row @ v)
             else:
@@ -100,7 +100,7 @@ class Separation:
                 normal, first, second = self._points
                 np.negative(result.normal, out=normal)
                 first[:], second[:] = result.getNearestPoint1(), result.getNearestPoint2()
-                rate = self._rates[near[slot]]()
+                rate = (self._rates.get(near[slot]) or self._bound(self._compiled, near[slot]))()
             rows[slot] = row
             lower[slot] = -2.0 / p.horizon * rate - gap / p.horizon**2
 
@@ -119,10 +119,10 @@ class Separation:
             distances[k] = known[k] = self._results[k].min_distance
         return distances
 
-    def _compiled(self, terms: CompiledTerms, first: int, second: int) -> Callable[[], float]:
-        """The kernel that does what `_gradient` does for the pair of two joints' bodies."""
-        columns = [np.array(moving_columns(self._model, joint), dtype=np.int64) for joint in (first, second)]
-        return terms.kernels.bind(
+    def _bound(self, terms: CompiledTerms, pair: int) -> Callable[[], float]:
+        """The kernel that does what `_gradient` does for a pair, bound once it is near: few pairs ever are."""
+        columns = [np.array(moving_columns(self._model, joint), dtype=np.int64) for joint in self._joints[pair]]
+        self._rates[pair] = rate = terms.kernels.bind(
             "distance_rate",
             terms=terms.bound,
             first_count=len(columns[0]),
@@ -132,6 +132,7 @@ class Separation:
             points=self._points,
             gradient=self._row,
         )
+        return rate
 
     def _gradient(self, data: pin.Data, pair: int) -> Array:
         """Jacobian of a distance, shape (nv,)."""

@@ -3,7 +3,7 @@
 import tempfile
 from collections.abc import Callable, Hashable, Iterable, Iterator, Mapping
 from functools import cached_property
-from typing import IO, TYPE_CHECKING, Any, TypeAlias
+from typing import IO, TYPE_CHECKING, Any, TypeAlias, TypeVar, cast
 
 import numpy as np
 from numpy.typing import NDArray
@@ -16,6 +16,8 @@ from surefoot.scenarios.record.provenance import RunConstants
 
 if TYPE_CHECKING:
     from surefoot.scenarios.log import ChannelData, Log
+
+T = TypeVar("T")
 
 Reads = Mapping[str, tuple[str, ...]]
 """Names of fields by topic."""
@@ -99,7 +101,8 @@ class Columns:
         """The array of a key; it cannot be written to."""
         shape, dtype = self._kinds[key]
         if not self._spilled:
-            self._parts[key] = [np.concatenate(self._parts[key])]
+            if len(self._parts[key]) > 1:
+                self._parts[key] = [np.concatenate(self._parts[key])]
             (values,) = self._parts[key]
             values.flags.writeable = False
             return values
@@ -184,12 +187,13 @@ class Digest(Window):
     """What was kept of a log; stands for it where metrics are computed.
 
     Attributes:
+        constants: of the run.
         reduced: what `reduce` gave, over the whole run.
     """
 
-    def __init__(self, log: "Log", reads: Iterable[Reads], reduce: Reduce) -> None:
+    def __init__(self, log: "Log", constants: RunConstants, reads: Iterable[Reads], reduce: Reduce) -> None:
         """Go through the log once, reducing every part and holding narrow fields; its damage is then known."""
-        held = _united((HELD, *reads))
+        held, self.constants = _united((HELD, *reads)), constants
         topics = [topic for topic in held if topic in log.numeric]
         kept, self.reduced = Columns(), Columns()
         for number, channels in enumerate(_in_step(log.windows(topics))):
@@ -197,8 +201,9 @@ class Digest(Window):
                 continue  # nothing was put off: of nothing, the first part has told all kinds of fields
             for topic, channel in channels.items():
                 kept.add((topic, TIME), channel.time_ns)
+                there = {field.name for field in channel.fields}
                 for name in held[topic]:
-                    if any(field.name == name for field in channel.fields):
+                    if name in there:
                         kept.add((topic, name), channel.field(name))
             for key, values in reduce(Window(log, channels)).items():
                 self.reduced.add(key, values)
@@ -254,7 +259,9 @@ class RunView:
 
     def __init__(self, log: Source, constants: RunConstants | None = None) -> None:
         self.log = log
-        self.constants = constants or RunConstants.from_metadata(log.metadata, str(log.path))
+        self._made: dict[Callable[[RunView], Any], Any] = {}
+        known = constants or (log.constants if isinstance(log, Digest) else None)
+        self.constants = known or RunConstants.from_metadata(log.metadata, str(log.path))
 
     def has(self, *topics: str) -> bool:
         """Whether all of these topics have messages."""
@@ -269,6 +276,12 @@ class RunView:
         if isinstance(self.log, Digest) and reduce in self.log.reduced:
             return self.log.reduced[reduce]
         return reduce(self)
+
+    def once(self, function: "Callable[[RunView], T]") -> T:
+        """What a function makes of the run, for whoever asks: of small things that many metrics need."""
+        if function not in self._made:
+            self._made[function] = function(self)
+        return cast("T", self._made[function])
 
     @cached_property
     def ticks(self) -> int:

@@ -190,7 +190,8 @@ def foot_slip_max(run: RunView) -> float | None:
 @metric(unit="rad", shown=DEG, reads=_STANCE_READS, body=True, least=0.0)
 def stance_twist_max(run: RunView) -> float | None:
     """Largest yaw of a loaded stance foot away from its yaw at first load, over all stances [rad]."""
-    yaws = (np.unwrap(run.sole_yaw[stance.ticks, stance.foot]) for stance in stances(run))
+    yaw = run.sole_yaw
+    yaws = (np.unwrap(yaw[stance.ticks, stance.foot]) for stance in stances(run))
     return max((float(np.abs(yaw - yaw[0]).max()) for yaw in yaws), default=None)
 
 

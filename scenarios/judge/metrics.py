@@ -200,7 +200,7 @@ def digest(log: "Log") -> Digest:
         return found
 
     reads: list[Reads] = [health.READS, PLACED, *(metric.reads for metric in metrics)]
-    gathered = Digest(log, reads, reduce)
+    gathered = Digest(log, constants, reads, reduce)
     for reduction in failed:
         gathered.reduced.forget(reduction)
     return gathered

@@ -32,6 +32,10 @@ def fall_time(run: RunView) -> float | None:
     A body: its CoM is low over the lower foot, its torso lies, or more than its feet touches. A pendulum: its DCM is
     out of reach of any foot. A cart-table never falls.
     """
+    return run.once(_fall_time)
+
+
+def _fall_time(run: RunView) -> float | None:
     fallen = np.flatnonzero(_lost(run) if run.constants.fidelity == "pendulum" else _lying(run))
     return float(run.time[fallen[0]]) if len(fallen) else None
 

@@ -83,7 +83,7 @@ class ChannelWriter(Waiting):
         super().__init__(channel_id, clock)
         self.spec, self._capacity, self._stamped = spec, capacity, False
         self._names = tuple(field.name for field in spec.fields)
-        self._records = blank_records(spec.fields, channel_id, capacity)
+        self._records = blank_records(spec, channel_id, capacity)
         self._views: tuple[NDArray[np.generic], ...] = tuple(self._records[name] for name in self._names)
         self._stamps = tuple(self._records[name] for name in ("_log_time", "_stamp", "_publish_time"))
         self._sequence, self._index = self._records["_sequence"], np.zeros((capacity, 2), "<u8")

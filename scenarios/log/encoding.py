@@ -119,17 +119,17 @@ class Summary:
     """Everything a reader wants to know before it reads the messages."""
 
     def __init__(self) -> None:
-        self._schemas: list[records.Schema] = []
-        self._channels: list[records.Channel] = []
+        self._schemas: dict[int, bytes] = {}
+        self._channels: list[bytes] = []
         self._chunks = Packed()
         self._times: tuple[int, int] | None = None
         self._attachments: list[records.AttachmentIndex] = []
         self._metadata: list[records.MetadataIndex] = []
 
-    def add_channel(self, schema: records.Schema | None, channel: records.Channel) -> None:
-        """Note a channel and its schema, when it is new."""
-        if schema is not None and all(known.id != schema.id for known in self._schemas):
-            self._schemas.append(schema)
+    def add_channel(self, schema_id: int, schema: bytes | None, channel: bytes) -> None:
+        """Note the record of a channel and that of its schema, when it is new."""
+        if schema is not None:
+            self._schemas.setdefault(schema_id, schema)
         self._channels.append(channel)
 
     def add_metadata(self, record: records.Metadata, position: int) -> bytes:
@@ -163,8 +163,8 @@ class Summary:
         end = encoded(records.DataEnd(crc))
         start = position + len(end)
         groups: list[tuple[Opcode, list[bytes]]] = [
-            (Opcode.SCHEMA, [*map(encoded, self._schemas)]),
-            (Opcode.CHANNEL, [*map(encoded, self._channels)]),
+            (Opcode.SCHEMA, [*self._schemas.values()]),
+            (Opcode.CHANNEL, self._channels),
             (Opcode.STATISTICS, [encoded(self._statistics(counts))]),
             (Opcode.CHUNK_INDEX, [bytes(self._chunks)]),
             (Opcode.ATTACHMENT_INDEX, [*map(encoded, self._attachments)]),

@@ -8,7 +8,7 @@ import zlib
 from collections.abc import Callable, Collection, Iterator, Mapping, Sequence
 from functools import cached_property
 from pathlib import Path
-from typing import TYPE_CHECKING
+from typing import TYPE_CHECKING, Any
 
 import numpy as np
 
@@ -242,7 +242,8 @@ class Log:
     ) -> dict[str, ChannelData]:
         """Messages of topics in some chunks and, if they are wanted, outside all chunks."""
         fields = {topic: self.fields(topic) for topic in topics}
-        sizes = {self._ids[topic]: record_dtype(fields[topic]).itemsize for topic in topics}
+        types = {topic: record_dtype(fields[topic]) for topic in topics}
+        sizes = {self._ids[topic]: dtype.itemsize for topic, dtype in types.items()}
         blocks: dict[int, list[memoryview | bytes]] = {number: [] for number in sizes}
         expected, channels = dict.fromkeys(sizes, 0), self.contents.channels
         for chunk in chunks:
@@ -265,15 +266,20 @@ class Log:
         if chunks:
             release(self.data, chunks[0].position, chunks[-1].position + chunks[-1].length)
         return {
-            topic: self._channel(topic, fields[topic], blocks[self._ids[topic]], expected[self._ids[topic]])
-            for topic in topics
+            topic: self._channel(topic, fields[topic], dtype, blocks[self._ids[topic]], expected[self._ids[topic]])
+            for topic, dtype in types.items()
         }
 
     def _channel(
-        self, topic: str, fields: tuple[FieldSpec, ...], blocks: list[memoryview | bytes], expected: int
+        self,
+        topic: str,
+        fields: tuple[FieldSpec, ...],
+        dtype: np.dtype[Any],
+        blocks: list[memoryview | bytes],
+        expected: int,
     ) -> ChannelData:
         """The messages in some blocks of bytes, of which so many are expected."""
-        dtype, number = record_dtype(fields), self._ids[topic]
+        number = self._ids[topic]
         whole = np.frombuffer(b"".join(blocks), np.uint8)
         records = sound_records(whole, number, dtype)
         if len(records) < expected:

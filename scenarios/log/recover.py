@@ -86,11 +86,13 @@ class _Rewriter:
 
     def _define(self) -> None:
         contents = self._log.contents
-        for schema in contents.schemas.values():
-            self._write(encoded(schema))
+        schemas = {schema.id: encoded(schema) for schema in contents.schemas.values()}
+        for record in schemas.values():
+            self._write(record)
         for channel in contents.channels.values():
-            self._summary.add_channel(contents.schemas.get(channel.schema_id), channel)
-            self._write(encoded(channel))
+            record = encoded(channel)
+            self._summary.add_channel(channel.schema_id, schemas.get(channel.schema_id), record)
+            self._write(record)
 
     def _chunk(self, chunk: Chunk, index: Index) -> None:
         record = encoded(chunk)

@@ -6,6 +6,7 @@ from array import array
 from bisect import bisect_right
 from collections.abc import Callable, Iterator
 from dataclasses import dataclass, field
+from functools import lru_cache
 from io import BytesIO
 from typing import Any, TypeVar
 
@@ -178,10 +179,10 @@ def records_in(data: Buffer) -> Iterator[tuple[int, int, slice]]:
 def _take_definition(opcode: int, body: bytes, contents: Contents) -> None:
     """Note a schema or channel record."""
     if opcode == Opcode.SCHEMA:
-        schema = _decode(Schema.read, body)
+        schema = _definition(Schema.read, body)
         contents.schemas.setdefault(schema.id, schema)
     elif opcode == Opcode.CHANNEL:
-        channel = _decode(Channel.read, body)
+        channel = _definition(Channel.read, body)
         contents.channels.setdefault(channel.id, channel)
 
 
@@ -288,6 +289,10 @@ def _indexed_chunks(data: Buffer) -> list[int]:
 
 def _decode(read: Callable[[ReadDataStream], _T], body: bytes) -> _T:
     return read(ReadDataStream(BytesIO(body)))
+
+
+_definition = lru_cache(maxsize=64)(_decode)
+"""`_decode` of schemas and channels, the same in log after log of a campaign."""
 
 
 def _name(opcode: int) -> str:

@@ -12,7 +12,8 @@ where values shall come, and then only these are written anew. Doubles take eigh
 import json
 import struct
 from collections.abc import Callable, Iterator, Mapping, Sequence
-from functools import cache, lru_cache
+from copy import copy
+from functools import cache, cached_property, lru_cache
 from math import prod
 from typing import Any, Literal, NamedTuple
 
@@ -94,16 +95,20 @@ _BASE: Mapping[int, tuple[str, ...]] = {
 """What goes before the joints in a vector of so many elements more than joints: nothing, a velocity, a pose."""
 
 
-@dataclass(frozen=True, slots=True)
+@dataclass(frozen=True)
 class ChannelSpec:
-    """A channel: its topic, the name of its message type and the fields in the order in which they are appended."""
+    """A channel: its topic, the name of its message type and the fields in the order in which they are appended.
+
+    What a file needs of it is made once: run after run of a campaign opens the same channels.
+    """
 
     topic: str
     message: str
     fields: tuple[FieldSpec, ...]
     doc: str = ""
 
-    def metadata(self) -> dict[str, str]:
+    @cached_property
+    def metadata(self) -> Mapping[str, str]:
         """What the schema cannot say, as metadata of the MCAP channel: layout, units, frames, meanings."""
         layout = [[f.name, f.kind, list(f.shape)] for f in self.fields]
         notes = {f.name: " ".join(part for part in (f.doc, f"[{f.unit}]", f.frame) if part) for f in self.fields}
@@ -113,17 +118,39 @@ class ChannelSpec:
             **{f"field.{name}": note for name, note in notes.items()},
         }
 
+    @cached_property
+    def descriptors(self) -> bytes:
+        """Serialized protobuf ``FileDescriptorSet`` of its message, with units and frames as comments."""
+        return _file_descriptor_set(self)
+
+    @cached_property
+    def blank(self) -> bytes:
+        """A message record with every constant byte in place: opcode, length and field tags."""
+        record = np.zeros((), record_dtype(self.fields))
+        record["_opcode"] = Opcode.MESSAGE
+        record["_length"] = record.dtype.itemsize - PREFIX_BYTES
+        record["_stamp_tag"] = 1 << 3 | _FIXED64
+        for number, field in enumerate(self.fields, start=2):
+            record[f"_tag_{field.name}"] = np.frombuffer(_tag(number, field), np.uint8)
+        return record.tobytes()
+
 
 _MOST_FIELDS, _MOST_AXES, _MOST_NUMBERS = 1000, 8, 1 << 17
 """What a message may hold: a layout that asks for more is damaged, or made to exhaust the memory."""
 
 
-def layout_of(metadata: dict[str, str]) -> tuple[FieldSpec, ...]:
+def layout_of(metadata: Mapping[str, str]) -> tuple[FieldSpec, ...]:
     """Read the fields back from a channel's metadata, as `ChannelSpec.metadata` writes them.
 
     Raises:
         ValueError: the metadata give no layout.
     """
+    return _layout_of(tuple(metadata.items()))
+
+
+@lru_cache(maxsize=256)
+def _layout_of(items: tuple[tuple[str, str], ...]) -> tuple[FieldSpec, ...]:
+    metadata = dict(items)
     try:
         rows = json.loads(metadata["layout"])
         if len(rows) > _MOST_FIELDS:
@@ -173,21 +200,14 @@ def record_dtype(fields: tuple[FieldSpec, ...]) -> np.dtype[Any]:
     return np.dtype(header + body)
 
 
-def blank_records(fields: tuple[FieldSpec, ...], channel_id: int, count: int) -> NDArray[np.void]:
-    """Message records with every constant byte in place: opcode, length, channel and field tags."""
-    records = np.zeros(count, record_dtype(fields))
-    records["_opcode"] = Opcode.MESSAGE
-    records["_length"] = records.dtype.itemsize - PREFIX_BYTES
+def blank_records(spec: ChannelSpec, channel_id: int, count: int) -> NDArray[np.void]:
+    """Message records of a channel with every constant byte in place."""
+    records: NDArray[np.void] = np.frombuffer(bytearray(spec.blank) * count, record_dtype(spec.fields))
     records["_channel"] = channel_id
-    records["_stamp_tag"] = 1 << 3 | _FIXED64
-    for number, field in enumerate(fields, start=2):
-        records[f"_tag_{field.name}"] = np.frombuffer(_tag(number, field), np.uint8)
     return records
 
 
-@lru_cache(maxsize=128)
-def file_descriptor_set(spec: ChannelSpec) -> bytes:
-    """Serialized protobuf ``FileDescriptorSet`` of a channel's message, with units and frames as comments."""
+def _file_descriptor_set(spec: ChannelSpec) -> bytes:
     file = descriptor_pb2.FileDescriptorProto(name=f"{PACKAGE}/{spec.message}.proto", package=PACKAGE, syntax="proto3")
     message = file.message_type.add(name=spec.message)
     message.field.add(name="stamp_ns", number=1, type=_Descriptor.TYPE_FIXED64, label=_Descriptor.LABEL_OPTIONAL)
@@ -250,12 +270,21 @@ class Template:
         missing = set(range(size)) - {index for _, index in places}
         if missing:
             raise ValueError(f"value {min(missing)} has no place in the message; it must stand in it at least once")
-        self.size = size
-        self._bytes = np.frombuffer(data, np.uint8).copy()
+        self.size, self._data = size, data
         self._pick = np.array([index for _, index in places], np.int64)
         self._values_at = _spans([place for place, _ in places], 8)
         self._stamps_at = _spans(_all(data, _stamp(SECONDS, NANOS)), _STAMP.size)
-        self._values, kernels = np.zeros(size), library()
+        self._take_memory()
+
+    def fresh(self) -> "Template":
+        """The same with memory of its own: no two writers fill the same bytes."""
+        made = copy(self)
+        made._take_memory()
+        return made
+
+    def _take_memory(self) -> None:
+        self._bytes = np.frombuffer(self._data, np.uint8).copy()
+        self._values, kernels = np.zeros(self.size), library()
         self._fill = None if kernels is None else self._compile(kernels)
 
     def _compile(self, kernels: Library) -> Callable[[int, int], None]:

@@ -3,6 +3,7 @@
 import zlib
 from collections import deque
 from collections.abc import Iterator, Mapping, Sequence
+from functools import lru_cache
 from pathlib import Path
 from types import TracebackType
 from typing import Literal, Self
@@ -14,7 +15,7 @@ from surefoot.scenarios.errors import LogError
 from surefoot.scenarios.log.channel import ChannelWriter, Clock, MessageWriter, Waiting
 from surefoot.scenarios.log.encoding import MAGIC, Summary, chunk_head, compress, encoded
 from surefoot.scenarios.log.rows import CompiledRows, RowLayout, RowWriter
-from surefoot.scenarios.log.spec import PACKAGE, ChannelSpec, file_descriptor_set
+from surefoot.scenarios.log.spec import PACKAGE, ChannelSpec
 from surefoot.scenarios.output import reason
 from surefoot.values import dataclass
 
@@ -126,6 +127,17 @@ class PublishedSchema:
     descriptors: bytes
 
 
+@lru_cache(maxsize=128)
+def _defined(
+    number: int, topic: str, schema: PublishedSchema, metadata: tuple[tuple[str, str], ...]
+) -> tuple[bytes, bytes]:
+    """Records of a schema and a channel, the same in run after run of a campaign."""
+    return (
+        encoded(Schema(number, schema.descriptors, "protobuf", schema.name)),
+        encoded(Channel(number, topic, "protobuf", dict(metadata), number)),
+    )
+
+
 class LogWriter:
     """An MCAP file under way.
 
@@ -170,8 +182,8 @@ class LogWriter:
 
     def channel(self, spec: ChannelSpec) -> ChannelWriter:
         """Add a channel, before or between messages."""
-        schema = PublishedSchema(f"{PACKAGE}.{spec.message}", file_descriptor_set(spec))
-        number = self._define(spec.topic, schema, spec.metadata())
+        schema = PublishedSchema(f"{PACKAGE}.{spec.message}", spec.descriptors)
+        number = self._define(spec.topic, schema, spec.metadata)
         writer = ChannelWriter(spec, number, _CAPACITY, self._clock)
         self._channels.append(writer)
         return writer
@@ -193,13 +205,12 @@ class LogWriter:
         self._channels.append(writer)
         return writer
 
-    def _define(self, topic: str, schema: PublishedSchema, metadata: dict[str, str]) -> int:
+    def _define(self, topic: str, schema: PublishedSchema, metadata: Mapping[str, str]) -> int:
         """Write the schema and the channel; gives the channel's number."""
         number = len(self._channels) + 1
-        record = Schema(number, schema.descriptors, "protobuf", schema.name)
-        channel = Channel(number, topic, "protobuf", metadata, number)
-        self._output.write(encoded(record) + encoded(channel))
-        self._summary.add_channel(record, channel)
+        records = _defined(number, topic, schema, tuple(metadata.items()))
+        self._output.write(b"".join(records))
+        self._summary.add_channel(number, *records)
         return number
 
     def attach(self, file: AttachedFile) -> None:
@@ -298,7 +309,7 @@ class NoLog(LogWriter):
         self._rows = []
         self._begin_clock()
 
-    def _define(self, topic: str, schema: PublishedSchema, metadata: dict[str, str]) -> int:
+    def _define(self, topic: str, schema: PublishedSchema, metadata: Mapping[str, str]) -> int:
         return len(self._channels) + 1
 
     def attach(self, file: AttachedFile) -> None:

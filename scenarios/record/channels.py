@@ -3,6 +3,8 @@
 Feet are ordered left, right; wrenches force first; poses x y z qx qy qz qw; q and v follow Pinocchio's convention.
 """
 
+from functools import cache
+
 from surefoot.scenarios.log.spec import ChannelSpec, FieldSpec
 from surefoot.values import dataclass
 from surefoot.wbc.tasks import DEFAULT_LAYOUT, TaskLayout
@@ -42,6 +44,7 @@ def _int(name: str, doc: str, *shape: int) -> FieldSpec:
     return FieldSpec(name, shape, "-", "", doc, "int")
 
 
+@cache
 def measurement(n: Sizes) -> ChannelSpec:
     """What the sensors give, every control tick."""
     fields = (
@@ -57,6 +60,7 @@ def measurement(n: Sizes) -> ChannelSpec:
     return ChannelSpec("/measurement", "Measurement", fields, measurement.__doc__ or "")
 
 
+@cache
 def readings(n: Sizes) -> ChannelSpec:
     """What sensors say to an estimator, every control tick; only in a run whose estimator reads them."""
     fields = (
@@ -78,6 +82,7 @@ def readings(n: Sizes) -> ChannelSpec:
     return ChannelSpec("/readings", "Readings", fields, readings.__doc__ or "")
 
 
+@cache
 def truth(n: Sizes) -> ChannelSpec:
     """The simulator's state, every control tick."""
     fields = (
@@ -95,6 +100,7 @@ def truth(n: Sizes) -> ChannelSpec:
     return ChannelSpec("/truth", "Truth", fields, truth.__doc__ or "")
 
 
+@cache
 def point_truth(_: Sizes) -> ChannelSpec:
     """The pendulum's state, every control tick."""
     fields = (
@@ -107,6 +113,7 @@ def point_truth(_: Sizes) -> ChannelSpec:
     return ChannelSpec("/truth", "PointTruth", fields, point_truth.__doc__ or "")
 
 
+@cache
 def estimate(_: Sizes) -> ChannelSpec:
     """The state that the whole-body controller was given, by its robot model, and the load with which it counted."""
     fields = (
@@ -122,6 +129,7 @@ def estimate(_: Sizes) -> ChannelSpec:
     return ChannelSpec("/estimate", "Estimate", fields, estimate.__doc__ or "")
 
 
+@cache
 def estimation() -> ChannelSpec:
     """What an estimator of the sensors knows, how sure it is and by what it is wrong, every control tick.
 
@@ -150,6 +158,7 @@ def estimation() -> ChannelSpec:
     return ChannelSpec("/estimation", "Estimation", fields, (estimation.__doc__ or "").split("\n")[0])
 
 
+@cache
 def planner_state(_: Sizes) -> ChannelSpec:
     """What the planner measured of the CoM and was given of it, every planner tick."""
     fields = (
@@ -164,6 +173,7 @@ def planner_state(_: Sizes) -> ChannelSpec:
     return ChannelSpec("/planner_state", "PlannerState", fields, planner_state.__doc__ or "")
 
 
+@cache
 def contact(_: Sizes) -> ChannelSpec:
     """Contacts planned, used by the controller and felt, every control tick."""
     fields = (
@@ -178,6 +188,7 @@ def contact(_: Sizes) -> ChannelSpec:
     return ChannelSpec("/contact", "Contact", fields, contact.__doc__ or "")
 
 
+@cache
 def reference(_: Sizes) -> ChannelSpec:
     """The whole-body reference and the gait's clock, every control tick."""
     fields = (
@@ -202,6 +213,7 @@ def reference(_: Sizes) -> ChannelSpec:
     return ChannelSpec("/reference", "Reference", fields, reference.__doc__ or "")
 
 
+@cache
 def plan(n: Sizes) -> ChannelSpec:
     """The plan with its horizon, every planner tick; sample 0 is the message's time."""
     states, moves = n.horizon + 1, n.horizon
@@ -224,6 +236,7 @@ def plan(n: Sizes) -> ChannelSpec:
     return ChannelSpec("/plan", "Plan", fields, plan.__doc__ or "")
 
 
+@cache
 def footsteps(_: Sizes) -> ChannelSpec:
     """Feet and the next three footsteps as planned, every planner tick."""
     fields = (
@@ -236,6 +249,7 @@ def footsteps(_: Sizes) -> ChannelSpec:
     return ChannelSpec("/footsteps", "Footsteps", fields, footsteps.__doc__ or "")
 
 
+@cache
 def footstep(_: Sizes) -> ChannelSpec:
     """A footstep taken, when its swing is over and its foot has touched down; none of a foot that never does."""
     fields = (
@@ -247,6 +261,7 @@ def footstep(_: Sizes) -> ChannelSpec:
     return ChannelSpec("/footstep", "Footstep", fields, footstep.__doc__ or "")
 
 
+@cache
 def wbc(n: Sizes) -> ChannelSpec:
     """The whole-body QP's solution, every control tick."""
     rows, tasks = sum(size for _, size in n.tasks), ", ".join(f"{name} {size}" for name, size in n.tasks)
@@ -265,6 +280,7 @@ def wbc(n: Sizes) -> ChannelSpec:
     return ChannelSpec("/wbc", "WholeBodyControl", fields, wbc.__doc__ or "")
 
 
+@cache
 def torque(n: Sizes) -> ChannelSpec:
     """The joint torques commanded, every control tick."""
     fields = (
@@ -274,6 +290,7 @@ def torque(n: Sizes) -> ChannelSpec:
     return ChannelSpec("/torque", "JointTorque", fields, torque.__doc__ or "")
 
 
+@cache
 def link(_: Sizes | None = None) -> ChannelSpec:
     """What became of messages between plant and controller in two processes, with each state that came."""
     fields = (
@@ -286,12 +303,14 @@ def link(_: Sizes | None = None) -> ChannelSpec:
     return ChannelSpec("/link", "Link", fields, link.__doc__ or "")
 
 
+@cache
 def shadow(n: Sizes) -> ChannelSpec:
     """The torques of the log in whose shadow a controller walked, every control tick."""
     fields = (_real("command", n.nj, "N m", "", "commanded then"),)
     return ChannelSpec("/shadow", "Shadow", fields, shadow.__doc__ or "")
 
 
+@cache
 def timing(_: Sizes) -> ChannelSpec:
     """Time spent in each part of a control tick; excluded from reproducibility."""
     parts = ("state", "wbc_build", "wbc_solve", "planner", "physics", "log", "tick")
@@ -300,6 +319,7 @@ def timing(_: Sizes) -> ChannelSpec:
     return ChannelSpec("/timing", "Timing", fields, timing.__doc__ or "")
 
 
+@cache
 def command(_: Sizes) -> ChannelSpec:
     """What the walk was told while it went on, in the plan from which on it holds; NaN for what was not."""
     fields = (
@@ -316,6 +336,7 @@ def command(_: Sizes) -> ChannelSpec:
     return ChannelSpec("/command", "Command", fields, command.__doc__ or "")
 
 
+@cache
 def process(_: Sizes) -> ChannelSpec:
     """The process that makes the run, every simulated second; excluded from reproducibility."""
     fields = (_scalar("memory", "B", "resident memory"),)

@@ -7,7 +7,7 @@ import math
 import platform
 import subprocess
 from collections.abc import Iterator, Mapping
-from dataclasses import asdict, field
+from dataclasses import asdict, field, fields
 from functools import cache
 from importlib.metadata import PackageNotFoundError, version
 from pathlib import Path
@@ -128,7 +128,7 @@ class RunConstants:
 
     def to_metadata(self) -> dict[str, str]:
         """Write as metadata: JSON by name."""
-        written = asdict(self)
+        written = {entry.name: getattr(self, entry.name) for entry in fields(self)}
         if self.plane == 0.0:
             del written["plane"]
         if self.size == (1.0, 1.0):

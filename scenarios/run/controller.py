@@ -94,6 +94,7 @@ class Controller:
         self._giving_way = None if walk.control.give_way is False else GivingWay(body.limits, walk.size)
         self._landed, self._load = (True, True), NO_LOAD
         self._landing: Landing | None = None
+        self._stands = False
         self._begin, self._now = math.nan, -math.inf
         self._torques: TorqueWrench | None = None
         self._command = JointCommand(np.zeros(0))
@@ -121,7 +122,7 @@ class Controller:
             )
             self._landed, self._load, self._torques = (True, True), NO_LOAD, None
         self._begin, self._now, self._next = math.nan, -math.inf, -math.inf
-        self._landing = Landing(self.body, self.posture, self.walk.size) if q is None else None
+        self._landing, self._stands = None, q is not None
         if q is not None:
             self._stand(q)
 
@@ -170,12 +171,13 @@ class Controller:
         """
         if readings.time < self._begin + self._now:
             return self._command
-        if self._landing is not None:
+        if not self._stands:
+            self._landing = self._landing or Landing(self.body, self.posture, self.walk.size)
             held = self._landing.hold(readings)
             if held is not None:
                 return held
             self._stand(self.senses(readings).state.q)
-            self.senses, self._landing = senses_of(self.walk, self._parts), None
+            self.senses, self._stands = senses_of(self.walk, self._parts), True
         if self._now < 0.0:
             self._begin = readings.time
         now = readings.time - self._begin

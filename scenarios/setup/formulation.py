@@ -3,7 +3,7 @@
 import math
 from collections.abc import Iterator
 from dataclasses import replace
-from functools import cached_property
+from functools import cached_property, lru_cache
 from typing import Any
 
 from surefoot.guard import Guard
@@ -94,11 +94,12 @@ class Formulation:
     @cached_property
     def usual(self) -> PlannerParameters:
         """Parameters of a planner for this robot, whatever the scenario says but for its reach."""
-        return self._widened(PlannerParameters())
+        return self._widened(_usual(self.size)[0])
 
     def _widened(self, parameters: PlannerParameters) -> PlannerParameters:
         # Legs that stand wider step as much wider.
-        scaled = self.size.scaled(parameters)
+        usual, scaled = _usual(self.size)
+        scaled = scaled if parameters == usual else self.size.scaled(parameters)
         near, far = scaled.reach_width
         return replace(scaled, reach_width=(near, far + self.wider), reach_length=self._reach)
 
@@ -157,6 +158,13 @@ class Formulation:
         elif horizon <= profile.parameters.moves[-1]:
             what = f"planner.horizon {horizon} is shorter than the planner's blocks of moves"
             yield Problem(("planner", "horizon"), what, f"use at least {profile.parameters.moves[-1] + 1}")
+
+
+@lru_cache(maxsize=8)
+def _usual(size: Similarity) -> tuple[PlannerParameters, PlannerParameters]:
+    """Parameters of the reference robot, and the same for a size."""
+    usual = PlannerParameters()
+    return usual, size.scaled(usual)
 
 
 def region_of(parameters: PlannerParameters, facts: RobotFacts, com_height: float) -> StepRegion:

@@ -2,6 +2,7 @@
 
 import math
 from dataclasses import replace
+from functools import lru_cache
 
 import numpy as np
 import pinocchio as pin
@@ -54,8 +55,9 @@ class Body:
         return PostureIk(self.model, self.frames, self.limits, posture)
 
 
+@lru_cache(maxsize=8)
 def body_of(robot: RobotDescription) -> Body:
-    """The body of a described robot."""
+    """The body of a described robot, made once for each; nobody may change its model."""
     return Body(
         robot=robot,
         model=pinocchio_model(robot),

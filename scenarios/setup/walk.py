@@ -242,8 +242,9 @@ class Walk:
             PartError: the profile, of others, fails to make it.
         """
         authority = math.inf, 0.0 if self.robot.roles.feet_lean else math.inf
+        facts, height = self.facts, self.gait.com_height
         parameters = replace(
-            self.parameters, leg=leg, cop_room=cop_room(leg, self.facts, self.robot.mass), cop_authority=authority
+            self.parameters, leg=leg, cop_room=cop_room(leg, facts, self.robot.mass), cop_authority=authority
         )
         given = (self.gait, feet, *self.sole, self.ground.terrain, parameters, self.formulation.heights)
         profile = guarded_law(self.formulation.profile, self.formulation.guard)
@@ -253,7 +254,8 @@ class Walk:
                 index(planner.parameters.horizon)
                 return planner
         check_walk(*given)
-        return WalkingPlanner(*given, profile, self.region, self.legs)
+        legs = leg_reach(self.parameters, facts, height, self.standing_height)
+        return WalkingPlanner(*given, profile, region_of(self.parameters, facts, height), legs)
 
     @cached_property
     def robot(self) -> "RobotDescription":

@@ -1,6 +1,7 @@
 """The swing foot follows its curve."""
 
 from collections.abc import Callable
+from functools import lru_cache
 
 import numpy as np
 import pinocchio as pin
@@ -44,12 +45,7 @@ class AnkleStops:
     """
 
     def __init__(self, model: pin.Model, frames: BodyFrames, limits: JointLimits) -> None:
-        soles = [model.frames[model.getFrameId(name)] for name in frames.soles]
-        supports = (model.supports[sole.parentJoint] for sole in soles)
-        self.ankles = np.array([sole.placement.inverse().translation for sole in soles]) * (1.0, 0.0, 1.0)
-        joints = 2 if frames.leaning is None else 1
-        self.columns = tuple(tuple(model.joints[j].idx_v for j in list(chain)[-joints:]) for chain in supports)
-        self.rolling = tuple(_rolling(model, name, of) for name, of in zip(frames.soles, self.columns, strict=True))
+        self.ankles, self.columns, self.rolling = _ankles(model, frames)
         self.lower, self.upper, self.ahead = limits.lower, limits.upper, 2.0 * limits.position_horizon
 
     def yielding(self, terms: RobotTerms, k: int, desired: Array) -> list[tuple[Array, float]]:
@@ -77,9 +73,21 @@ class AnkleStops:
         return found
 
 
-def _rolling(model: pin.Model, sole: str, columns: tuple[int, ...]) -> int:
+@lru_cache(maxsize=8)
+def _ankles(model: pin.Model, frames: BodyFrames) -> tuple[Array, tuple[tuple[int, ...], ...], tuple[int, ...]]:
+    """Attributes of `AnkleStops`, which a robot that walks again has still."""
+    soles = [model.frames[model.getFrameId(name)] for name in frames.soles]
+    ankles = np.array([sole.placement.inverse().translation for sole in soles]) * (1.0, 0.0, 1.0)
+    joints, data = 2 if frames.leaning is None else 1, model.createData()
+    supports = (model.supports[sole.parentJoint] for sole in soles)
+    columns = tuple(tuple(model.joints[j].idx_v for j in list(chain)[-joints:]) for chain in supports)
+    rolling = tuple(_rolling(model, data, name, of) for name, of in zip(frames.soles, columns, strict=True))
+    return ankles, columns, rolling
+
+
+def _rolling(model: pin.Model, data: pin.Data, sole: str, columns: tuple[int, ...]) -> int:
     """Of the columns of an ankle, that of the joint whose axis is nearest to the length of its sole; -1 for none."""
-    data, frame, local = model.createData(), model.getFrameId(sole), pin.ReferenceFrame.LOCAL
+    frame, local = model.getFrameId(sole), pin.ReferenceFrame.LOCAL
     axes = np.abs(pin.computeFrameJacobian(model, data, pin.neutral(model), frame, local)[3:, columns])
     along = [column for column, (x, y, z) in zip(columns, axes.T.tolist(), strict=True) if x > max(y, z)]
     return max(along, key=lambda column: axes[0, columns.index(column)], default=-1)

@@ -2,6 +2,7 @@
 
 import math
 from collections.abc import Callable
+from functools import lru_cache
 
 import numpy as np
 import pinocchio as pin
@@ -36,16 +37,11 @@ class HipStops:
     """
 
     def __init__(self, model: pin.Model, frames: BodyFrames, limits: JointLimits) -> None:
-        data = model.createData()
-        pin.computeJointJacobians(model, data, pin.neutral(model))
         self.hips: list[tuple[int, float, float, float]] = []
-        for name in frames.soles:
-            above = list(model.supports[model.frames[model.getFrameId(name)].parentJoint])[2:-2]
-            ahead = {model.joints[joint].idx_v: float(data.J[3, model.joints[joint].idx_v]) for joint in above}
-            column = max(ahead, key=lambda column: abs(ahead[column]))
+        for column, sign in _rolls(model, frames):
             lower, upper = float(limits.lower[column - 6]), float(limits.upper[column - 6])
             spared = min(SPARED, 0.25 * (upper - lower))
-            self.hips.append((column, math.copysign(1.0, ahead[column]), lower + spared, upper - spared))
+            self.hips.append((column, sign, lower + spared, upper - spared))
 
     def roll(self, terms: RobotTerms) -> tuple[float, float]:
         """Roll of the pelvis, left side up, and its rate [rad, rad/s].
@@ -64,6 +60,19 @@ class HipStops:
                 roll += toward * beyond
                 rate += slope * (sign * float(terms.v[column]) + turning)
         return roll, rate
+
+
+@lru_cache(maxsize=8)
+def _rolls(model: pin.Model, frames: BodyFrames) -> tuple[tuple[int, float], ...]:
+    """Of the left and the right hip's roll joint: column of the generalised velocity, sign of its axis ahead."""
+    data, found = model.createData(), []
+    pin.computeJointJacobians(model, data, pin.neutral(model))
+    for name in frames.soles:
+        above = list(model.supports[model.frames[model.getFrameId(name)].parentJoint])[2:-2]
+        ahead = {model.joints[joint].idx_v: float(data.J[3, model.joints[joint].idx_v]) for joint in above}
+        column = max(ahead, key=lambda column: abs(ahead[column]))
+        found.append((column, math.copysign(1.0, ahead[column])))
+    return tuple(found)
 
 
 def _beyond(excess: float) -> tuple[float, float]:

@@ -2,8 +2,7 @@
 
 import math
 from collections.abc import Iterable, Sequence
-from functools import lru_cache
-from typing import cast
+from functools import cache, lru_cache
 
 import numpy as np
 from foxglove_schemas_protobuf.ArrowPrimitive_pb2 import ArrowPrimitive
@@ -23,7 +22,7 @@ from foxglove_schemas_protobuf.SceneUpdate_pb2 import SceneUpdate
 from foxglove_schemas_protobuf.SpherePrimitive_pb2 import SpherePrimitive
 from foxglove_schemas_protobuf.TriangleListPrimitive_pb2 import TriangleListPrimitive
 from foxglove_schemas_protobuf.Vector3_pb2 import Vector3
-from google.protobuf.descriptor import FileDescriptor
+from google.protobuf.descriptor import Descriptor, FileDescriptor
 from google.protobuf.descriptor_pb2 import FileDescriptorProto, FileDescriptorSet
 from google.protobuf.message import Message
 from google.protobuf.timestamp_pb2 import Timestamp
@@ -41,10 +40,15 @@ from surefoot.sim.shapes import Shape, drawn_shapes
 
 def published(message: type[Message]) -> PublishedSchema:
     """The schema of a message class, with every file that it imports."""
+    return _published(message.DESCRIPTOR)
+
+
+@cache
+def _published(message: Descriptor) -> PublishedSchema:
     files: dict[str, FileDescriptorProto] = {}
-    _collect(cast(FileDescriptor, message.DESCRIPTOR.file), files)
+    _collect(message.file, files)
     descriptors = FileDescriptorSet(file=files.values()).SerializeToString(deterministic=True)
-    return PublishedSchema(message.DESCRIPTOR.full_name, descriptors)
+    return PublishedSchema(message.full_name, descriptors)
 
 
 def _collect(file: FileDescriptor, files: dict[str, FileDescriptorProto]) -> None:
@@ -133,7 +137,8 @@ LOOPS: tuple[tuple[str, int, Rgba], ...] = (
 """Outlines that are drawn: entity, vertices, colour."""
 
 
-def transforms(frames: Sequence[str]) -> Template:
+@cache
+def transforms(frames: tuple[str, ...]) -> Template:
     """``foxglove.FrameTransforms`` of frames in the world; values: all x y z [m], then all qw qx qy qz."""
     n = len(frames)
 
@@ -148,7 +153,8 @@ def transforms(frames: Sequence[str]) -> Template:
     return Template(FrameTransforms(transforms=[one(i, name) for i, name in enumerate(frames)]), 7 * n)
 
 
-def joint_states(names: Sequence[str]) -> Template:
+@cache
+def joint_states(names: tuple[str, ...]) -> Template:
     """``foxglove.JointStates``; values: all positions [rad], then all velocities [rad/s], then all torques [N m]."""
     n = len(names)
     joints = [
@@ -158,6 +164,7 @@ def joint_states(names: Sequence[str]) -> Template:
     return Template(JointStates(timestamp=stamp(), joints=joints), 3 * n)
 
 
+@cache
 def points() -> Template:
     """``foxglove.SceneUpdate`` of `BALLS`; values: x y z of each [m]."""
     entities = [
@@ -167,6 +174,7 @@ def points() -> Template:
     return Template(scene(*entities), 3 * len(BALLS))
 
 
+@cache
 def forces() -> Template:
     """``foxglove.SceneUpdate`` of `ARROWS`; values of each: x y z [m], qx qy qz qw, length [m]."""
     entities = []
@@ -177,6 +185,7 @@ def forces() -> Template:
     return Template(scene(*entities), 8 * len(ARROWS))
 
 
+@cache
 def outlines() -> Template:
     """``foxglove.SceneUpdate`` of `LOOPS`; values: x y z of each vertex [m]."""
     entities, first = [], 0

@@ -46,7 +46,7 @@ class Drawn:
         self, writer: LogWriter, topic: str, schema: type[ProtobufMessage], template: Template, doc: str
     ) -> None:
         self._channel = writer.message_channel(topic, published(schema), doc)
-        self._template = template
+        self._template = template.fresh()
 
     def append(self, time_ns: int, values: ArrayLike) -> None:
         """Write a message with the template's values."""

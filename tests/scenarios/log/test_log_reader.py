@@ -10,7 +10,7 @@ from mcap.writer import CompressionType, IndexType, Writer
 from surefoot.scenarios.errors import LogError
 from surefoot.scenarios.log import ChannelSpec, FieldSpec, LogWriter, read
 from surefoot.scenarios.log.recover import recover
-from surefoot.scenarios.log.spec import blank_records, file_descriptor_set
+from surefoot.scenarios.log.spec import blank_records
 
 pytestmark = pytest.mark.unit
 
@@ -193,11 +193,11 @@ def test_our_channels_by_any_writer_in_any_order(tmp_path, settings):
         writer.start()
         channels = []
         for spec in (SPEC, OTHER):
-            schema = writer.register_schema(f"surefoot.{spec.message}", "protobuf", file_descriptor_set(spec))
-            channels.append(writer.register_channel(spec.topic, "protobuf", schema, spec.metadata()))
+            schema = writer.register_schema(f"surefoot.{spec.message}", "protobuf", spec.descriptors)
+            channels.append(writer.register_channel(spec.topic, "protobuf", schema, spec.metadata))
         for tick in np.random.default_rng(0).permutation(TICKS).tolist():
             for spec, channel in zip((SPEC, OTHER), channels, strict=True):
-                record = blank_records(spec.fields, channel, 1)
+                record = blank_records(spec, channel, 1)
                 record[spec.fields[0].name] = tick
                 writer.add_message(channel, tick * 2_000_000, record.tobytes()[31:], tick * 2_000_000)
         writer.finish()

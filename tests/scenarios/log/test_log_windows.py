@@ -132,7 +132,7 @@ def test_a_field_that_is_read_has_its_unit_frame_and_meaning(moved):
     assert moved["/r"].fields == moved.fields("/r") == ROBOT
     sizes = channels.Sizes(nj=25, nq=32, nv=31, horizon=80)
     made = [make(sizes) for make in (channels.measurement, channels.truth, channels.contact, channels.plan)]
-    assert all(layout_of(spec.metadata()) == spec.fields for spec in made)
+    assert all(layout_of(spec.metadata) == spec.fields for spec in made)
     assert layout_of({"layout": '[["a", "double", []]]', "field.a": "no note"}) == (FieldSpec("a", doc="no note"),)
 
 

@@ -3,7 +3,7 @@
 import struct
 from collections.abc import Callable, Iterable, Mapping, Sequence
 from dataclasses import field
-from itertools import chain, zip_longest
+from itertools import zip_longest
 from operator import is_
 
 import numpy as np
@@ -101,8 +101,11 @@ class RowWriter:
         )
         self._views, self._derived = (_views(layout.vectors), _views(layout.numbers)), _views(layout.derived)
         self._writers, self._derive = list(writers.values()), layout.derive
-        self._vectors = np.zeros((capacity, _width(self._at[0])))
-        self._numbers: list[tuple[float, ...]] = []
+        self._vectors, self._announced = np.zeros((capacity, _width(self._at[0]))), _width(self._at[1])
+        # From plain numbers straight into memory: an array of them takes longer, and while they wait they grow cold.
+        self._pack = struct.Struct(f"{self._announced}d").pack_into
+        self._memory = bytearray(8 * capacity * self._announced)
+        self._numbers: Array = np.ndarray((capacity, self._announced), buffer=self._memory)
         self._standing: Sequence[Array] = ()
         self._fresh: list[Array] | None = [] if layout.fresh else None
         self._gather: Callable[[int], None] | None = None
@@ -118,7 +121,7 @@ class RowWriter:
             vectors: contiguous float64 arrays whose values, row by row, make up the rest of the row.
 
         Raises:
-            ValueError: the vectors do not fill the row, or the numbers of a row of this chunk did not.
+            ValueError: the vectors do not fill the row, or the numbers are not as many as were announced.
             LogError: the chunk that this row completes cannot be written.
         """
         if self._fresh is None:
@@ -129,14 +132,15 @@ class RowWriter:
 
     def again(self, time_ns: int, numbers: tuple[float, ...]) -> None:
         """The same with the very arrays of the row before, with values of now; of standing rows, and without arrays."""
+        if len(numbers) != self._announced:
+            raise ValueError(f"a row of {len(numbers)} numbers, where there are places for {self._announced}")
         times = self._times
         count = len(times)
+        self._pack(self._memory, 8 * self._announced * count, *numbers)
         if self._gather is not None:
             self._gather(count)
         elif self._standing:
             np.concatenate(tuple(map(np.ndarray.ravel, self._standing)), out=self._vectors[count])
-        # Tuples wait as they are: to put all of them into memory when the chunk is due takes less time than one by one.
-        self._numbers.append(numbers)
         times.append(time_ns)
         if time_ns >= self._clock.due or count + 1 == self._capacity:
             self._clock.look(time_ns, count + 1 == self._capacity)
@@ -148,20 +152,16 @@ class RowWriter:
     def drop(self) -> None:
         """Forget the rows that wait."""
         self._times.clear()
-        self._numbers.clear()
         if self._fresh:
             self._fresh.clear()
 
     def spread(self) -> None:
-        """Hand the rows that wait over to the channels.
-
-        Raises:
-            ValueError: the numbers of a row are not as many as were announced.
-        """
+        """Hand the rows that wait over to the channels."""
         n = len(self._times)
         if not n:
             return
-        tables = (self._vectors[:n], np.array(self._flat(n), np.float64).reshape(n, -1))
+        self._copy_fresh(n)
+        tables = (self._vectors[:n], self._numbers[:n])
         for table, views, at in zip(tables, self._views, self._at, strict=True):
             for place, view in views:
                 view[:n] = table[:, at[place]].reshape(n, *view.shape[1:])
@@ -173,15 +173,10 @@ class RowWriter:
             writer.fill(self._times)
         self.drop()
 
-    def _flat(self, n: int) -> list[float]:
-        """Numbers of the rows that wait, one row after the other, while the vectors are put into their table."""
+    def _copy_fresh(self, n: int) -> None:
+        """Copy the arrays that wait."""
         if self._fresh:
             np.concatenate(self._fresh, axis=None, out=self._vectors[:n].reshape(-1))
-        width = _width(self._at[1])
-        wrong = {len(numbers) for numbers in self._numbers} - {width}
-        if wrong:
-            raise ValueError(f"a row of {min(wrong)} numbers, where there are places for {width}")
-        return list(chain.from_iterable(self._numbers))
 
 
 def _sizes(group: Columns) -> list[tuple[tuple[str, str], int]]:
@@ -249,7 +244,7 @@ class CompiledRows(RowWriter):
         before = kernels.calls(steps)
         if before is None:
             raise TypeError("what a row derives is no kernel")
-        self._table, self._stamps = np.zeros((capacity, numbers)), np.zeros(capacity, dtype=np.int64)
+        self._stamps = np.zeros(capacity, dtype=np.int64)
         self._put = self._bind(kernels, row, places, before)
 
     def _bind(
@@ -270,8 +265,8 @@ class CompiledRows(RowWriter):
             "log_rows_put",
             vectors=self._vectors,
             vectors_width=self._vectors.shape[1],
-            numbers=self._table,
-            numbers_width=self._table.shape[1],
+            numbers=self._numbers,
+            numbers_width=self._announced,
             times=self._stamps,
             before=before,
             values=row,
@@ -309,10 +304,8 @@ class CompiledRows(RowWriter):
         n = len(self._times)
         if not n:
             return
-        numbers = self._flat(n)
-        # Packed: numpy looks at the type of each number first.
-        struct.pack_into(f"{len(numbers)}d", self._table.data, 0, *numbers)
-        struct.pack_into(f"{n}q", self._stamps.data, 0, *self._times)
+        self._copy_fresh(n)
+        self._stamps[:n] = self._times
         self._put(n, self._writers[0].total)
         for writer in self._writers:
             writer.fill(self._times, stamped=True)

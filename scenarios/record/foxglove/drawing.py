@@ -226,10 +226,11 @@ def force_arrow(origin: Array, force: Array) -> tuple[float, ...]:
     if not size > 0.0:
         return (*origin.tolist(), 0.0, 0.0, 0.0, 1.0, 0.0)
     # Half-way rotation from x to the unit force d: q ~ (x cross d, 1 + x . d); straight back turns about z.
-    w = 1.0 + x / size
-    turn = (0.0, 0.0, 1.0, 0.0) if w < 1e-9 else (0.0, -z / size, y / size, w)
-    norm = math.sqrt(sum(part * part for part in turn))
-    return (*origin.tolist(), *(part / norm for part in turn), METRES_PER_NEWTON * size)
+    y, z, w = -z / size, y / size, 1.0 + x / size
+    if w < 1e-9:
+        y, z, w = 0.0, 1.0, 0.0
+    norm = math.sqrt(y * y + z * z + w * w)
+    return (*origin.tolist(), 0.0, y / norm, z / norm, w / norm, METRES_PER_NEWTON * size)
 
 
 class Outlines:
@@ -248,22 +249,25 @@ class Outlines:
 
     def update(self, plan: WalkPlan) -> None:
         """Take over a plan; a footstep that is not there shrinks to a point of the last one."""
-        self.ground = min(float(foot.position[2]) for foot in plan.footholds)
+        self.ground = min(foot.position.item(2) for foot in plan.footholds)
         height, polygon = self.ground + LIFT, plan.support_polygon.tolist()
-        vertices = [(x, y, height) for x, y in polygon]
-        vertices += vertices[-1:] * (LOOPS[0][1] - len(polygon))
+        values: list[float] = []
+        for x, y in polygon:
+            values += (x, y, height)
+        values += values[-3:] * (LOOPS[0][1] - len(polygon))
         for step in plan.footsteps:
-            vertices += self._outline(step)
-        vertices += vertices[-1:] * (_VERTICES - len(vertices))
-        self.values = [part for vertex in vertices for part in vertex]
+            self._outline(step, values)
+        self.values = values + values[-3:] * (_VERTICES - len(values) // 3)
 
-    def _outline(self, footstep: Footstep) -> list[tuple[float, float, float]]:
-        """Corners of a sole."""
+    def _outline(self, footstep: Footstep, values: list[float]) -> None:
+        """Add the corners of a sole."""
         x, y, z = footstep.position.tolist()
         c, s = math.cos(footstep.yaw), math.sin(footstep.yaw)
-        slope_x, slope_y = (-footstep.normal[:2] / footstep.normal[2]).tolist()
-        offsets = [(c * a - s * b, s * a + c * b) for a, b in self._corners]
-        return [(x + u, y + v, z + slope_x * u + slope_y * v + LIFT) for u, v in offsets]
+        across, along, up = footstep.normal.tolist()
+        slope_x, slope_y = -across / up, -along / up
+        for a, b in self._corners:
+            u, v = c * a - s * b, s * a + c * b
+            values += (x + u, y + v, z + slope_x * u + slope_y * v + LIFT)
 
 
 FINEST = 2.0**-14

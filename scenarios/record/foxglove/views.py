@@ -252,10 +252,10 @@ class BodyView:
         """Contact forces and push as arrows."""
         levers = self._levers
         levers[:, :, 0] = m.wrench[:, :3]
-        for foot in (0, 1):
-            x, y = centre_of_pressure(m.wrench[foot])
-            levers[foot, :2, 1] = (0.0, 0.0) if x != x else (x, y)
-        left, right = np.matmul(terms.sole_rotation, levers).transpose(0, 2, 1)
-        origins = terms.sole_position
+        for lever, wrench in zip(levers, m.wrench, strict=True):
+            x, y = centre_of_pressure(wrench)
+            lever[:2, 1] = (0.0, 0.0) if x != x else (x, y)
+        turned = np.matmul(terms.sole_rotation, levers)
+        left, right = turned[:, :, 1] + terms.sole_position
         push = force_arrow(self._poses.position[self._torso], m.external_force)
-        return (*force_arrow(origins[0] + left[1], left[0]), *force_arrow(origins[1] + right[1], right[0]), *push)
+        return (*force_arrow(left, turned[0, :, 0]), *force_arrow(right, turned[1, :, 0]), *push)

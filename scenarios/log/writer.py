@@ -1,6 +1,5 @@
 """Writes a log: what the run was first, then a chunk of messages every few hundredths of a simulated second."""
 
-import zlib
 from collections import deque
 from collections.abc import Iterator, Mapping, Sequence
 from functools import lru_cache
@@ -13,7 +12,7 @@ from mcap.records import Attachment, Channel, Chunk, Header, Metadata, Schema
 from surefoot.native.library import library
 from surefoot.scenarios.errors import LogError
 from surefoot.scenarios.log.channel import ChannelWriter, Clock, MessageWriter, Waiting
-from surefoot.scenarios.log.encoding import MAGIC, Summary, chunk_head, compress, encoded
+from surefoot.scenarios.log.encoding import MAGIC, Checksum, Summary, chunk_head, compress, encoded
 from surefoot.scenarios.log.rows import CompiledRows, RowLayout, RowWriter
 from surefoot.scenarios.log.spec import PACKAGE, ChannelSpec
 from surefoot.scenarios.output import reason
@@ -31,7 +30,7 @@ class Output:
         crc: CRC-32 of the bytes written.
     """
 
-    __slots__ = ("_file", "crc", "path", "position")
+    __slots__ = ("_checksum", "_file", "crc", "path", "position")
 
     def __init__(self, path: Path, beginning: bytes) -> None:
         """Create the file with its beginning.
@@ -41,6 +40,7 @@ class Output:
         """
         self.path = path
         self.position = self.crc = 0
+        self._checksum = Checksum()
         try:
             self._file = path.open("xb", buffering=0)
         except FileExistsError:
@@ -81,7 +81,7 @@ class Output:
         while rest:
             rest = rest[self._file.write(rest) :]
         self.position += len(data)
-        self.crc = zlib.crc32(data, self.crc)
+        self.crc = self._checksum(data, self.crc)
 
     def _set_aside(self) -> Path:
         """Cut off the record that did not fit and take away the name of a log, if the other name is free."""
@@ -167,7 +167,7 @@ class LogWriter:
             LogError: the file exists, or cannot be created or written; nothing of that name is then created.
         """
         self.path = path
-        self._compression = compression
+        self._compression, self._checksum = compression, Checksum()
         self._summary = Summary()
         self._channels: list[Waiting] = []
         self._rows: list[RowWriter] = []
@@ -250,7 +250,7 @@ class LogWriter:
         yield
         packed = compress(data, self._compression)
         yield
-        chunk = Chunk(self._compression, packed, end, start, zlib.crc32(data), len(data))
+        chunk = Chunk(self._compression, packed, end, start, self._checksum(data), len(data))
         head = chunk_head(chunk)
         yield
         self._summary.add_chunk(chunk, self._output.position, len(head) + len(chunk.data), indexes)

@@ -64,7 +64,8 @@ class RowLayout:
         more_vectors: name and size of vectors that only `derive` needs; they come after the others.
         more_numbers: names of numbers that only `derive` needs; they come after the others.
         compiled: gives a kernel that does what `derive` does, to one row.
-        fresh: whether nobody writes into a row's vectors any more: they are copied when the chunk is due.
+        fresh: whether nobody writes into a row's vectors any more, which have one axis: they are copied when the chunk
+            is due.
         at: columns of the fields of `vectors` in what vectors make up; side by side in their order if None.
         standing: whether most vectors of a row are the very arrays of the row before, whose memory kernels then read.
     """
@@ -176,7 +177,7 @@ class RowWriter:
     def _copy_fresh(self, n: int) -> None:
         """Copy the arrays that wait."""
         if self._fresh:
-            np.concatenate(self._fresh, axis=None, out=self._vectors[:n].reshape(-1))
+            np.concatenate(self._fresh, out=self._vectors[:n].reshape(-1))
 
 
 def _sizes(group: Columns) -> list[tuple[tuple[str, str], int]]:

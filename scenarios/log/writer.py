@@ -247,12 +247,12 @@ class LogWriter:
             indexes.append((channel.channel_id, index))
             offset += len(block)
         data = b"".join(blocks)
+        crc = self._checksum(data)  # while the bytes are near
         yield
         packed = compress(data, self._compression)
         yield
-        chunk = Chunk(self._compression, packed, end, start, self._checksum(data), len(data))
+        chunk = Chunk(self._compression, packed, end, start, crc, len(data))
         head = chunk_head(chunk)
-        yield
         self._summary.add_chunk(chunk, self._output.position, len(head) + len(chunk.data), indexes)
         self._output.write(b"".join((head, chunk.data, *(index for _, index in indexes))))
 

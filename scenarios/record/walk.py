@@ -108,7 +108,7 @@ class WalkRecorder:
         self._timing = writer.rows(RowLayout((), ((timing, [field.name for field in timing.spec.fields]),)))
         self._process = writer.channel(channels.process(sizes))
         self._looked = -1
-        self._support = np.zeros((SUPPORT_VERTICES, 2))
+        self._support = np.zeros(2 * SUPPORT_VERTICES)
         self._polygon = b""
         self._rolled = level, rates, position, velocity = np.zeros(6), np.zeros(6), np.zeros(3), np.zeros(3)
         self._roll: Callable[[float, float, float], None] | None = None
@@ -138,9 +138,10 @@ class WalkRecorder:
         vertices = plan.support_polygon
         if (shown := vertices.tobytes()) != self._polygon:
             self._polygon = shown
-            self._support = np.empty((SUPPORT_VERTICES, 2))  # a new one, since rows of the reference have kept the last
-            self._support[: len(vertices)] = vertices
-            self._support[len(vertices) :] = vertices[-1]
+            support = np.empty((SUPPORT_VERTICES, 2))
+            support[: len(vertices)] = vertices
+            support[len(vertices) :] = vertices[-1]
+            self._support = support.ravel()  # a new one, since rows of the reference have kept the last
 
     def touchdown(self, time_ns: int, planned: Footstep, feet: FeetState) -> None:
         """A footstep taken: as last planned, and where the sole is."""

@@ -56,7 +56,7 @@ def test_arrays_that_nobody_writes_into_wait_for_their_chunk(kernels, tmp_path, 
         channel = writer.channel(SPEC)
         row = writer.rows(RowLayout(((channel, ("x", "y")),), ((channel, ("n",)),), fresh=True, at=at))
         for tick, (point, y, n) in enumerate(given):
-            row.append(tick * 2_000_000, (n,), point, y)
+            row.append(tick * 2_000_000, (n,), point, y.ravel())
     channel = read(tmp_path / "log.mcap")["/a"]
     found = [channel.field(name).reshape(200, -1) for name in ("x", "y", "n")]
     np.testing.assert_array_equal(np.hstack(found), [(*point[4:7], *y.ravel(), n) for point, y, n in given])

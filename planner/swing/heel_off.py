@@ -79,6 +79,8 @@ class FootRoll:
 
     def evaluate(self, time: float) -> tuple[float, float, float]:
         """Pitch, its rate and its acceleration [rad, rad/s, rad/s^2]."""
+        if self.scaling is None and not self.start < time < self.end:  # as it is at most ticks
+            return 0.0, 0.0, 0.0
         span, (clock, rate, change) = self.end - self.start, self._clock(time)
         value, slope, bend = bump((clock - self.start) / span)
         speed = self.angle * slope / span

@@ -12,7 +12,6 @@ from surefoot.planner.geometry import frame_rotation
 from surefoot.planner.plan import IN_POINT, PlanSample, WalkPlan
 from surefoot.planner.plan_kernel import POINT
 from surefoot.planner.steps.commands import Command
-from surefoot.planner.swing.heel_off import FootRoll
 from surefoot.planner.types import GRAVITY, CentroidalState, FeetState, Foot, Footstep, SolverStatus
 from surefoot.scenarios.log import LogWriter
 from surefoot.scenarios.log.rows import Place, RowLayout
@@ -34,6 +33,7 @@ _SAMPLED = {
     **{name: _in_point(name, 2) for name in ("zmp", "dcm", "zmp_reference")},
 }
 _POSITION, _VELOCITY = _in_point("swing", 3), _in_point("swing_velocity", 3)
+_LEVEL, _RATES = _in_point("swing", 6), _in_point("swing_velocity", 6)
 _REFERENCE = {
     **_SAMPLED,
     "swing_position": _POSITION,
@@ -110,10 +110,16 @@ class WalkRecorder:
         self._looked = -1
         self._support = np.zeros(2 * SUPPORT_VERTICES)
         self._polygon = b""
-        self._rolled = level, rates, position, velocity = np.zeros(6), np.zeros(6), np.zeros(3), np.zeros(3)
         self._roll: Callable[[float, float, float], None] | None = None
         if kernels := library():
-            self._roll = kernels.bind("roll_centre", level=level, rates=rates, position=position, velocity=velocity)
+            self._point = np.zeros(POINT)
+            self._roll = kernels.bind(
+                "roll_centre",
+                level=self._point[_LEVEL],
+                rates=self._point[_RATES],
+                position=self._point[_POSITION],
+                velocity=self._point[_VELOCITY],
+            )
         self._rolls = sizes.nj > 0  # the ideal feet of a point mass stay level
 
     def planner_state(self, time_ns: int, state: PlannerState) -> None:
@@ -162,7 +168,7 @@ class WalkRecorder:
     def reference(self, time_ns: int, plan: WalkPlan, sample: PlanSample) -> None:
         """The reference of a control tick and the gait's clock; the swing foot's sole is where its roll takes it."""
         phase, roll = plan.phase, plan.roll if self._rolls else None
-        pitch = 0.0 if roll is None else roll.evaluate(sample.time)[0]
+        pitch, rate = (0.0, 0.0) if roll is None else roll.evaluate(sample.time)[:2]
         pitches = (pitch, 0.0) if roll is not None and roll.foot is Foot.LEFT else (0.0, pitch)
         numbers = (
             sample.omega, *pitches, phase.kind, -1 if phase.stance is None else phase.stance, phase.step,
@@ -170,19 +176,14 @@ class WalkRecorder:
         )  # fmt: skip
         point = _point(sample) if sample.point is None else sample.point
         if roll is not None and pitch and roll.foot is sample.swing_foot:
-            point = point.copy()
-            point[_POSITION], point[_VELOCITY] = self._centre(roll, sample)
+            if self._roll is None:
+                point = point.copy()
+                point[_POSITION], point[_VELOCITY] = roll.centre(sample.time, sample.swing, sample.swing_velocity)
+            else:
+                self._point[:] = point
+                self._roll(roll.toe, pitch, rate)
+                point = self._point.copy()
         self._reference.append(time_ns, numbers, point, self._support)
-
-    def _centre(self, roll: FootRoll, sample: PlanSample) -> tuple[Array, Array]:
-        """See `FootRoll.centre`."""
-        if self._roll is None:
-            return roll.centre(sample.time, sample.swing, sample.swing_velocity)
-        pitch, rate, _ = roll.evaluate(sample.time)
-        level, rates, position, velocity = self._rolled
-        level[:], rates[:] = sample.swing, sample.swing_velocity
-        self._roll(roll.toe, pitch, rate)
-        return position, velocity
 
     def timing(self, time_ns: int, timing: TickTiming) -> None:
         """Wall-clock times of the tick, and once a simulated second the state of the process."""

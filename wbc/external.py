@@ -119,20 +119,25 @@ class LoadObserver:
 
     def _compile(self, compiled: CompiledTerms) -> None:
         """Bind the kernels that do what `_moving` and `_end_span` do."""
-        bind, self._filled = compiled.kernels.bind, np.zeros(1, dtype=np.int64)
+        bind, self._knows = compiled.kernels.bind, np.ones(1, dtype=np.int64)
         self._limits = np.array(WEIGHT), np.array(self._kept), np.array(self._sudden)
         share_limits, kept, sudden = self._limits
-        past: dict[str, Any] = {"past": np.zeros((PAST, 6)), "past_count": PAST, "newest": np.zeros(1, dtype=np.int64)}
-        self._add = bind(
-            "load_sums_add", terms=compiled.bound, wrench=self._wrench, felt=self._felt, com=self._com, **past
-        )
-        self._bound_span = span = compiled.kernels.fill(
-            "LoadSpan",
+        sums = compiled.kernels.fill(
+            "LoadSums",
             terms=compiled.bound,
+            wrench=self._wrench,
+            felt=self._felt,
+            com=self._com,
+            past=np.zeros((PAST, 6)),
+            past_count=PAST,
+            newest=np.zeros(1, dtype=np.int64),
+        )
+        span = compiled.kernels.fill(
+            "LoadSpan",
+            sums=sums,
             weight=self._mass * GRAVITY,
             span=self._span,
             ticks=self._ticks,
-            late=0.0,
             spans_count=SPANS,
             latest_count=LATEST,
             most_share=MOST,
@@ -143,15 +148,15 @@ class LoadObserver:
             bound=self._bound,
             push=np.array(self._push, dtype=np.float64),
             most_change=self._most,
-            felt=self._felt,
-            com=self._com,
+            known=self._knows,
+            waits=np.zeros(1, dtype=np.int64),
             momentum=np.zeros(6),
-            **past,
             spans=np.zeros((SPANS, sum(_ROWS))),
-            filled=self._filled,
+            filled=np.zeros(1, dtype=np.int64),
             estimate=self._estimate,
         )
         self._begin, self._end = (bind(name, span) for name in ("load_moving", "load_span_end"))
+        self._add = bind("load_sums_add", sums)
 
     def update(
         self, terms: RobotTerms, wrench: Array, deviation: tuple[float, float] = (0.0, 0.0), age: float = 0.0
@@ -174,7 +179,7 @@ class LoadObserver:
                 return self.load
         self._deviation = deviation
         if self._add is not None:
-            return self._turn_compiled(self._add)
+            return self._turn_compiled()
         self._past.append(self._moving(terms))
         if self._momentum is None:
             self._momentum, self._age = self._past[-1], 0.0
@@ -200,25 +205,20 @@ class LoadObserver:
         then: Array = younger + (late - int(late)) * (older - younger)
         return then
 
-    def _turn_compiled(self, add: Callable[[], None]) -> ExternalLoad:
+    def _turn_compiled(self) -> ExternalLoad:
         """Begin the first span, or end one, by kernels, for the terms that they are bound to."""
+        age, self._age = self._age, 0.0
         if self._count == 0:
             self._begin()
-            self._age = 0.0
             return self.load
-        add()
         self._count = 0
-        self._bound_span.struct.late = self._late_by()
-        if not self._known:
-            self._late = True
-            self._end(False)
-            self._filled[0] = 0
-            return self.load
         if self._deviation != self._wide_for:
             self._wide_for = self._deviation
-            for limits, now in zip(self._limits, self._limits_now(), strict=True):
-                limits[:] = now
-        if self._end(not self._late or int(self._filled[0]) + 1 >= SPANS):
+            self._knows[0] = self._known
+            if self._known:
+                for limits, now in zip(self._limits, self._limits_now(), strict=True):
+                    limits[:] = now
+        if self._end(age):
             self._tell()
         return self.load
 

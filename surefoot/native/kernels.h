@@ -510,11 +510,10 @@ void body_row_derive(const BodyRow *row);
 
 /* Counterpart of the end of a span in `wbc.external.LoadObserver`. */
 typedef struct {
-    const Terms *terms;
+    const LoadSums *sums;
     double weight;
     double span;
     double ticks;
-    double late;
     int64_t spans_count;
     int64_t latest_count;
     double most_share;
@@ -525,19 +524,16 @@ typedef struct {
     const double *bound;
     const double *push;
     const double *most_change;
-    double *felt;
-    double *com;
+    const int64_t *known;
+    int64_t *waits;
     double *momentum;
-    double *past;
-    int64_t past_count;
-    int64_t *newest;
     double *spans;
     int64_t *filled;
     double *estimate;
 } LoadSpan;
 
 void load_moving(const LoadSpan *span);
-int64_t load_span_end(const LoadSpan *span, int64_t follows);
+int64_t load_span_end(const LoadSpan *span, double age);
 
 /* What the planner is told of the feet: counterpart of `RobotTerms.level_soles` and `wbc.zmp.measured_zmp`. */
 typedef struct {

@@ -14,8 +14,9 @@ static void moving(const Terms *terms, double *momentum) {
 
 /* Momentum and moment of momentum about the origin now, where the first span begins. */
 void load_moving(const LoadSpan *span) {
-    moving(span->terms, span->momentum);
-    for (int64_t k = 0; k < span->past_count; k++) memcpy(span->past + 6 * k, span->momentum, 6 * sizeof(double));
+    const LoadSums *sums = span->sums;
+    moving(sums->terms, span->momentum);
+    for (int64_t k = 0; k < sums->past_count; k++) memcpy(sums->past + 6 * k, span->momentum, 6 * sizeof(double));
 }
 
 /* Counterpart of `LoadObserver.update` within a span. */
@@ -32,11 +33,10 @@ void load_sums_add(const LoadSums *sums) {
 }
 
 /* Momenta as they were when the forces acted that the soles tell of now: counterpart of `LoadObserver._then`. */
-static void moved(const LoadSpan *span, double *momentum) {
-    const double late = clamp(span->late, 0.0, span->past_count - 2.0);
-    const int64_t whole = (int64_t)late, newest = span->newest[0] + span->past_count - whole;
-    const double *younger = span->past + 6 * (newest % span->past_count);
-    const double *older = span->past + 6 * ((newest - 1) % span->past_count);
+static void moved(const LoadSums *sums, double late, double *momentum) {
+    const int64_t whole = (int64_t)late, newest = sums->newest[0] + sums->past_count - whole;
+    const double *younger = sums->past + 6 * (newest % sums->past_count);
+    const double *older = sums->past + 6 * ((newest - 1) % sums->past_count);
     for (int i = 0; i < 6; i++) momentum[i] = younger[i] + (late - whole) * (older[i] - younger[i]);
 }
 
@@ -87,21 +87,22 @@ static void follow(const LoadSpan *span) {
     }
 }
 
-/* Holds the forces of a span against its change of momentum, and has the load follow; says whether it did. */
-int64_t load_span_end(const LoadSpan *span, int64_t follows) {
+/* Holds the forces of a span, late by so many ticks, against its change of momentum; says whether it found a load. */
+static int end_span(const LoadSpan *span, double late) {
+    const LoadSums *sums = span->sums;
     double felt[6], com[3], now[6], change[6], turning[3], found[NUMBERS];
-    moved(span, now);
+    moved(sums, late, now);
     /* By how much the CoM was farther back when the forces acted, in the time of a momentum. */
-    const double back = 0.5 * span->late * span->span / (span->ticks * span->terms->model_mass);
+    const double back = 0.5 * late * span->span / (span->ticks * sums->terms->model_mass);
     for (int i = 0; i < 3; i++) {
-        com[i] = span->com[i] / span->ticks - back * (span->momentum[i] + now[i]);
-        span->com[i] = 0.0;
+        com[i] = sums->com[i] / span->ticks - back * (span->momentum[i] + now[i]);
+        sums->com[i] = 0.0;
     }
     for (int i = 0; i < 6; i++) {
-        felt[i] = span->felt[i] / span->ticks;
+        felt[i] = sums->felt[i] / span->ticks;
         change[i] = (now[i] - span->momentum[i]) / span->span;
         span->momentum[i] = now[i];
-        span->felt[i] = 0.0;
+        sums->felt[i] = 0.0;
     }
     const double pressing = change[2] + span->weight, least = span->least_press * span->weight;
     const int known = pressing > least && felt[2] > least;
@@ -119,8 +120,31 @@ int64_t load_span_end(const LoadSpan *span, int64_t follows) {
     else
         span->filled[0]++;
     memcpy(span->spans + NUMBERS * (span->filled[0] - 1), found, sizeof found);
-    if (follows) follow(span);
-    return follows;
+    return 1;
+}
+
+static int is_any(const double *estimate) {
+    for (int i = 0; i < NUMBERS; i++)
+        if (estimate[i] != 0.0) return 1;
+    return 0;
+}
+
+/*
+ * Counterpart of `LoadObserver.update` at the end of a span, whose wrenches are so old in all [s].
+ *
+ * Returns whether the estimate may be another one: it is nothing where it was nothing in most spans.
+ */
+int64_t load_span_end(const LoadSpan *span, double age) {
+    load_sums_add(span->sums);
+    const int found = end_span(span, clamp(age / span->span, 0.0, span->sums->past_count - 2.0));
+    if (!span->known[0]) {
+        span->waits[0] = 1;
+        span->filled[0] = 0;
+    }
+    if (!found || !span->known[0] || (span->waits[0] && span->filled[0] < span->spans_count)) return 0;
+    const int was_any = is_any(span->estimate);
+    follow(span);
+    return was_any || is_any(span->estimate);
 }
 
 /* Where the soles' centres would be if each foot turned level about its toe edge, their yaws, and the ZMP. */

@@ -1,5 +1,6 @@
 """What a scenario can name, and which package brings it; nothing of it is imported to be listed."""
 
+import json
 from collections.abc import Iterator, Mapping
 from typing import Any
 
@@ -60,8 +61,18 @@ def entries(metrics: bool = True) -> Iterator[Entry]:
         yield Entry("campaign", name, OWN_PACKAGE, path.read_text(encoding="utf-8").split("\n", 1)[0].lstrip("# "))
     for kind, registry in _REGISTRIES.items():
         if isinstance(registry, Declared) and (metrics or registry is not METRICS):
-            yield from (Entry(kind, name, OWN_PACKAGE, doc) for name, doc in registry.said.items())
+            yield from (Entry(kind, name, OWN_PACKAGE, doc) for name, doc in _said(registry).items())
         yield from (Entry(kind, name, registry.package(name), "") for name in registry.others())
+
+
+def _said(registry: Declared[Any]) -> Mapping[str, str]:
+    """What is said of each of a registry's own; of metrics, whose modules take long to import, what was said once."""
+    if registry is not METRICS:
+        return registry.said
+    from surefoot.kept import from_sources
+
+    told: dict[str, str] = json.loads(from_sources("metrics", lambda: json.dumps(dict(METRICS.said))))
+    return told
 
 
 def refusals() -> tuple[str, ...]:

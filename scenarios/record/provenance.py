@@ -5,11 +5,12 @@ import itertools
 import json
 import math
 import platform
+import re
 import subprocess
 from collections.abc import Iterator, Mapping
 from dataclasses import asdict, field, fields
 from functools import cache
-from importlib.metadata import PackageNotFoundError, version
+from importlib.metadata import PackageNotFoundError, distribution
 from pathlib import Path
 from types import MappingProxyType
 
@@ -258,6 +259,8 @@ CODE = ("planner", "wbc", "sim", "models", "scenarios", "native")
 READERS = ("scenarios/study/checks", "scenarios/study/paper", "scenarios/show", "scenarios/study/campaigns")
 """Folders of the code, and those in it that only read logs: no run depends on them."""
 
+_VERSION = re.compile(r"^Version: (\S+)$", re.MULTILINE)
+
 ABSENT = "not installed"
 """Version of a package that is not there, as of a source tree that was never installed."""
 
@@ -299,9 +302,12 @@ def source_digest(root: Path) -> str:
 
 def _version(package: str) -> str:
     try:
-        return version(package)
+        found = distribution(package)
     except PackageNotFoundError:
         return ABSENT
+    # Its first lines say it; what reads letters goes through the licences below, too, and takes ten times as long.
+    told = _VERSION.search(found.read_text("METADATA") or "")
+    return told[1] if told else found.version
 
 
 @cache

@@ -20,7 +20,7 @@ LOGS = {"mcap", "google", "lz4", "zstandard"}
 NEVER = {
     "--help": {*ENGINES, *LOGS, "numpy", "pydantic", "yaml"},
     "list": {*ENGINES, *LOGS, "numpy", "pydantic"},
-    "list --json": {*ENGINES, *LOGS},
+    "list --json": {*ENGINES, *LOGS, "numpy", "pydantic"},
     "show walk": {*ENGINES, *LOGS, "numpy", "pydantic", "importlib.metadata"},
     "schema": {*ENGINES, *LOGS, "numpy", "pydantic", "yaml"},
     "run diagonal-walk": {

@@ -1,11 +1,13 @@
 """YAML that a program has written, as the scenario in a log; libyaml, where it is there, reads it ten times as fast."""
 
 import json
+import re
 from functools import cache, lru_cache
-from typing import TYPE_CHECKING
+from typing import TYPE_CHECKING, Any
 
 import yaml
 
+from surefoot.scenarios.errors import ScenarioError
 from surefoot.scenarios.file.source import MAX_VALUES, Composer, Reader, Source, parse
 
 if TYPE_CHECKING:
@@ -23,6 +25,32 @@ def parse_dumped(text: str, name: str) -> Source:
             return parse(text, name)
         return source
     return parse(text, name)
+
+
+def dumped_values(text: str, name: str) -> Any:
+    """The values of `parse_dumped`, which has the arguments and errors; nobody may change them.
+
+    Keys of the first level are read one by one: in log after log of a campaign most are the same.
+    """
+    keys = _KEYS.split(text)
+    try:
+        groups = [_values(part) for part in keys if part]
+    except (ScenarioError, ValueError, RecursionError):
+        return parse_dumped(text, name).value
+    whole = {key: value for group in groups for key, value in group.items()}
+    return whole if 0 < len(whole) == len(groups) <= _MOST_KEYS else parse_dumped(text, name).value
+
+
+_KEYS, _MOST_KEYS = re.compile(r"^(?=[a-z_]+:)", re.MULTILINE), 64
+
+
+@lru_cache(maxsize=256)
+def _values(text: str) -> dict[str, Any]:
+    """The values of one key, with it."""
+    found = parse_dumped(text, "").value
+    if not isinstance(found, dict) or len(found) != 1:
+        raise ValueError("not one key")
+    return found
 
 
 @cache

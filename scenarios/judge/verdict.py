@@ -14,7 +14,7 @@ from pydantic import ValidationError
 from surefoot.scenarios import palette
 from surefoot.scenarios.errors import LogError, Problem, ScenarioError, nearest
 from surefoot.scenarios.file.criteria import Bound
-from surefoot.scenarios.file.dumped import parse_dumped
+from surefoot.scenarios.file.dumped import dumped_values
 from surefoot.scenarios.file.names import unknown
 from surefoot.scenarios.file.schema import Scenario
 from surefoot.scenarios.file.source import decoded
@@ -221,8 +221,8 @@ def _known_part(log: Log) -> tuple[Scenario, list[Problem]]:
     """The scenario of a log, and which of its names nobody knows here."""
     try:
         text = decoded(BytesIO(log.attachments[SCENARIO_FILE]), SCENARIO_FILE)
-        source = parse_dumped(text, SCENARIO_FILE)
-        keys, absent = source.value, unknown(source.value)
+        keys = dumped_values(text, SCENARIO_FILE)
+        absent = unknown(keys)
         # Without its kind the other keys of the ground mean nothing.
         places = [replace(one, key=one.key[:1]) if one.key[0] == "terrain" else one for one in absent]
         return Scenario.model_validate(without(keys, places)), absent

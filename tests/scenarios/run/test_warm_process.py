@@ -12,7 +12,7 @@ from surefoot.models.registry import describe
 from surefoot.models.types import RobotOptions
 from surefoot.planner.ground.terrain import flat
 from surefoot.scenarios import catalogue
-from surefoot.scenarios.file.dumped import parse_dumped, scenario_yaml
+from surefoot.scenarios.file.dumped import dumped_values, parse_dumped, scenario_yaml
 from surefoot.scenarios.file.source import apply_overrides, parse
 from surefoot.scenarios.run.run import one_thread
 from surefoot.scenarios.setup import feasible
@@ -115,9 +115,24 @@ def test_a_scenario_is_written_group_by_group_as_in_one_piece_and_read_alike(nam
     assert text == yaml.safe_dump(scenario.model_dump(mode="json", exclude_none=True), sort_keys=False)
     for one in (text, catalogue.text(name)[0]):
         assert parse_dumped(one, "x") == parse(one, "x")
+        assert dumped_values(one, "x") == parse(one, "x").value
 
 
-@pytest.mark.parametrize("text", ["a: {b: 1", "a: 'x", "a: \t1\n", "- !!int 3", "{" * 30, "a: &x [*x]"])
+ODD = [
+    "a: {b: 1",
+    "a: 'x",
+    "a: \t1\n",
+    "- !!int 3",
+    "{" * 30,
+    "a: &x [*x]",
+    "a: &x 1\nb: *x",
+    "a: 1\na: 2",
+    "- 1\na: 2",
+    "",
+]
+
+
+@pytest.mark.parametrize("text", ODD)
 def test_what_no_program_has_written_is_told_of_alike(text):
     def said(read):
         try:
@@ -126,6 +141,7 @@ def test_what_no_program_has_written_is_told_of_alike(text):
             return str(error)
 
     assert said(parse_dumped) == said(parse)
+    assert said(dumped_values) == said(lambda *given: parse(*given).value)
 
 
 def test_one_thread_is_taken_back():

@@ -2,6 +2,7 @@
 
 import math
 from dataclasses import replace
+from functools import partial
 
 import numpy as np
 
@@ -33,17 +34,13 @@ from surefoot.planner.types import (
     CentroidalState,
     FeetState,
     Footstep,
+    PhaseKind,
     PlanStatus,
     SolverStatus,
 )
 from surefoot.values import maker
 
-_a_plan, _a_problem, _a_context, _a_status = (
-    maker(WalkPlan),
-    maker(MotionProblem),
-    maker(StepContext),
-    maker(PlanStatus),
-)
+_a_plan, _a_context, _a_status = maker(WalkPlan), maker(StepContext), maker(PlanStatus)
 
 
 class WalkingPlanner:
@@ -115,6 +112,7 @@ class WalkingPlanner:
         self._region, self._bare = region, not terrain.has_edges
         self._source: CommandSource | None = None
         self._told: tuple[GaitParameters, CommandSource | None] | None = None
+        self._known: tuple[Schedule, Support, Array, float] | None = None
         self.motion: Motion | None = None
 
     @property
@@ -177,11 +175,12 @@ class WalkingPlanner:
         Raises:
             ValueError: the measured CoM or feet are not finite.
         """
-        measured = (*state.com.tolist(), *state.com_velocity.tolist(), *feet.position.flat, *feet.yaw.tolist())
+        body, soles = (*state.com.tolist(), *state.com_velocity.tolist()), feet.position.ravel().tolist()
+        measured = (*body, *soles, *feet.yaw.tolist())
         if not all(map(math.isfinite, measured)):
             raise ValueError(f"The measured CoM or feet are not finite at {state.time:g} s.")
         execution, time = self._execution, state.time
-        execution.advance(feet, self._dcm(state))
+        execution.advance(feet, partial(self._dcm, state))
         self._obey(time)
         execution.fix_imminent(time)
         support, local, window = self._sight(state)
@@ -203,14 +202,15 @@ class WalkingPlanner:
         if adjusted is not None and execution.end_in(adjusted.left, time):
             window = self._window(state, support, local)
             balance = replace(balance, delay=balance.delay + (execution.time_left - left))
-        problem = self._problem(local, feet, support, window, adjusted)
+        free = execution.free
+        problem = self._problem(local, support, window, step, adjusted, free)
         # TVMPC, or the law that stands in its place.
         motion = self.motion = self._law.plan(problem)
         shifts = motion.shifts @ support.rotation.T
-        footsteps = execution.upcoming(time, shifts)
+        footsteps = execution.upcoming(time, free, shifts)
         catching = execution.catching
-        if execution.free[0] or catching:
-            shift = shifts[0] if execution.free[0] else balance.shift
+        if free[0] or catching:
+            shift = shifts[0] if free[0] else balance.shift
             balance = Balance(balance.planned, balance.movable, shift, balance.delay, balance.outside, catching)
         if execution.phase.swing_foot is not None:
             execution.swing_to(footsteps[0], time, feet, motion.solver is SolverStatus.HELD)
@@ -283,34 +283,41 @@ class WalkingPlanner:
         )
 
     def _problem(
-        self, local: Array, feet: FeetState, support: Support, window: Window, adjusted: StepBounds | None
+        self,
+        local: Array,
+        support: Support,
+        window: Window,
+        step: StepProblem | None,
+        adjusted: StepBounds | None,
+        free: tuple[bool, bool],
     ) -> MotionProblem:
-        jerk = np.zeros((self.parameters.horizon + 1, 2))
-        if self._plan is not None:
-            jerk[:-1] = self._plan.jerk @ support.rotation
-        return _a_problem(
-            state=local,
-            stiffness=window.stiffness,
-            omega=window.omega,
-            reference=window.driving,
-            steps=self._step_context(support, feet, adjusted),
-            last_jerk=jerk[0],
-            fallback=jerk[1:],
-            rotation=support.rotation,
-        )
+        before = np.zeros((self.parameters.horizon, 2)) if self._plan is None else self._plan.jerk
+        ahead = window.stiffness, window.omega, window.driving
+        steps = self._step_context(support, step, adjusted, free)
+        return MotionProblem.after(before, local, ahead, steps, support.rotation)
 
-    def _step_context(self, support: Support, feet: FeetState, adjusted: StepBounds | None) -> StepContext:
-        execution, schedule, phase = self._execution, self._execution.schedule, self._execution.phase
-        landed, swing, increment = execution.landed, phase.swing_foot, np.zeros((2, 2))
-        places = schedule.positions[schedule.index(landed) :][:3, :2]
-        ahead = (places[1:] - places[:-1]) @ support.rotation
-        increment[: len(ahead)] = ahead
-        side, left, transfer = schedule.step(landed).place.foot.other.side, 0.0, 0.0
-        here = None if swing is None else (feet.position[swing, :2] - support.origin) @ support.rotation
-        if swing is not None:
-            left, transfer = execution.time_left, schedule.step(phase.step).double * self.parameters.sample_time
-        bounds = self._recovery.bounds(increment, here, left, adjusted)
-        return _a_context(increment, (side, -side), execution.free, here, left, transfer, *bounds)
+    def _step_context(
+        self, support: Support, step: StepProblem | None, adjusted: StepBounds | None, free: tuple[bool, bool]
+    ) -> StepContext:
+        execution, here, left, transfer = self._execution, None, 0.0, 0.0
+        increment, side = self._increments(support)
+        if step is not None and execution.phase.kind is PhaseKind.SINGLE:
+            double = execution.schedule.step(execution.phase.step).double
+            here, left, transfer = step.swing[0], execution.time_left, double * self.parameters.sample_time
+        bounds = self._recovery.bounds(increment, free, here, left, adjusted)
+        return _a_context(increment, (side, -side), free, here, left, transfer, *bounds)
+
+    def _increments(self, support: Support) -> tuple[Array, float]:
+        """Displacements of the next two footsteps, shape (2, 2) [m], and side of the first; they stay as steps do."""
+        execution, schedule, known = self._execution, self._execution.schedule, self._known
+        if known is None or known[0] is not schedule or known[1] is not support:
+            landed, increment = execution.landed, np.zeros((2, 2))
+            places = schedule.positions[schedule.index(landed) :][:3, :2]
+            ahead = (places[1:] - places[:-1]) @ support.rotation
+            increment[: len(ahead)] = ahead
+            side = schedule.step(landed).place.foot.other.side
+            self._known = known = schedule, support, increment, side
+        return known[2], known[3]
 
     def _local_state(self, state: CentroidalState, support: Support) -> Array:
         """Position and velocity as measured, acceleration as the last plan had it for now."""

@@ -11,7 +11,7 @@ import numpy as np
 
 from surefoot.planner.geometry import quintic
 from surefoot.planner.types import Array
-from surefoot.values import dataclass
+from surefoot.values import dataclass, maker
 
 CLOCK_ROUNDING = 1e-9
 """Instants on the clock are sums of durations and are compared with this tolerance [samples]."""
@@ -114,7 +114,7 @@ class TimeScaling:
     def advanced(self) -> "TimeScaling":
         """The clock one tick later."""
         quintic = self.way, self.length, self.coefficients
-        return TimeScaling(self.sample_time, self.after(1.0), self.ticks + 1, self.begun, self.elapsed + 1.0, *quintic)
+        return _a_scaling(self.sample_time, self.after(1.0), self.ticks + 1, self.begun, self.elapsed + 1.0, *quintic)
 
     def showing(self, instant: float) -> "TimeScaling":
         """The clock that shows an instant and goes on from there at its own rate [samples]; its course is another."""
@@ -130,3 +130,6 @@ class TimeScaling:
         way, rate, bend = (powers[:, : 6 - k] @ c for k, c in enumerate(ways))
         over = time > self.length
         return way + (time - inside), np.where(over, 1.0, rate), np.where(over, 0.0, bend)
+
+
+_a_scaling = maker(TimeScaling)

@@ -37,9 +37,10 @@ class Recovery:
 
     def steps_out(self, local: Array, window: Window) -> bool:
         """Insert a step of a robot that stands and would fall, or stands astride; says whether."""
-        execution, schedule, now = self._execution, self._execution.schedule, self._execution.clock.now
-        if self.adjustment is None or not execution.adapts or execution.leads_to or not schedule.stops(now):
+        execution = self._execution
+        if not execution.stops or self.adjustment is None or not execution.adapts or execution.info.leads_to:
             return False
+        schedule, now = execution.schedule, execution.clock.now
         numbers, standing = self._parameters.recovery, execution.phase.kind is PhaseKind.STAND
         error = self._capture_point(local, window)[1] - self._planned.nominal(window)
         if (np.abs(error) <= numbers.stand_share * window.driving.half_size[-1]).all():
@@ -169,21 +170,29 @@ class Recovery:
         execution.adapted |= adjusted is not None
         return adjusted
 
-    def bounds(self, increment: Array, here: Array | None, left: float, adjusted: StepBounds | None) -> Shifts:
+    def bounds(
+        self,
+        increment: Array,
+        free: tuple[bool, bool],
+        here: Array | None,
+        left: float,
+        adjusted: StepBounds | None,
+    ) -> Shifts:
         """Where the next two footsteps may land.
 
         Args:
             increment: their nominal displacements from the foothold before, in the plan frame, shape (2, 2) [m].
+            free: whether each of them may be shifted.
             here: position of the swing foot from the stance foot, shape (2,) [m], or None when no foot swings.
             left: time until the first of them lands [s].
             adjusted: what is made of the next one.
         """
         execution, schedule, landed = self._execution, self._execution.schedule, self._execution.landed
-        stance, free, legs = schedule.step(landed).place, execution.free, execution.legs
+        if execution.legs is not None and adjusted is None and not execution.adapted:
+            return unshifted(free)
+        stance, legs = schedule.step(landed).place, execution.legs
         if legs is None:
             return reachable_shifts(self._parameters, increment, stance.foot.other.side, free, here, left)
-        if adjusted is None and not execution.adapted:
-            return unshifted(free)
         boxes = np.stack((increment, increment), axis=1)
         for n, step in enumerate(schedule.after(landed)[:2] if execution.adapted else ()):
             room = increment[n] + room_left(step, stance, self._parameters.recovery.parallel)

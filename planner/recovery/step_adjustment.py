@@ -28,6 +28,7 @@ boxes and the legs' reach in turn. So times and boxes are enumerated, all at onc
 docs/recovery.md has every formula.
 """
 
+import math
 from dataclasses import replace
 from functools import lru_cache
 
@@ -41,9 +42,10 @@ from surefoot.planner.recovery.compiled import CompiledAdjustment, CompiledOutlo
 from surefoot.planner.references.window import Window
 from surefoot.planner.steps.execution import Execution
 from surefoot.planner.steps.step import Step, room_left, shortest_swing
+from surefoot.planner.swing.course import Ground
 from surefoot.planner.swing.leg_reach import LegReach
 from surefoot.planner.types import Array, FeetState, Footstep, PhaseKind
-from surefoot.values import dataclass
+from surefoot.values import dataclass, maker
 
 _NO_GAIN = 1e-9
 """Gain of a step below which it counts as this: one that lands where the window ends does nothing to its DCM [-]."""
@@ -92,37 +94,46 @@ class StepProblem:
             feet: the measured feet.
             frame: its stance foot's, the plan frame: rotation to the world, shape (2, 2), and origin, shape (2,) [m].
         """
-        phase, moving, (rotation, origin) = execution.info, np.zeros(2), frame
+        phase, swing, (rotation, origin) = execution.info, np.zeros((2, 2)), frame
         if not phase.leads_to:
             return None
         schedule, clock, landed = execution.schedule, execution.clock, execution.landed
         step = schedule.step(landed + 1)
-        swings, foot, numbers = phase.kind is PhaseKind.SINGLE, step.place.foot, schedule.ground.parameters.recovery
+        swings, foot = phase.kind is PhaseKind.SINGLE, step.place.foot
         yet = min(1.0, (step.touchdown - clock.now) / step.single)
-        legs = execution.legs
-        shortest = 0.0 if legs is None else shortest_swing(step, legs, numbers.lifting)
+        swing[0] = (feet.position[foot, :2] - origin) @ rotation
         if execution.swing is not None:
-            moving = execution.swing.coefficients(time)[1, :2] @ rotation
-        place, face = _landing_place(step, schedule.step(landed), numbers.parallel)
-        return cls(
+            swing[1] = execution.swing.coefficients(time)[1, :2] @ rotation
+        hips = math.inf if execution.legs is None else execution.legs.acceleration[0]
+        place, face, shortest, crosses = _known(step, schedule.step(landed), schedule.ground, hips)
+        return _a_step(
             place=place,
-            swing=np.array(((feet.position[foot, :2] - origin) @ rotation, moving)),
+            swing=swing,
             double=0.0 if swings else phase.left,
             single=phase.left if swings else step.single * clock.sample_time,
             cycle=schedule.gait.period,
             shortest=yet * shortest,
             face=face,
-            crosses=schedule.may_cross(step.number),
-            last=schedule.stops(clock.now),
+            crosses=crosses,
+            last=execution.stops,
             adapted=execution.adapted,
         )
 
 
+_a_step = maker(StepProblem)
+
+
 @lru_cache(maxsize=2)
-def _landing_place(step: Step, stance: Step, parallel: float) -> tuple[Footstep, Array]:
-    """Place and face of a `StepProblem`, the same from plan to plan; `parallel` as of `room_left`."""
+def _known(step: Step, stance: Step, ground: Ground, hips: float) -> tuple[Footstep, Array, float, bool]:
+    """What of a `StepProblem` is the same from plan to plan: place, face, its whole shortest swing, whether it crosses.
+
+    The hips swing a foot with an acceleration, infinite for legs that nobody knows [m/s^2].
+    """
+    numbers = ground.parameters.recovery
     place = replace(seen_from(stance.place, step.place), yaw=wrap_angle(step.place.yaw - stance.place.yaw))
-    return place, place.position[:2] + room_left(step, stance.place, parallel)
+    face = place.position[:2] + room_left(step, stance.place, numbers.parallel)
+    shortest = 0.0 if hips == math.inf else shortest_swing(step, hips, numbers.lifting)
+    return place, face, shortest, ground.terrain.footholds.crossed(step.lift)
 
 
 @dataclass(frozen=True, slots=True)

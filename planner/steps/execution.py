@@ -1,6 +1,7 @@
 """The execution of a schedule: the clock, the touchdowns that are felt, and the swing that is flown."""
 
 import math
+from collections.abc import Callable
 from copy import copy
 from dataclasses import replace
 
@@ -17,6 +18,9 @@ from surefoot.planner.swing.heel_off import FootRoll
 from surefoot.planner.swing.leg_reach import LegReach, around_stance_leg
 from surefoot.planner.swing.trajectory import LEAST_GLIDE, SwingTrajectory, start_swing
 from surefoot.planner.types import Array, FeetState, Footstep, PhaseInfo, PhaseKind
+from surefoot.values import maker
+
+_a_footstep, _an_info = maker(Footstep), maker(PhaseInfo)
 
 _LEAST_LEFT = 3.0
 """A phase of which less is left, or would be, until its foot is to touch down keeps its time [samples]."""
@@ -53,6 +57,7 @@ class Execution:
         phase: the phase now.
         landed: number of the step that landed last; its foot is the stance foot in single support.
         swing: trajectory of the swing foot; None without one.
+        stops: whether the robot stands, or will with the next step that lands.
         waited: ticks for which the clock has waited for the present touchdown.
         early: the swing foot has landed before its time.
         fixed: the next footstep may not be shifted any more.
@@ -65,19 +70,20 @@ class Execution:
 
     def __init__(self, schedule: Schedule, window: int, legs: LegReach | None = None) -> None:
         self.legs, self._window, parameters = legs, window, schedule.ground.parameters
+        t = parameters.sample_time
         self.landed, self.waited, self.lowering = 0, 0, 0.0
         self.early = self.fixed = self.adapted = False
         self.swing: SwingTrajectory | None = None
-        self.clock = TimeScaling(parameters.sample_time)
+        self.clock = TimeScaling(t)
         # Where footsteps were chosen for the faces that they land on it takes legs that are known to move them.
         self._wide = schedule.ground.terrain.footholds.follow
         self.adapts = parameters.step_adaptation.places and (self._wide or legs is not None)
         self._times = self._wide and legs is not None and parameters.step_adaptation.timing
         self._parameters, self._size, self._terrain = parameters, parameters.size, schedule.ground.terrain
         self._pose = np.repeat([self._size.length, 1.0], 3)
-        self._lead = parameters.touchdown_lead / parameters.sample_time
         self._told: tuple[Phase, TimeScaling, Schedule, PhaseInfo] | None = None
-        self._patience = round(parameters.late_touchdown / parameters.sample_time)
+        self._aimed: Array | None = None  # place for which the swing's target was looked at last
+        self._lead, self._patience = parameters.touchdown_lead / t, round(parameters.late_touchdown / t)
         self.follow(schedule)
 
     def follow(self, schedule: Schedule) -> None:
@@ -86,26 +92,20 @@ class Execution:
         schedule = schedule.extended(now + self._window, now)
         end = schedule.phase(now).end
         self.schedule = schedule.extended(end + self._window, now) if end < math.inf else schedule
-        self.phase = self.schedule.phase(now)
+        self.phase, self.stops = self.schedule.phase(now), self.schedule.stops(now)
 
     @property
     def info(self) -> PhaseInfo:
         """The phase now, in seconds."""
-        told, key = self._told, (self.phase, self.clock, self.schedule)
-        if told is not None and told[0] is key[0] and told[1] is key[1] and told[2] is key[2]:
+        told, phase, t = self._told, self.phase, self._parameters.sample_time
+        if told is not None and told[0] is phase and told[1] is self.clock and told[2] is self.schedule:
             return told[3]
-        phase, t = self.phase, self._parameters.sample_time
         elapsed, duration = (self.clock.now - phase.start) * t, phase.samples * t
-        info = PhaseInfo(phase.kind, phase.stance, phase.step, elapsed, duration, self.leads_to, self.time_left)
-        self._told = *key, info
-        return info
-
-    @property
-    def leads_to(self) -> int:
-        """As of `PhaseInfo`."""
-        phase = self.phase
         follows = phase if phase.stance is not None else self.schedule.phase(phase.end)
-        return follows.step if follows.stance is not None else 0
+        leads_to = follows.step if follows.stance is not None else 0
+        info = _an_info(phase.kind, phase.stance, phase.step, elapsed, duration, leads_to, self.time_left)
+        self._told = phase, self.clock, self.schedule, info
+        return info
 
     @property
     def left(self) -> float:
@@ -145,12 +145,12 @@ class Execution:
             return self.schedule.samples(np.maximum(clock, 0.0))
         return self.schedule.samples(clock, (rate, bend / self._parameters.sample_time))
 
-    def advance(self, feet: FeetState, dcm: Array | None = None) -> None:
+    def advance(self, feet: FeetState, dcm: Callable[[], Array | None] = lambda: None) -> None:
         """Go on by one tick.
 
         Args:
             feet: as measured.
-            dcm: likewise, in the world frame, shape (2,) [m]; None where it is not known yet.
+            dcm: tells it likewise, in the world frame, shape (2,) [m]; None where it is not known yet.
         """
         clock = self.clock.advanced()
         phase, swing = self.phase, self.phase.swing_foot
@@ -182,17 +182,16 @@ class Execution:
         if self.phase.swing_foot is None:
             self.swing = None
 
-    def _lands_short(self, feet: FeetState, dcm: Array | None) -> bool:
+    def _lands_short(self, feet: FeetState, tell_dcm: Callable[[], Array | None]) -> bool:
         """Whether the DCM is beyond the swing foot on its own side as it lands; nothing is on it yet, so it goes on.
 
         The other foot would have to cross that one to catch the body.
         """
         foot = self.phase.swing_foot
-        if dcm is None or foot is None or not self._times:
+        if foot is None or not self._times or (dcm := tell_dcm()) is None:
             return False
         across = frame_rotation(self.schedule.step(self.landed).place.yaw)[:, 1]
-        beyond = foot.side * float(across @ (dcm - feet.position[foot, :2]))
-        return beyond > float(self.schedule.ground.half_size[1])
+        return foot.side * float(across @ (dcm - feet.position[foot, :2])) > float(self.schedule.ground.half_size[1])
 
     def change(self, gait: GaitParameters, source: StepSource | None, time: float) -> None:
         """Walk on otherwise; what is left of the present phase changes in proportion to its duration.
@@ -262,12 +261,12 @@ class Execution:
     def may_go_again(self) -> bool:
         """Whether the foot that landed last may make the next step as well: the other one is still on the ground."""
         phase, now = self.phase, self.clock.now
-        if not self._times or self.fixed or self.leads_to == 0 or self.schedule.step(self.landed + 1).stop is not None:
+        if not self._times or self.fixed or not self.info.leads_to:
             return False
         rolls = phase.roll is not None and now > phase.roll.start
         # A plan in which it stands lies between its steps, so that it is seen to land.
         stood = phase.kind is PhaseKind.SINGLE or now > phase.start + CLOCK_ROUNDING
-        return self.swing is None and stood and not rolls
+        return self.swing is None and stood and not rolls and self.schedule.step(self.landed + 1).stop is None
 
     def going_again(self) -> "Execution":
         """The execution in which the foot that landed last makes the next step as well, and the weight goes back."""
@@ -282,28 +281,29 @@ class Execution:
         """Go on as another one, which was made of this one in this tick."""
         vars(self).update(vars(other))
 
-    def upcoming(self, time: float, shifts: Array) -> tuple[Footstep, ...]:
+    def upcoming(self, time: float, free: tuple[bool, bool], shifts: Array) -> tuple[Footstep, ...]:
         """The next footsteps.
 
         Args:
             time: now [s].
-            shifts: shifts of the first two from their nominal increments, in the world frame, shape (2, 2) [m].
+            free: whether the first two may be shifted.
+            shifts: shifts of these from their nominal increments, in the world frame, shape (2, 2) [m].
         """
-        planned, ahead, left = [], 0.0, 0.0
-        ways = [*zip(self.free, shifts.tolist(), strict=True), *(_TOLD - len(shifts)) * [(False, [0.0, 0.0])]]
-        for step, (free, way) in zip(self.schedule.after(self.landed), ways, strict=False):
+        planned, ahead, left, ways, t = [], 0.0, 0.0, shifts.tolist(), self._parameters.sample_time
+        for n, step in enumerate(self.schedule.after(self.landed)[:_TOLD]):
             place = step.place
-            (x, y, z), normal = place.position.tolist(), place.normal
-            if not self._wide:
-                ahead = left = 0.0
-            if free:
-                ahead, left = ahead + way[0], left + way[1]
-            x, y = x + ahead, y + left
-            if abs(ahead) + abs(left) > _SAME_GROUND * self._size.length:
-                z = self._terrain.height(x, y)
-                normal = self._terrain.normal(x, y) if self._terrain.has_edges else normal
-            touchdown = time + self.clock.until(step.touchdown) * self._parameters.sample_time
-            planned.append(Footstep(place.foot, np.array([x, y, z]), place.yaw, normal, step.number, touchdown))
+            position, normal = place.position, place.normal
+            x, y = ways[n] if n < len(ways) and free[n] else (0.0, 0.0)
+            ahead, left = (ahead + x, left + y) if self._wide else (x, y)
+            if ahead != 0.0 or left != 0.0:
+                x, y, z = position.tolist()
+                x, y = x + ahead, y + left
+                if abs(ahead) + abs(left) > _SAME_GROUND * self._size.length:
+                    z = self._terrain.height(x, y)
+                    normal = self._terrain.normal(x, y) if self._terrain.has_edges else normal
+                position = np.array([x, y, z])
+            touchdown = time + self.clock.until(step.touchdown) * t
+            planned.append(_a_footstep(place.foot, position, place.yaw, normal, step.number, touchdown))
         return tuple(planned)
 
     def swing_to(self, landing: Footstep, time: float, feet: FeetState, held: bool) -> None:
@@ -315,8 +315,9 @@ class Execution:
             feet: the measured feet, from one of which a swing begins.
             held: keep to the target of before.
         """
-        target, stance = sole_pose(landing.position, landing.yaw, landing.normal), self.schedule.step(self.landed).place
+        stance, place = self.schedule.step(self.landed).place, landing.position
         if self.swing is None:
+            target = sole_pose(place, landing.yaw, landing.normal)
             foot, leaving = landing.foot, self.schedule.step(self.landed - 1).place
             yaw = leaving.yaw + wrap_angle(float(feet.yaw[foot]) - leaving.yaw)
             pose = sole_pose(feet.position[foot], yaw, leaving.normal)
@@ -326,18 +327,17 @@ class Execution:
             unsure = feet.height_deviation, height - self._terrain.height(x, y)
             lifting = math.inf if self.legs is None else self.legs.acceleration[0]  # knees are about as strong as hips
             self.swing = start_swing(foot, pose, target, time, self.left, course, self._parameters, unsure, lifting)
-        else:
+        elif not (self.fixed or held or place is self._aimed):
+            target, self._aimed = sole_pose(place, landing.yaw, landing.normal), place
             target[2] -= self.swing.aim
-            if not (self.fixed or held) and greatest(np.abs(target - self.swing.target) / self._pose) > _SAME_TARGET:
+            if greatest(np.abs(target - self.swing.target) / self._pose) > _SAME_TARGET:
                 # Over edges the foot keeps to the times in which its course clears them.
-                gliding = self.catching
-                self.swing = self.swing.retargeted(time, target, gliding, LEAST_GLIDE * self._size.time)
+                self.swing = self.swing.retargeted(time, target, self.catching, LEAST_GLIDE * self._size.time)
         if self.adapted and self.swing.search.hurry_after > 0.0:
             # While a foot that is to catch the body searches for the ground the DCM goes on away from it.
             self.swing = replace(self.swing, search=replace(self.swing.search, hurry_after=0.0))
         if self.legs is not None:
-            stride = math.dist(landing.position, stance.position)
-            self.lowering = self.legs.lowering(stride) if self.catching else 0.0
+            self.lowering = self.legs.lowering(math.dist(place, stance.position)) if self.catching else 0.0
             self.swing = around_stance_leg(self.swing, stance, self.legs, time, self._parameters.sample_time)
 
     def roll(self, time: float) -> FootRoll | None:

@@ -196,10 +196,6 @@ class Schedule:
         following = self.after(present.step)[: present.stance is not None]
         return any(self.ground.terrain.footholds.edged(step.climb) for step in following)
 
-    def may_cross(self, number: int) -> bool:
-        """Whether a step may land beyond its stance foot, as far as the ground is concerned."""
-        return self.ground.terrain.footholds.crossed(self.step(number).lift)
-
     def apart(self, number: int) -> tuple[Array, Array]:
         """Way to where a step landed from where the one before it did, and nominally, shape (2,) each [m]."""
         step, other = self.step(number), self.step(number - 1)

@@ -13,7 +13,6 @@ from surefoot.planner.steps.footsteps import Path
 from surefoot.planner.steps.gait import WEIGHT_SHIFT, GaitParameters, in_samples
 from surefoot.planner.swing.course import Ground, swing_course
 from surefoot.planner.swing.heel_off import LEVEL_AGAIN, RollSpan, roll_span, rolls
-from surefoot.planner.swing.leg_reach import LegReach
 from surefoot.planner.swing.quintics import PEAK
 from surefoot.planner.swing.step_region import check_reach
 from surefoot.planner.swing.trajectory import SwingCourse, SwingTrajectory, start_swing
@@ -301,9 +300,9 @@ def turned_room(room: Array, angle: float, parallel: float) -> Array:
     return np.array([-half[0], half[1]])
 
 
-def shortest_swing(step: Step, legs: LegReach, lifting: float) -> float:
-    """Shortest time in which body, with an acceleration [m/s^2], and foot can come to the height of a step [s]."""
-    return math.sqrt(max(PEAK * abs(step.lift) / lifting, step.hardest / legs.acceleration[0]))
+def shortest_swing(step: Step, hips: float, lifting: float) -> float:
+    """Shortest time in which foot and body, with an acceleration each [m/s^2], can come to the height of a step [s]."""
+    return math.sqrt(max(PEAK * abs(step.lift) / lifting, step.hardest / hips))
 
 
 def _hardest(swing: SwingTrajectory, way: float) -> float:

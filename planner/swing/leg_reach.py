@@ -216,12 +216,13 @@ def around_stance_leg(
     """
     if swing.bent or time >= swing.glide_end:
         return swing
-    rotation, origin, side = frame_rotation(stance.yaw), stance.position[:2], swing.foot.side
-    times = np.arange(max(time, swing.start_time), swing.glide_end + 0.5 * sample_time, sample_time)
-    (u, v), (left_x, left_y) = origin.tolist(), rotation[:, 1].tolist()
-    ends = (swing.place(instant) for instant in times[[0, -1]].tolist())
-    if all(side * (left_x * (x - u) + left_y * (y - v)) >= 0.0 for x, y in ends):
+    first, end, side = max(time, swing.start_time), swing.glide_end + 0.5 * sample_time, swing.foot.side
+    last = first + (math.ceil((end - first) / sample_time) - 1) * sample_time
+    (u, v, _), left_x, left_y = stance.position.tolist(), -side * math.sin(stance.yaw), side * math.cos(stance.yaw)
+    (x, y), (z, w) = swing.places(first, last)
+    if left_x * (x - u) + left_y * (y - v) >= 0.0 and left_x * (z - u) + left_y * (w - v) >= 0.0:
         return swing  # as nearly all of them: beside its stance foot at both ends
+    rotation, origin, times = frame_rotation(stance.yaw), stance.position[:2], np.arange(first, end, sample_time)
     way = (swing.positions(times)[:, :2] - origin) @ rotation
     corner = legs.turned(wrap_angle(float(swing.target[3]) - stance.yaw)).corner(way, side)
     if corner is None:

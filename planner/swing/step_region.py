@@ -1,6 +1,7 @@
 """Where a footstep may land whatever the legs: the region of commanded steps, and the paper's reachable area."""
 
 import math
+from functools import cache
 
 import numpy as np
 
@@ -145,10 +146,14 @@ def shifts_within(boxes: Array, increment: Array, free: tuple[bool, bool]) -> Sh
     return lower, upper
 
 
+@cache
 def unshifted(free: tuple[bool, bool]) -> Shifts:
     """Those of footsteps that stay where they are."""
-    bounds = [[0.0, 0.0] if moves else [_UNUSED, _UNUSED] for moves in free]
-    return -np.array(bounds), np.array(bounds)
+    bounds = np.array([[0.0, 0.0] if moves else [_UNUSED, _UNUSED] for moves in free])
+    shifts = -bounds, bounds
+    for corner in shifts:
+        corner.flags.writeable = False
+    return shifts
 
 
 def reachable_shifts(

@@ -142,13 +142,16 @@ class SwingTrajectory:
         bends[times >= self.glide_end - TOUCHING] = 0.0
         return bends
 
-    def place(self, time: float) -> tuple[float, float]:
-        """Where a swing that does not bend is at an instant, x and y in plain numbers, which are fast [m]."""
-        if time >= self.touchdown_time - TOUCHING:
-            return float(self.target[0]), float(self.target[1])
-        t = min(max(time - self.start_time, 0.0), self.glide_end - self.start_time)
-        (a, b, c, d, e, f), (u, v, w, x, y, z) = self.level[:, :2].T.tolist()
-        return a + t * (b + t * (c + t * (d + t * (e + t * f)))), u + t * (v + t * (w + t * (x + t * (y + t * z))))
+    def places(self, *times: float) -> list[tuple[float, float]]:
+        """Where a swing that does not bend is at instants, x and y in plain numbers, which are fast [m]."""
+        (a, u, *_), (b, v, *_), (c, w, *_), (d, x, *_), (e, y, *_), (f, z, *_) = self.level.tolist()
+        found, lasting = [], self.glide_end - self.start_time
+        for time in times:
+            t = min(max(time - self.start_time, 0.0), lasting)
+            here = a + t * (b + t * (c + t * (d + t * (e + t * f)))), u + t * (v + t * (w + t * (x + t * (y + t * z))))
+            landed = time >= self.touchdown_time - TOUCHING
+            found.append((float(self.target[0]), float(self.target[1])) if landed else here)
+        return found
 
     def retargeted(
         self, time: float, target: Array, gliding: bool = False, least: float = LEAST_GLIDE

@@ -96,7 +96,8 @@ def test_a_climb_is_hurried_no_more_than_body_and_foot_can_be(stand, direction, 
     terrain, legs = flight(direction), replace(LEGS, acceleration=(30.0, 25.0))
     schedule = laid(STAIRS, stand, terrain)
     order = schedule.step(step)
-    usual, quickest = STAIRS.single_support - PlannerParameters().touchdown_lead, shortest_swing(order, legs, LIFTING)
+    usual = STAIRS.single_support - PlannerParameters().touchdown_lead
+    quickest = shortest_swing(order, legs.acceleration[0], LIFTING)
     poses = [
         sole_pose(place.position, place.yaw, place.normal) for place in (schedule.step(step - 2).place, order.place)
     ]
@@ -130,4 +131,4 @@ def test_the_room_of_a_step_is_counted_from_where_it_now_is_to_land(stand):
 @pytest.mark.parametrize(("direction", "may"), [(Direction.UP, 5 * [True]), (Direction.DOWN, [*(4 * [False]), True])])
 def test_no_foot_crosses_one_that_lets_the_body_down_which_the_last_step_of_a_flight_does_not(stand, direction, may):
     schedule = laid(STAIRS, stand, flight(direction))
-    assert [schedule.may_cross(number) for number in range(1, 6)] == may
+    assert [schedule.ground.terrain.footholds.crossed(schedule.step(number).lift) for number in range(1, 6)] == may

@@ -197,6 +197,6 @@ def test_quick_looks_at_a_swing_see_what_it_does(bent):
     seen = np.array([trajectory.evaluate(time) for time in times.tolist()])
     np.testing.assert_allclose(trajectory.bends(times), seen[:, 2, :2], atol=1e-9)
     if not bent:
-        places = [trajectory.place(time) for time in times.tolist()]
+        places = trajectory.places(*times.tolist())
         np.testing.assert_allclose(places, seen[:, 0, :2], atol=1e-12)
-        assert trajectory.place(3.0) == tuple(trajectory.target[:2])
+        assert trajectory.places(3.0) == [tuple(trajectory.target[:2])]

@@ -1,13 +1,15 @@
 """Soft TVMPC with the footsteps as variables of the QP (Herdt et al., 2010): profiles `default` and `lti`."""
 
 import math
+from collections.abc import Callable, Sequence
 from dataclasses import replace
+from typing import Any
 
 import numpy as np
 
 from surefoot.native.library import Block, Library, library
 from surefoot.planner.laws.law import BuiltQps, Motion, MotionProblem, StepContext
-from surefoot.planner.laws.qp import AxesSolver, Qp, QpSolution
+from surefoot.planner.laws.qp import AxesSolver, Qp, QpSolution, bind_qps
 from surefoot.planner.model.dcm import (
     NominalMotion,
     bind_motion,
@@ -180,15 +182,26 @@ class FootstepTvmpc:
         if kernels is not None and not math.isfinite(parameters.jerk_rate_limit):
             self._compiled = _CompiledQps(kernels, parameters, self._prediction)
             self._solver.prepare(*self._compiled.shape)
+        # A subclass may have steps of its own.
+        own = all(getattr(type(self), step) is getattr(FootstepTvmpc, step) for step in ("build", "solve", "interpret"))
+        self._at_once = self._compiled if own and self._solver.compiled else None
 
     def plan(self, problem: MotionProblem) -> Motion:
-        """See `MotionPlanner`."""
+        """See `MotionPlanner`; a kernel does the three steps at once unless it solves one of the QPs not."""
+        if self._at_once is not None and self._at_once.holds(problem):
+            motion = self._at_once.plan(self._as_seen(problem))
+            if motion is not None:
+                return motion
         built = self.build(problem)
         return self.interpret(problem, built, self.solve(built))
 
+    def _as_seen(self, problem: MotionProblem) -> MotionProblem:
+        """The problem as the law takes it."""
+        return problem
+
     def build(self, problem: MotionProblem) -> BuiltQps:
         """See `QpLaw`; the QPs count from the nominal motion."""
-        p = self._parameters
+        p, problem = self._parameters, self._as_seen(problem)
         if self._compiled is not None and self._compiled.holds(problem):
             return self._compiled.build(problem)
         nominal = self._nominal(problem)
@@ -224,8 +237,28 @@ class FootstepTvmpc:
         return nominal_motion(problem.state[:, 0], zmp, problem.stiffness, t)
 
 
+def _axes(P: Array, q: Array, G: Array, h: Array, lower: Array, upper: Array, *_: Array) -> tuple[Qp, Qp]:
+    """Problems that share P and G, of which the other arrays have a row for each axis."""
+    return Qp(P, q[0], G, h[0], lower[0], upper[0]), Qp(P, q[1], G, h[1], lower[1], upper[1])
+
+
+class _KeptQps(Sequence[Qp]):
+    """The QPs of both axes, which are seen in their arrays once somebody looks at them."""
+
+    def __init__(self, told: Callable[[], list[Array]]) -> None:
+        self._told = told
+        self._axes: tuple[Qp, ...] = ()
+
+    def __len__(self) -> int:
+        return 2
+
+    def __getitem__(self, axis: Any) -> Any:
+        self._axes = self._axes or _axes(*self._told())
+        return self._axes[axis]
+
+
 class _CompiledQps:
-    """Arrays of the kernel that builds what `FootstepTvmpc.build` does.
+    """Arrays of the kernels that do what `FootstepTvmpc.build` and `FootstepTvmpc.plan` do.
 
     Attributes:
         shape: rows and variables of each QP.
@@ -244,8 +277,8 @@ class _CompiledQps:
         motion, own = bind_motion(kernels, p.sample_time, most, jerk=jerk)
         self._position, self._stiffness, self._zmp = own["position"], own["stiffness"], own["zmp"]
         numbers = ("jerk_limit", "jerk_weight", "step_weight", "terminal_weight", "terminal_margin")
-        self._run = kernels.bind(
-            "footstep_qps_make",
+        qps = kernels.fill(
+            "FootstepQps",
             motion=motion,
             horizon=p.horizon,
             moves=m,
@@ -266,21 +299,35 @@ class _CompiledQps:
             lower=lower,
             upper=upper,
         )
+        self._run, self._answer = kernels.bind("footstep_qps_make", qps), Block((p.horizon, 2), (2, 2), (2, 2))
+        x, y = bind_qps(kernels, [(axis, np.zeros(size)) for axis in _axes(P, q, G, h, lower, upper)])
+        answer: dict[str, Any] = dict(zip(("jerk", "shifts", "slack"), self._answer.arrays, strict=True))
+        self._plan = kernels.bind("footstep_motion_make", qps=qps, x=x, y=y, **answer)
 
     def holds(self, problem: MotionProblem) -> bool:
         """Whether the window of a problem is no longer than that of its planner."""
         return len(problem.stiffness) <= len(self._stiffness)
 
+    def plan(self, problem: MotionProblem) -> Motion | None:
+        """The motion; None where the kernel does not solve an axis."""
+        if self._plan(self._tell(problem)):
+            return None
+        jerk, shifts, slack = self._answer.copied()
+        return Motion(jerk, shifts, slack[0], slack[1], qps=_KeptQps(self._block.kept()))
+
     def build(self, problem: MotionProblem) -> BuiltQps:
+        self._run(self._tell(problem))
+        *arrays, jerk = self._block.copied()
+        return BuiltQps(_axes(*arrays), jerk[: self._horizon], _UNSHIFTED)
+
+    def _tell(self, problem: MotionProblem) -> int:
+        """Let the kernels look at a problem; says how many samples it has."""
         n, reference, steps = len(problem.stiffness), problem.reference, problem.steps
         self._state[:], self._position[:] = problem.state, problem.state[:, 0]
         self._stiffness[:n], self._omega[:n] = problem.stiffness, problem.omega
         self._zmp[:n], self._gain[:n], self._half_size[:n] = reference.point, reference.gain, reference.half_size
         self._lower[:], self._upper[:] = steps.lower, steps.upper
-        self._run(n)
-        P, q, G, h, lower, upper, jerk = self._block.copied()
-        axes = Qp(P, q[0], G, h[0], lower[0], upper[0]), Qp(P, q[1], G, h[1], lower[1], upper[1])
-        return BuiltQps(axes, jerk[: self._horizon], _UNSHIFTED)
+        return n
 
 
 class ConstantHeightTvmpc(FootstepTvmpc):
@@ -295,8 +342,7 @@ class ConstantHeightTvmpc(FootstepTvmpc):
         super().__init__(parameters, com_height)
         self._stiffness = softening(parameters.leg) * GRAVITY / com_height
 
-    def build(self, problem: MotionProblem) -> BuiltQps:
-        """See `QpLaw`."""
+    def _as_seen(self, problem: MotionProblem) -> MotionProblem:
         stiffness = np.full_like(problem.stiffness, self._stiffness)
         omega = np.full_like(problem.omega, math.sqrt(self._stiffness))
-        return super().build(replace(problem, stiffness=stiffness, omega=omega))
+        return replace(problem, stiffness=stiffness, omega=omega)

@@ -5,6 +5,7 @@ makes it. Laws that solve QPs do so in three public steps, `build`, `solve` and 
 at and tested without the others.
 """
 
+from collections.abc import Sequence
 from dataclasses import field
 from typing import TYPE_CHECKING, Any, Protocol
 
@@ -127,7 +128,7 @@ class Motion:
     terminal_slack: Array
     solver: SolverStatus = SolverStatus.SOLVED
     infeasible: bool = False
-    qps: tuple[Qp, ...] = ()
+    qps: Sequence[Qp] = ()
 
 
 class MotionPlanner(Protocol):

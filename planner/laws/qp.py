@@ -1,12 +1,12 @@
 """The QP of one axis, and its solution by the first solver that succeeds."""
 
-from collections.abc import Callable
+from collections.abc import Callable, Sequence
 from typing import TYPE_CHECKING, Any
 
 import daqp
 import numpy as np
 
-from surefoot.native.library import library
+from surefoot.native.library import Bound, Library, library
 from surefoot.planner.parameters import SOLVERS
 from surefoot.planner.types import Array
 from surefoot.values import dataclass
@@ -100,6 +100,11 @@ class AxesSolver:
         self._given: tuple[Array, ...] = ()
         self._run: Callable[[int], int]
 
+    @property
+    def compiled(self) -> bool:
+        """Whether the kernel is asked first."""
+        return self._kernels is not None
+
     def prepare(self, rows: int, variables: int) -> None:
         """Bind the kernel to QPs of a size, which else the first `solve` does."""
         if self._kernels is not None:
@@ -122,28 +127,40 @@ class AxesSolver:
         return solve(qp, self._solvers) if self._run(same) else QpSolution(qp, self._x.copy(), 0)
 
     def _bind(self, rows: int, n: int) -> None:
-        square, self._x = np.zeros((5, n, n)), np.zeros(n)
-        q, lower, upper, multipliers = np.zeros((4, n))
-        self._given = square[0], q, np.zeros((rows, n)), np.zeros(rows), lower, upper
-        given: dict[str, Any] = dict(zip(("P", "q", "G", "h", "lower", "upper"), self._given, strict=True))
+        vectors, self._x = np.zeros((3, n)), np.zeros(n)
+        self._given = np.zeros((n, n)), vectors[0], np.zeros((rows, n)), np.zeros(rows), vectors[1], vectors[2]
         assert self._kernels is not None
-        self._run = self._kernels.bind(
-            "bounded_qp_solve",
+        (bound,) = bind_qps(self._kernels, [(Qp(*self._given), self._x)])
+        self._run = self._kernels.bind("bounded_qp_solve", bound)
+
+
+def bind_qps(kernels: Library, axes: Sequence[tuple[Qp, Array]]) -> list[Bound]:
+    """Structs of QPs of a size with their solutions, which share their scratch and what is made of P and G alone."""
+    rows, n = axes[0][0].G.shape
+    square = np.zeros((4, n, n))
+    scratch = {
+        "factor": square[0],
+        "inverse": square[1],
+        "rotated": square[2],
+        "triangle": square[3],
+        "share": np.zeros(rows),
+        "multipliers": np.zeros(n),
+        "work": np.zeros(4 * n),
+        "active": np.zeros(n, dtype=np.int64),
+        "taken": np.zeros(2 * n + rows, dtype=np.int64),
+    }
+    return [
+        kernels.fill(
+            "BoundedQp",
             variables=n,
             rows=rows,
             tolerance=_TOLERANCE,
-            **given,
-            x=self._x,
-            factor=square[1],
-            inverse=square[2],
-            rotated=square[3],
-            triangle=square[4],
-            share=np.zeros(rows),
-            multipliers=multipliers,
-            work=np.zeros(4 * n),
-            active=np.zeros(n, dtype=np.int64),
-            taken=np.zeros(2 * n + rows, dtype=np.int64),
+            **{name: getattr(qp, name) for name in ("P", "q", "G", "h", "lower", "upper")},
+            x=x,
+            **scratch,
         )
+        for qp, x in axes
+    ]
 
 
 def _wrapped(qp: Qp, name: str) -> Array | None:

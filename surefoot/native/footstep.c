@@ -136,3 +136,25 @@ void footstep_qps_make(const FootstepQps *qps, int64_t samples) {
     write_inequalities(qps, end_box);
     write_bounds(qps);
 }
+
+/* Returns whether an axis was not solved. */
+int64_t footstep_motion_make(const FootstepMotion *motion, int64_t samples) {
+    const FootstepQps *qps = motion->qps;
+    const BoundedQp *axes[2] = {motion->x, motion->y};
+    const int64_t m = qps->moves;
+    footstep_qps_make(qps, samples);
+    for (int axis = 0; axis < 2; axis++) {
+        if (bounded_qp_solve(axes[axis], axis)) return 1;
+        const double *z = axes[axis]->x;
+        for (int64_t move = 0; move < m; move++) {
+            const int64_t end = move + 1 < m ? qps->starts[move + 1] : qps->horizon;
+            for (int64_t k = 2 * qps->starts[move] + axis; k < 2 * end; k += 2)
+                motion->jerk[k] = z[move] + qps->motion->jerk[k];
+        }
+        for (int which = 0; which < 2; which++) {
+            motion->shifts[2 * which + axis] = z[m + which];
+            motion->slack[2 * which + axis] = z[m + SHIFTS + which];
+        }
+    }
+    return 0;
+}

@@ -823,6 +823,19 @@ typedef struct {
 
 void footstep_qps_make(const FootstepQps *qps, int64_t samples);
 
+/* Counterpart of `planner.laws.footstep_tvmpc.FootstepTvmpc.plan`: QPs of both axes, which share what of them depends on
+ * P and G alone, and what their solutions mean. */
+typedef struct {
+    const FootstepQps *qps;
+    const BoundedQp *x;
+    const BoundedQp *y;
+    double *jerk;
+    double *shifts;
+    double *slack;
+} FootstepMotion;
+
+int64_t footstep_motion_make(const FootstepMotion *motion, int64_t samples);
+
 /* Counterpart of `planner.model.jerk.WorldMotion._plain`, whose names these are, over `samples` and the one now. */
 typedef struct {
     double sample_time;

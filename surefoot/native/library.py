@@ -82,6 +82,10 @@ class Block:
         """They in fresh memory."""
         return self._seen(self._memory.copy())
 
+    def kept(self) -> Callable[[], list[NDArray[np.float64]]]:
+        """Tells them in fresh memory, as they are now."""
+        return partial(self._seen, self._memory.copy())
+
     def _seen(self, memory: NDArray[np.float64]) -> list[NDArray[np.float64]]:
         return [memory[part].reshape(shape) for part, shape in self._parts]
 

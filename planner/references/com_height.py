@@ -264,7 +264,7 @@ def preview_height(
     support_height: Array,
     zmp_height: Array,
     length: float = 1.0,
-    transition: Callable[[Array], Array] | None = None,
+    transition: Callable[[Array], Array | None] | None = None,
 ) -> HeightPreview:
     """CoM height and pendulum stiffness of a window, but for the first and the last of its samples.
 
@@ -278,11 +278,11 @@ def preview_height(
         support_height: heights of the support points in sight, shape (m,) [m].
         zmp_height: height of the ground under the ZMP reference, shape (n,) [m].
         length: size of the robot (see `surefoot.similarity`) [-].
-        transition: what is made of the law's height; nothing by default.
+        transition: what takes the place of the law's height, None where that stays; it always stays by default.
     """
     height = profile.height(gait, samples, support_height)[:, 1:-1]
-    if transition is not None:
-        height = transition(height)
+    moved = None if transition is None else transition(height)
+    height = height if moved is None else moved
     pressing, over = preview_limits(profile, length)
     return HeightPreview(height, np.maximum(GRAVITY + height[2], pressing) / np.maximum(height[0] - zmp_height, over))
 

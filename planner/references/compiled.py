@@ -1,6 +1,7 @@
 """The compiled kernels of what a plan sees of the walk ahead, and where they write."""
 
 from collections.abc import Callable
+from functools import partial
 from typing import TYPE_CHECKING, Any, cast
 
 import numpy as np
@@ -27,7 +28,7 @@ from surefoot.planner.types import GRAVITY, Array
 from surefoot.values import maker
 
 if TYPE_CHECKING:
-    from surefoot.planner.references.window import Sight
+    from surefoot.planner.references.window import Beyond, Sight
 
 
 _some_samples, _a_reference, _a_height = maker(PhaseSamples), maker(ZmpReference), maker(HeightPreview)
@@ -68,7 +69,8 @@ class CompiledPreview:
         whole = ("which", "kind", "index", "contacts")
         self._layout = np.dtype([(k, np.int64 if k in whole else np.float64, shape) for k, shape in shapes.items()])
         self._memory, self._course = np.zeros(self._layout.itemsize, np.uint8), np.zeros(9)
-        self._made = np.ndarray((), self._layout, self._memory)
+        self._made, self._window = np.ndarray((), self._layout, self._memory), _window_of(self._layout, self._count)
+        self._height = self._made["height"]
         # A subclass may have a height of its own.
         own = getattr(type(profile), "height", None) is SmoothHeight.height
         self._smooth = cast(SmoothHeight, profile) if own else None
@@ -98,7 +100,9 @@ class CompiledPreview:
         self._make_room(_ROOM)
         self.support_table = CompiledTable(kernels).fill
 
-    def sight(self, execution: Execution, support: Support, moved: Callable[[Execution, Array], Array]) -> "Sight":
+    def sight(
+        self, execution: Execution, support: Support, moved: Callable[[Execution, Array], Array | None]
+    ) -> "Sight":
         """See `ReferencePreview._sight`; the height that `moved` gets is where the kernels read it."""
         clock, steady = execution.clock, execution.clock.steady
         if support is not self._support:
@@ -106,19 +110,25 @@ class CompiledPreview:
         if not steady:
             self._course[:] = clock.begun, clock.elapsed, clock.length, *clock.coefficients
         self._look(steady, clock.now, self._smooth is not None)
-        height = self._made["height"]
         if self._smooth is None:
-            samples = self._samples(execution, self._copy())
-            height[...] = self._profile.height(self._gait, samples, support.heights)[:, 1:-1]
-        found = moved(execution, height)
-        if found is not height:
-            height[...] = found
-        self._weigh()
-        made = self._copy()
+            samples = self._beyond(execution, self._memory.copy())[0]
+            self._height[...] = self._profile.height(self._gait, samples, support.heights)[:, 1:-1]
+        found = moved(execution, self._height)
+        if found is not None:
+            self._height[...] = found
+        if found is not None or self._smooth is None:
+            self._weigh()
+        memory = self._memory.copy()
+        made, height = np.ndarray((), self._window, memory), np.ndarray((), self._layout, memory)["height"]
         reference = _a_reference(made["point"], made["gain"], made["half_size"], made["ground"])
-        preview = _a_height(made["height"], made["stiffness"])
-        samples, stiffness, load = self._samples(execution, made), made["softened"], made["load_left"]
-        return samples, reference, preview, stiffness, made["omega"], load[: self._count]
+        preview, contacts = _a_height(height[:, : self._count], made["stiffness"]), made["contacts"] != 0
+        tell = partial(self._beyond, execution, memory)
+        return reference, preview, made["softened"], made["omega"], made["load_left"], contacts, tell
+
+    def _beyond(self, execution: Execution, memory: NDArray[Any]) -> "Beyond":
+        """The walk at all samples that are looked at, which few plans need to know."""
+        made = np.ndarray((), self._layout, memory)
+        return self._samples(execution, made), made["point"], _a_height(made["height"], made["stiffness"])
 
     def _turn_to(self, execution: Execution, support: Support) -> None:
         """Look at other steps from now on."""
@@ -144,10 +154,6 @@ class CompiledPreview:
         self._room, self._sight = size, self._kernels.fill("Sight", phases=0, first=0, points=0, **self._rows)
         self._bound.point(sight=self._sight)
 
-    def _copy(self) -> Any:
-        """What the kernels have made, by name, in memory of its own."""
-        return np.ndarray((), self._layout, self._memory.copy())
-
     def _samples(self, execution: Execution, made: Any) -> PhaseSamples:
         return _some_samples(
             phases=execution.schedule.phases,
@@ -164,6 +170,20 @@ class CompiledPreview:
             sample_time=self._sample_time,
             first=execution.schedule.first_support,
         )
+
+
+def _window_of(layout: np.dtype[Any], count: int) -> np.dtype[Any]:
+    """The samples of the window in arrays of all that is looked at, of which the contacts have one before it."""
+    names = "point", "gain", "half_size", "ground", "stiffness", "softened", "omega", "load_left", "contacts"
+    kinds, fields = [layout[name] for name in names], dict(layout.fields or {})
+    return np.dtype(
+        {
+            "names": names,
+            "formats": [(kind.base, (count, *kind.shape[1:])) for kind in kinds],
+            "offsets": [fields[name][1] + (name == "contacts") * 2 * layout[name].base.itemsize for name in names],
+            "itemsize": layout.itemsize,
+        }
+    )
 
 
 class CompiledTable:

@@ -106,11 +106,13 @@ class Window:
 
 _a_window, _a_reference = maker(Window), maker(ZmpReference)
 
-Sight = tuple[PhaseSamples, ZmpReference, HeightPreview, Array, Array, Array]
-"""What the walk ahead looks like.
+Beyond = tuple[PhaseSamples, Array, HeightPreview]
+"""The walk at all samples that are looked at: phases, with a sample before and one after, ZMP [m], and CoM height."""
 
-The phases at the samples that are looked at, with one before and one after; ZMP reference, CoM height and softened λ
-[1/s^2] at these; ω [1/s] and planned share of the weight on the left foot [-] over the window.
+Sight = tuple[ZmpReference, HeightPreview, Array, Array, Array, NDArray[np.bool_], Callable[[], Beyond]]
+"""What the walk ahead looks like over the window, and what tells it at all samples that are looked at.
+
+ZMP reference, CoM height, softened λ [1/s^2], ω [1/s], planned share of the weight on the left foot [-] and contacts.
 """
 
 
@@ -194,51 +196,54 @@ class ReferencePreview:
             time: now [s].
             lasting: force that goes on acting on the body.
         """
-        count, look = self._count, self._sight if self._compiled is None else self._compiled.sight
-        samples, reference, height, stiffness, omega, load = look(execution, support, self._transferred)
-        seen, point, leant = reference.part(slice(count)), reference.point, None
+        look = self._sight if self._compiled is None else self._compiled.sight
+        reference, height, stiffness, omega, load, contacts, tell = look(execution, support, self._transferred)
+        offset = self._offset(execution, tell, support, position, time, lasting)
         if lasting is not None:
-            leant = lean(lasting, support.rotation, height)
-            point = point - leant
-        offset = self._offset(execution, samples, support, point, height, position, time)
-        if leant is not None:
-            offset = offset + leant[:count]
+            offset = offset + lean(lasting, support.rotation, height)
         return _a_window(
-            reference=seen,
-            driving=_a_reference(seen.point - offset, seen.gain, seen.half_size, seen.height),
+            reference=reference,
+            driving=_a_reference(reference.point - offset, reference.gain, reference.half_size, reference.height),
             offset=offset,
-            height=height.part(count),
-            stiffness=stiffness[:count],
+            height=height,
+            stiffness=stiffness,
             omega=omega,
             load_left=load,
-            contacts=samples.contacts[1 : count + 1],
+            contacts=contacts,
         )
 
-    def _sight(self, execution: Execution, support: Support, moved: Callable[[Execution, Array], Array]) -> Sight:
-        """What the walk ahead looks like, where `moved` says what becomes of the height that its law gives."""
+    def _sight(
+        self, execution: Execution, support: Support, moved: Callable[[Execution, Array], Array | None]
+    ) -> Sight:
+        """What the walk ahead looks like, where `moved` says what takes the place of the height that its law gives."""
         samples, count = execution.samples(self.reach), self._count
         # The paper's ZMP planner, and its vertical motion planner with the varying dynamics.
         reference, on = zmp_reference(samples, support.table).part(slice(1, -1)), partial(moved, execution)
         height = preview_height(self._profile, self._gait, samples, support.heights, reference.height, self._length, on)
-        stiffness = self._softening * height.stiffness
-        omega = natural_frequency(stiffness[:count], self._sample_time)
-        return samples, reference, height, stiffness, omega, load_left(samples, support)[1 : count + 1]
+        stiffness, window = self._softening * height.stiffness[:count], slice(1, count + 1)
+        omega, load = natural_frequency(stiffness, self._sample_time), load_left(samples, support)[window]
+        seen, part = reference.part(slice(count)), height.part(count)
+        return seen, part, stiffness, omega, load, samples.contacts[window], lambda: (samples, reference.point, height)
 
-    def _transferred(self, execution: Execution, height: Array) -> Array:
+    def _transferred(self, execution: Execution, height: Array) -> Array | None:
         """The height where a step that is adapted has changed how the clock goes or set it, or is too long for it.
+
+        It is None where that is by its law.
 
         Args:
             execution: the clock and the steps in sight.
             height: z, z', z'' by its law, shape (3, n), which is overwritten.
         """
         clock, lower, leaves, numbers = execution.clock, execution.lowering, False, self._numbers
+        course, law = clock.course, height
         if self._before is not None:
-            tick, course, before, low = self._before
+            tick, followed, before, low = self._before
             pushed = execution.adapted or self._transition is not None or not clock.coefficients
-            leaves = course != clock.course and pushed
+            leaves = followed != course and pushed
             leaves |= abs(lower - low) > numbers.same_height or (low > 0.0) is not (lower > 0.0)
             lower = lower if leaves else low
-        height[0] -= lower
+        if lower:
+            height[0] -= lower
         if leaves:
             state = before[:, min(clock.ticks - tick, 1)]
             kernel = None if self._compiled is None else self._compiled.soonest_calm
@@ -250,24 +255,23 @@ class ReferencePreview:
                 self._transition = None
             else:
                 height = self._transition.over(height, clock.ticks)
-        self._before = clock.ticks, clock.course, height[:, :2].copy(), lower
-        return height
+        self._before = clock.ticks, course, height[:, :2].copy(), lower
+        return None if height is law and not lower else height
 
     def _offset(
         self,
         execution: Execution,
-        samples: PhaseSamples,
+        tell: Callable[[], Beyond],
         support: Support,
-        point: Array,
-        height: HeightPreview,
         position: Array,
         time: float,
+        lasting: ExternalLoad | None,
     ) -> Array:
-        """What the legs add to the ZMP, shape (n, 2) [m]; arguments as of `window`."""
+        """What the legs add to the ZMP, shape (n, 2) [m]; other arguments as of `window`."""
         count, clock = self._count, execution.clock
         if self._leg.chain is None:
             return np.zeros((count, 2))
-        last, table, key, aim = samples.phases[-1], self._offsets, support.key, execution.aim
+        last, table, key, aim = execution.schedule.phases[-1], self._offsets, support.key, execution.aim
         # In the final standing, where the walk's clock does not matter, none serves: its values go on with time.
         left = last.start - clock.now if math.isinf(last.samples) else math.inf
         # A swing that a command retimes is laid anew at every tick, by what the clock shows then.
@@ -275,6 +279,8 @@ class ReferencePreview:
         if table is None or not serves or not table.holds(clock, key, aim, self._numbers.same_swing):
             # No longer than until the robot stands will they serve.
             count += int(min(self._numbers.offset_ticks - 1, max(left, 0.0) + 1))
+            samples, point, height = tell()
+            point = point if lasting is None else point - lean(lasting, support.rotation, height)
             frame = support.rotation, support.origin
             flown = None if execution.swing is None or aim is None else (execution.swing, time)
             moving = samples, execution.aimed, frame, flown

@@ -163,13 +163,6 @@ static void lift(const Preview *preview, int64_t steady) {
     }
 }
 
-void preview_look(const Preview *preview, int64_t steady, double now, int64_t lifts) {
-    look_up_clock(preview, steady, now);
-    look_up_phases(preview);
-    refer(preview);
-    if (lifts) lift(preview, steady);
-}
-
 /* Counterpart of the end of `planner.references.com_height.preview_height`, and of
  * `planner.model.dcm.natural_frequency`. */
 void preview_weigh(const Preview *preview) {
@@ -188,6 +181,16 @@ void preview_weigh(const Preview *preview) {
         omega = (omega + mean * stretched) / (1.0 + omega * stretched);
         preview->omega[k] = omega;
     }
+}
+
+/* All but the height and what follows from it, and these too where the law of the height is known here. */
+void preview_look(const Preview *preview, int64_t steady, double now, int64_t lifts) {
+    look_up_clock(preview, steady, now);
+    look_up_phases(preview);
+    refer(preview);
+    if (!lifts) return;
+    lift(preview, steady);
+    preview_weigh(preview);
 }
 
 /* Coefficients of t^2 to t^5 of `planner.geometry.quintic`. */

@@ -184,7 +184,6 @@ def nearest_point(polygon: Array, point: Array) -> Array:
 
 _BINOMIAL = np.array([[math.comb(i, k) for i in range(6)] for k in range(6)], dtype=float)
 _POWER = np.maximum(np.arange(6)[None, :] - np.arange(6)[:, None], 0)
-_EXPONENT = tuple(range(6))
 
 
 def quintic(start: Array, end: Array, duration: float) -> Array:
@@ -219,8 +218,8 @@ greatest = np.maximum.reduce
 
 def shifted(coefficients: Array, time: float) -> Array:
     """The same polynomials with their local time starting at `time`."""
-    powers = np.array([time**i for i in _EXPONENT])
-    return np.asarray((_BINOMIAL * powers[_POWER]) @ coefficients)
+    powers = np.array((1.0, time, time**2, time**3, time**4, time**5))
+    return np.asarray((_BINOMIAL * powers.take(_POWER)) @ coefficients)
 
 
 def yaw_rotations(yaw: Array) -> Array:

@@ -42,6 +42,8 @@ from surefoot.values import maker
 
 _a_plan, _a_context, _a_status = maker(WalkPlan), maker(StepContext), maker(PlanStatus)
 
+_STILL = np.zeros(3)
+
 
 class WalkingPlanner:
     """Receding-horizon planner of CoM, ZMP and footsteps, from the measured state at every tick.
@@ -206,7 +208,7 @@ class WalkingPlanner:
         problem = self._problem(local, support, window, step, adjusted, free)
         # TVMPC, or the law that stands in its place.
         motion = self.motion = self._law.plan(problem)
-        shifts = motion.shifts @ support.rotation.T
+        shifts = motion.shifts @ support.rotation.T if any(motion.shifts.ravel().tolist()) else np.zeros((2, 2))
         footsteps = execution.upcoming(time, free, shifts)
         catching = execution.catching
         if free[0] or catching:
@@ -234,7 +236,9 @@ class WalkingPlanner:
     def _sight(self, state: CentroidalState) -> tuple[Support, Array, Window]:
         """What carries the robot now, its CoM in that plan frame, and the references from now on."""
         support = self._preview.support(self._execution)
-        local = self._local_state(state, support)
+        # Position and velocity as measured, acceleration as the last plan had it for now.
+        bend = _STILL if self._plan is None else self._plan.com_acceleration[1]
+        local = self._world.local(state.com, state.com_velocity, bend, support.frame)
         return support, local, self._window(state, support, local)
 
     def _window(self, state: CentroidalState, support: Support, local: Array) -> Window:
@@ -318,14 +322,6 @@ class WalkingPlanner:
             side = schedule.step(landed).place.foot.other.side
             self._known = known = schedule, support, increment, side
         return known[2], known[3]
-
-    def _local_state(self, state: CentroidalState, support: Support) -> Array:
-        """Position and velocity as measured, acceleration as the last plan had it for now."""
-        local = np.empty((3, 2))
-        local[0] = state.com[:2] - support.origin
-        local[1] = state.com_velocity[:2]
-        local[2] = self._plan.com_acceleration[1, :2] if self._plan is not None else 0.0
-        return np.ascontiguousarray((local @ support.rotation).T)
 
     def _status(self, motion: Motion, balance: Balance) -> PlanStatus:
         age, warned = 0, self._plan is not None and self._plan.status.falling

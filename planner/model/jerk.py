@@ -144,9 +144,12 @@ forces add to the ZMP, and the ZMP reference with nominal footsteps, shape (N + 
 shifts of the next two, shape (N + 1, 2) [-].
 """
 
+Frame = tuple[Array, Array]
+"""A plan frame: its rotation to the world, shape (2, 2), and origin, shape (2,) [m]."""
+
 
 class WorldMotion:
-    """Says in the world frame what a jerk sequence does.
+    """Says in the world frame what a jerk sequence does, and in the plan frame what it begins from.
 
     Args:
         sample_time: T [s].
@@ -163,9 +166,34 @@ class WorldMotion:
             self._block = Block((3, n, 3), (horizon, 2), (n, 2), (n, 2), (n, 2))
             made = dict(zip(("com", "world_jerk", "zmp", "world_offset", "reference"), self._block.arrays, strict=True))
             given: dict[str, Any] = dict(zip(names, self._given, strict=True)) | made
-            self._run = kernels.bind("motion_in_world", sample_time=sample_time, samples=horizon, **given)
+            bound = kernels.fill("MotionInWorld", sample_time=sample_time, samples=horizon, **given)
+            self._run, self._place = (kernels.bind(name, bound) for name in ("motion_in_world", "state_in_frame"))
+        self._turn: Frame | None = None
 
-    def of(self, state: Array, jerk: Array, shifts: Array, ahead: Ahead, frame: tuple[Array, Array]) -> list[Array]:
+    def local(self, com: Array, velocity: Array, acceleration: Array, frame: Frame) -> Array:
+        """Horizontal position, velocity and acceleration per axis of the plan frame, shape (2, 3).
+
+        Args:
+            com: CoM position in the world frame, shape (2 or more,) [m].
+            velocity: likewise [m/s].
+            acceleration: likewise [m/s^2].
+            frame: the plan frame.
+        """
+        (x, y, *_), (v, w, *_), (a, b, *_) = com.tolist(), velocity.tolist(), acceleration.tolist()
+        if self._run is not None:
+            self._turn_to(frame)
+            self._place(x, y, v, w, a, b)
+            return self._given[0].copy()
+        (rotation, origin) = frame
+        u, o = origin.tolist()
+        return np.ascontiguousarray((np.array([[x - u, y - o], [v, w], [a, b]]) @ rotation).T)
+
+    def _turn_to(self, frame: Frame) -> None:
+        """Let the kernels know of a plan frame."""
+        if self._turn is None or frame[0] is not self._turn[0] or frame[1] is not self._turn[1]:
+            self._turn, (self._given[-2][:], self._given[-1][:]) = frame, frame
+
+    def of(self, state: Array, jerk: Array, shifts: Array, ahead: Ahead, frame: Frame) -> list[Array]:
         """CoM position, velocity and acceleration, jerk, ZMP, its offset and its reference, as of a `WalkPlan`.
 
         Args:
@@ -173,16 +201,17 @@ class WorldMotion:
             jerk: shape (N, 2) [m/s^3].
             shifts: of the next two footsteps, shape (step, axis) = (2, 2) [m].
             ahead: what is known of the samples.
-            frame: the plan frame's rotation to the world, shape (2, 2), and origin, shape (2,) [m].
+            frame: the plan frame.
         """
         if self._run is None:
             return self._plain(state, jerk, shifts, ahead, frame)
-        for own, value in zip(self._given, (state, jerk, shifts, *ahead, *frame), strict=True):
+        self._turn_to(frame)
+        for own, value in zip(self._given[:-2], (state, jerk, shifts, *ahead), strict=True):
             own[:] = value
         self._run()
         return self._block.copied()
 
-    def _plain(self, state: Array, jerk: Array, shifts: Array, ahead: Ahead, frame: tuple[Array, Array]) -> list[Array]:
+    def _plain(self, state: Array, jerk: Array, shifts: Array, ahead: Ahead, frame: Frame) -> list[Array]:
         (stiffness, height, offset, point, gain), (rotation, origin) = ahead, frame
         moved, zmp = trajectory(self._prediction, state, stiffness, jerk)
         com, to_world = np.empty((3, len(stiffness), 3)), rotation.T

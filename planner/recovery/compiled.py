@@ -13,6 +13,9 @@ from surefoot.planner.types import Array
 if TYPE_CHECKING:
     from surefoot.planner.recovery.step_adjustment import StepProblem
 
+_OF_PLACE = 16
+"""From this one on the numbers of a `Landing` are the same while a step lands at the same place [-]."""
+
 
 class CompiledStep:
     """Legs and the next step as kernels take them.
@@ -55,11 +58,12 @@ class CompiledStep:
         if told is not None and told[0] is step and told[1] is com and told[2] is dcm and told[3] == omega:
             return
         self._told = step, com, dcm, omega
-        legs = self._legs.turned(step.place.yaw)
-        rest = (step.double, step.single, step.cycle, step.shortest, *step.face.ravel().tolist(), step.crosses)
-        place = (omega, *step.nominal.tolist(), step.place.foot.side, *step.swing.ravel().tolist())
-        now = (*com.tolist(), *dcm.tolist(), *place)
-        self._numbers[:] = (*now, *rest, step.last, step.adapted, legs.near, legs.clear)
+        (x, y), (u, v), ((a, b), (c, d)) = com.tolist(), dcm.tolist(), step.swing.tolist()
+        times = step.double, step.single, step.cycle, step.shortest
+        self._numbers[:_OF_PLACE] = x, y, u, v, omega, a, b, c, d, *times, step.crosses, step.last, step.adapted
+        if told is None or told[0].place is not step.place or told[0].face is not step.face:
+            legs, face = self._legs.turned(step.place.yaw), step.face.ravel().tolist()
+            self._numbers[_OF_PLACE:] = *step.nominal.tolist(), step.place.foot.side, *face, legs.near, legs.clear
 
 
 class CompiledOutlook:
@@ -88,28 +92,31 @@ class CompiledOutlook:
 
     def margin(self, dcm: Array, window: Window, foot_margin: float) -> float:
         """See `planner.recovery.capture_margin.planned_margin`."""
-        self.tell(window)
-        found: float = self._margin(float(dcm[0]), float(dcm[1]), foot_margin)
+        found: float = self._margin(*dcm.tolist(), foot_margin, self._tell(window))
         return found
 
     def nominal(self, window: Window) -> Array:
         """The DCM now that a window's ZMP keeps bounded, shape (2,) [m]."""
-        self.tell(window)
-        self._mean()
+        self._mean(self._tell(window))
         found: Array = self._nominal.copy()
         return found
 
     def tell(self, window: Window) -> None:
         """Let kernels look at a window, which has as many samples."""
+        if self._tell(window):
+            self._decay()
+
+    def _tell(self, window: Window) -> bool:
+        """The same but for what decays; whether that is to be found anew."""
         if window is self._window:
-            return
+            return False
         self._window, arrays, driving = window, self._arrays, window.driving
         arrays["stiffness"][...] = window.stiffness
         arrays["omega"][...] = window.omega
         arrays["point"][...] = driving.point
         arrays["gain"][...] = driving.gain
         arrays["half_size"][...] = driving.half_size
-        self._decay()
+        return True
 
 
 class CompiledMargins:

@@ -94,21 +94,24 @@ class StepProblem:
             feet: the measured feet.
             frame: its stance foot's, the plan frame: rotation to the world, shape (2, 2), and origin, shape (2,) [m].
         """
-        phase, swing, (rotation, origin) = execution.info, np.zeros((2, 2)), frame
+        phase, (rotation, origin), v, w = execution.info, frame, 0.0, 0.0
         if not phase.leads_to:
             return None
         schedule, clock, landed = execution.schedule, execution.clock, execution.landed
         step = schedule.step(landed + 1)
         swings, foot = phase.kind is PhaseKind.SINGLE, step.place.foot
         yet = min(1.0, (step.touchdown - clock.now) / step.single)
-        swing[0] = (feet.position[foot, :2] - origin) @ rotation
+        # In plain numbers: a product of small arrays takes longer than all of this.
+        (a, b), (c, d) = rotation.tolist()
+        (u, o), (x, y, _) = origin.tolist(), feet.position[foot].tolist()
         if execution.swing is not None:
-            swing[1] = execution.swing.coefficients(time)[1, :2] @ rotation
+            v, w, *_ = execution.swing.coefficients(time)[1].tolist()
+        x, y = x - u, y - o
         hips = math.inf if execution.legs is None else execution.legs.acceleration[0]
         place, face, shortest, crosses = _known(step, schedule.step(landed), schedule.ground, hips)
         return _a_step(
             place=place,
-            swing=swing,
+            swing=np.array(((x * a + y * c, x * b + y * d), (v * a + w * c, v * b + w * d))),
             double=0.0 if swings else phase.left,
             single=phase.left if swings else step.single * clock.sample_time,
             cycle=schedule.gait.period,

@@ -26,12 +26,16 @@ static void weigh(const Outlook *ahead, const double *values, double *mean) {
 }
 
 /* The first DCM of `planner.model.dcm.nominal_dcm`. */
-void outlook_nominal(const Outlook *ahead) { weigh(ahead, ahead->point, ahead->nominal); }
+void outlook_nominal(const Outlook *ahead, int64_t fresh) {
+    if (fresh) outlook_decay(ahead);
+    weigh(ahead, ahead->point, ahead->nominal);
+}
 
 /* Counterpart of `planner.recovery.capture_margin.planned_margin`. */
-double outlook_margin(const Outlook *ahead, double x, double y, double foot_margin) {
+double outlook_margin(const Outlook *ahead, double x, double y, double foot_margin, int64_t fresh) {
     const double dcm[2] = {x, y};
     double point[2], half[2], margin = INFINITY;
+    if (fresh) outlook_decay(ahead);
     weigh(ahead, ahead->point, point);
     weigh(ahead, ahead->half_size, half);
     for (int i = 0; i < 2; i++) margin = fmin(margin, half[i] / foot_margin - fabs(dcm[i] - point[i]));

@@ -836,11 +836,11 @@ typedef struct {
 
 int64_t footstep_motion_make(const FootstepMotion *motion, int64_t samples);
 
-/* Counterpart of `planner.model.jerk.WorldMotion._plain`, whose names these are, over `samples` and the one now. */
+/* Counterpart of `planner.model.jerk.WorldMotion`, whose names these are, over `samples` and the one now. */
 typedef struct {
     double sample_time;
     int64_t samples;
-    const double *state;
+    double *state;
     const double *jerk;
     const double *stiffness;
     const double *height;
@@ -858,6 +858,7 @@ typedef struct {
 } MotionInWorld;
 
 void motion_in_world(const MotionInWorld *motion);
+void state_in_frame(const MotionInWorld *motion, double x, double y, double v_x, double v_y, double a_x, double a_y);
 
 /* Counterpart of a `planner.references.window.Window`, as far as recovery looks at it. */
 typedef struct {
@@ -873,8 +874,8 @@ typedef struct {
 } Outlook;
 
 void outlook_decay(const Outlook *ahead);
-void outlook_nominal(const Outlook *ahead);
-double outlook_margin(const Outlook *ahead, double x, double y, double foot_margin);
+void outlook_nominal(const Outlook *ahead, int64_t fresh);
+double outlook_margin(const Outlook *ahead, double x, double y, double foot_margin, int64_t fresh);
 
 /* Counterpart of `planner.swing.leg_reach.LegReach`; its unit ways are rows of values at so many shares of a swing. */
 typedef struct {
@@ -898,17 +899,17 @@ typedef struct {
     double com[2];
     double dcm[2];
     double omega;
-    double nominal[2];
-    double side;
     double swing[4];
     double double_left;
     double single_left;
     double cycle;
     double shortest;
-    double face[4];
     double crosses;
     double last;
     double adapted;
+    double nominal[2];
+    double side;
+    double face[4];
     double near;
     double clear;
 } Landing;

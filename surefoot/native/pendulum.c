@@ -79,3 +79,12 @@ void motion_in_world(const MotionInWorld *motion) {
         }
     }
 }
+
+/* Counterpart of `planner.model.jerk.WorldMotion.local`; each sum is rounded once, as that of the library which numpy asks. */
+void state_in_frame(const MotionInWorld *motion, double x, double y, double v_x, double v_y, double a_x, double a_y) {
+    const double *R = motion->rotation, *origin = motion->origin;
+    const double values[3][2] = {{x - origin[0], y - origin[1]}, {v_x, v_y}, {a_x, a_y}};
+    for (int axis = 0; axis < 2; axis++)
+        for (int order = 0; order < 3; order++)
+            motion->state[3 * axis + order] = fma(values[order][1], R[2 + axis], values[order][0] * R[axis]);
+}

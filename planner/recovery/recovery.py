@@ -13,6 +13,9 @@ from surefoot.planner.steps.execution import Execution
 from surefoot.planner.steps.step import room_left
 from surefoot.planner.swing.step_region import Shifts, reachable_shifts, shifts_within, unshifted
 from surefoot.planner.types import Array, Balance, FeetState, Foot, PhaseKind
+from surefoot.values import maker
+
+_a_balance = maker(Balance)
 
 
 class Recovery:
@@ -42,11 +45,12 @@ class Recovery:
             return False
         schedule, now = execution.schedule, execution.clock.now
         numbers, standing = self._parameters.recovery, execution.phase.kind is PhaseKind.STAND
-        error = self._capture_point(local, window)[1] - self._planned.nominal(window)
-        if (np.abs(error) <= numbers.stand_share * window.driving.half_size[-1]).all():
+        error = (self._capture_point(local, window)[1] - self._planned.nominal(window)).tolist()
+        box, most = window.driving.half_size[-1].tolist(), max(map(abs, error))
+        if all(abs(astray) <= numbers.stand_share * half for astray, half in zip(error, box, strict=True)):
             # Once it is at rest the robot brings its feet side by side again.
             # Feet without a CoP of their own would end in a wide step, since there is no time to shift the weight.
-            calm = self._parameters.cop_authority[1] > 0.0 and np.abs(error).max() < numbers.calm
+            calm = self._parameters.cop_authority[1] > 0.0 and most < numbers.calm
             here, usual = schedule.apart(execution.landed)
             calm = calm and standing and float(np.hypot(*(here - usual))) > numbers.apart
             if calm:
@@ -157,7 +161,7 @@ class Recovery:
         # Steps that a law moves of its own accord may save more than the margin says.
         if self._movable is not None or not execution.adapts:
             outside = outside + 1 if movable < -p.recovery.fall_margin else 0
-        return Balance(planned - unsure, movable - unsure, shift, delay, outside)
+        return _a_balance(planned - unsure, movable - unsure, shift, delay, outside)
 
     def adjusted(
         self, step: StepProblem | None, local: Array, window: Window, unsure: float = 0.0

@@ -99,10 +99,10 @@ class SwingTrajectory:
             return result
         if time >= self.glide_end - TOUCHING:
             result[0] = self.target
-        elif time >= self.bend_time - TOUCHING:
-            result[:, _GLIDING] = shifted(self.onward, time - self.bend_time)
         elif time >= self.start_time - TOUCHING:
-            result[:, _GLIDING] = shifted(self.level, time - self.start_time)
+            after = time >= self.bend_time - TOUCHING
+            way = shifted(self.onward, time - self.bend_time) if after else shifted(self.level, time - self.start_time)
+            result[:, :2], result[:, 3:] = way[:, :2], way[:, 2:]  # faster than by a list of columns
         else:
             result[0, _GLIDING] = self.level[0]
         if time >= self.apex_time - TOUCHING:

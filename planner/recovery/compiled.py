@@ -13,9 +13,6 @@ from surefoot.planner.types import Array
 if TYPE_CHECKING:
     from surefoot.planner.recovery.step_adjustment import StepProblem
 
-_OF_PLACE = 16
-"""From this one on the numbers of a `Landing` are the same while a step lands at the same place [-]."""
-
 
 class CompiledStep:
     """Legs and the next step as kernels take them.
@@ -60,10 +57,11 @@ class CompiledStep:
         self._told = step, com, dcm, omega
         (x, y), (u, v), ((a, b), (c, d)) = com.tolist(), dcm.tolist(), step.swing.tolist()
         times = step.double, step.single, step.cycle, step.shortest
-        self._numbers[:_OF_PLACE] = x, y, u, v, omega, a, b, c, d, *times, step.crosses, step.last, step.adapted
+        now = x, y, u, v, omega, a, b, c, d, *times, step.crosses, step.last, step.adapted
+        self._numbers[: len(now)] = now
         if told is None or told[0].place is not step.place or told[0].face is not step.face:
             legs, face = self._legs.turned(step.place.yaw), step.face.ravel().tolist()
-            self._numbers[_OF_PLACE:] = *step.nominal.tolist(), step.place.foot.side, *face, legs.near, legs.clear
+            self._numbers[len(now) :] = *step.nominal.tolist(), step.place.foot.side, *face, legs.near, legs.clear
 
 
 class CompiledOutlook:

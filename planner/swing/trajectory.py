@@ -101,8 +101,8 @@ class SwingTrajectory:
             result[0] = self.target
         elif time >= self.start_time - TOUCHING:
             after = time >= self.bend_time - TOUCHING
-            way = shifted(self.onward, time - self.bend_time) if after else shifted(self.level, time - self.start_time)
-            result[:, :2], result[:, 3:] = way[:, :2], way[:, 2:]  # faster than by a list of columns
+            told = shifted(self.onward, time - self.bend_time) if after else shifted(self.level, time - self.start_time)
+            result[:, :2], result[:, 3:] = told[:, :2], told[:, 2:]  # faster than by a list of columns
         else:
             result[0, _GLIDING] = self.level[0]
         if time >= self.apex_time - TOUCHING:

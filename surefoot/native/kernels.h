@@ -628,7 +628,7 @@ typedef struct {
 } LegChain;
 
 /*
- * Counterpart of `planner.references.leg_offset.nominal_feet` without a swing that is flown.
+ * Counterpart of `planner.references.nominal_feet.nominal_feet` without a swing that is flown.
  *
  * Of each phase from that of the first sample on `phases` has 36 numbers: rows of `steps` before, stance and after; 1
  * for a right stance foot; 1 for a single support; how late its swing begins; begin, end and angle of a roll; then of

@@ -1,7 +1,7 @@
 import numpy as np
 import pytest
 
-from surefoot.planner.references.leg_offset import nominal_feet
+from surefoot.planner.references.nominal_feet import nominal_feet
 from surefoot.planner.steps.gait import GaitParameters
 from surefoot.planner.types import PhaseKind
 

@@ -7,7 +7,7 @@ from surefoot.planner.model.leg_chain import LegChain, Link
 from surefoot.planner.plan import PlanSampler
 from surefoot.planner.planner import WalkingPlanner
 from surefoot.planner.plants import IdealFeet
-from surefoot.planner.references.leg_offset import nominal_feet
+from surefoot.planner.references.nominal_feet import nominal_feet
 from surefoot.planner.steps.gait import GaitParameters
 from surefoot.planner.swing.heel_off import FootRoll, bump
 from surefoot.planner.types import CentroidalState, Foot, PhaseKind

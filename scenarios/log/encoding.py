@@ -6,13 +6,11 @@ from collections.abc import Mapping, Sequence
 from itertools import chain
 
 import lz4.frame
-import numpy as np
 import zstandard
 from mcap import records
 from mcap.data_stream import RecordBuilder
 from mcap.opcode import Opcode
 
-from surefoot.native.library import library
 from surefoot.scenarios.errors import LogError
 
 _LZ4_LEVEL = -3
@@ -57,24 +55,6 @@ def _unzstd(data: bytes | memoryview, size: int) -> bytes:
     """At most one byte more than there should be, whatever the frame says of its size."""
     with zstandard.ZstdDecompressor().stream_reader(data) as reader:
         return reader.read(size + 1)
-
-
-class Checksum:
-    """CRC-32 as of `zlib.crc32`, by a kernel in less than half its time."""
-
-    __slots__ = ("_crc", "_fold")
-
-    def __init__(self) -> None:
-        kernels, self._crc = library(), np.zeros(1, dtype=np.int64)
-        self._fold = None if kernels is None else kernels.bind("checksum", crc=self._crc)
-
-    def __call__(self, data: bytes, before: int = 0) -> int:
-        """Of bytes after those of which it was `before`."""
-        if self._fold is None:
-            return zlib.crc32(data, before)
-        self._crc[0] = before
-        done = self._fold(np.frombuffer(data, np.uint8).ctypes.data, len(data))
-        return zlib.crc32(memoryview(data)[done:], self._crc.item())
 
 
 MAGIC = b"\x89MCAP0\r\n"

@@ -1,5 +1,6 @@
 """Writes a log: what the run was first, then a chunk of messages every few hundredths of a simulated second."""
 
+import zlib
 from collections import deque
 from collections.abc import Iterator, Mapping, Sequence
 from functools import lru_cache
@@ -12,7 +13,7 @@ from mcap.records import Attachment, Channel, Chunk, Header, Metadata, Schema
 from surefoot.native.library import library
 from surefoot.scenarios.errors import LogError
 from surefoot.scenarios.log.channel import ChannelWriter, Clock, MessageWriter, Waiting
-from surefoot.scenarios.log.encoding import MAGIC, Checksum, Summary, chunk_head, compress, encoded
+from surefoot.scenarios.log.encoding import MAGIC, Summary, chunk_head, compress, encoded
 from surefoot.scenarios.log.rows import CompiledRows, RowLayout, RowWriter
 from surefoot.scenarios.log.spec import PACKAGE, ChannelSpec
 from surefoot.scenarios.output import reason
@@ -30,7 +31,7 @@ class Output:
         crc: CRC-32 of the bytes written.
     """
 
-    __slots__ = ("_checksum", "_file", "crc", "path", "position")
+    __slots__ = ("_file", "crc", "path", "position")
 
     def __init__(self, path: Path, beginning: bytes) -> None:
         """Create the file with its beginning.
@@ -40,7 +41,6 @@ class Output:
         """
         self.path = path
         self.position = self.crc = 0
-        self._checksum = Checksum()
         try:
             self._file = path.open("xb", buffering=0)
         except FileExistsError:
@@ -81,7 +81,7 @@ class Output:
         while rest:
             rest = rest[self._file.write(rest) :]
         self.position += len(data)
-        self.crc = self._checksum(data, self.crc)
+        self.crc = zlib.crc32(data, self.crc)
 
     def _set_aside(self) -> Path:
         """Cut off the record that did not fit and take away the name of a log, if the other name is free."""
@@ -167,7 +167,7 @@ class LogWriter:
             LogError: the file exists, or cannot be created or written; nothing of that name is then created.
         """
         self.path = path
-        self._compression, self._checksum = compression, Checksum()
+        self._compression = compression
         self._summary = Summary()
         self._channels: list[Waiting] = []
         self._rows: list[RowWriter] = []
@@ -247,7 +247,7 @@ class LogWriter:
             indexes.append((channel.channel_id, index))
             offset += len(block)
         data = b"".join(blocks)
-        crc = self._checksum(data)  # while the bytes are near
+        crc = zlib.crc32(data)  # while the bytes are near
         yield
         packed = compress(data, self._compression)
         yield

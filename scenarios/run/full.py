@@ -205,7 +205,7 @@ class WholeBody:
         terms = self._truth
         soles = terms.sole_position
         height = terms.com.item(2) - min(soles.item(2), soles.item(5))
-        tilt = math.acos(min(terms.torso_rotation.item(8), 1.0))
+        tilt = math.acos(min(terms.torso_rotation.item(2, 2), 1.0))
         return bool(lies(height, self._nominal_height, tilt, self.measurement.nonfoot_contact))
 
     def draw(self, tick: int, now_ns: int, plan: WalkPlan, sample: PlanSample, fallen: bool) -> None:

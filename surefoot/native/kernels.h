@@ -461,13 +461,6 @@ typedef struct {
 
 void template_fill(const MessageTemplate *message, int64_t seconds, int64_t nanos);
 
-/* Counterpart of `zlib.crc32`, of the whole blocks of 64 bytes at an address; gives how many bytes that were. */
-typedef struct {
-    int64_t *crc;
-} Checksum;
-
-int64_t checksum(const Checksum *sum, int64_t address, int64_t count);
-
 /* Arrays that make up a row, by address and length, read where they are. */
 typedef struct {
     int64_t count;

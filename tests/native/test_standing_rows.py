@@ -1,7 +1,6 @@
 """Rows that are read where their arrays lie, messages filled in place, and fields cut out of numbers when read."""
 
 import pickle
-import zlib
 from dataclasses import fields, replace
 
 import numpy as np
@@ -14,7 +13,6 @@ from surefoot.native.library import VARIABLE
 from surefoot.planner.plan import PlanSample
 from surefoot.planner.plan_kernel import POINT
 from surefoot.scenarios.log import ChannelSpec, FieldSpec, LogWriter, read
-from surefoot.scenarios.log.encoding import Checksum
 from surefoot.scenarios.log.rows import RowLayout
 from surefoot.scenarios.log.spec import NANOS, SECONDS, Template, slot
 from surefoot.wbc.types import WbcReference
@@ -91,14 +89,6 @@ def test_a_message_is_that_of_plain_python_to_the_byte(kernels, monkeypatch):
     for time_ns in (0, 1, 999_999_999, 10**9, 123_456_789_012_345_678, *rng.integers(0, 10**15, 20).tolist()):
         values = tuple(rng.normal(size=3).tolist())
         assert compiled.encode(time_ns, values) == plain.encode(time_ns, values)
-
-
-@pytest.mark.parametrize("before", [0, 1, 0xDEADBEEF, 0xFFFFFFFF])
-def test_the_checksum_is_that_of_zlib(kernels, before):
-    rng, checksum = np.random.default_rng(3), Checksum()
-    for count in (*range(200), 1000, 4096, 100_001):
-        data = rng.bytes(count)
-        assert checksum(data, before) == zlib.crc32(data, before)
 
 
 def sample():

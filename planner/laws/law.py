@@ -84,7 +84,15 @@ class MotionProblem:
         steps: StepContext,
         rotation: Array,
     ) -> "MotionProblem":
-        """That after a jerk sequence; the window has stiffness, omega and reference, all are as of the attributes."""
+        """That after a jerk sequence; the jerk and the fallback follow from it once they are read.
+
+        Args:
+            before: the previous jerk sequence in the world frame, shape (N, 2) [m/s^3].
+            state: as of the attribute, shape (2, 3) [m, m/s, m/s^2].
+            window: stiffness and omega, shape (N + M + 1,) each [1/s^2, 1/s], and reference.
+            steps: as of the attribute.
+            rotation: likewise, shape (2, 2) [-].
+        """
         problem = _OpenProblem()
         problem.stiffness, problem.omega, problem.reference = window
         problem.before, problem.state, problem.steps, problem.rotation = before, state, steps, rotation

@@ -51,7 +51,7 @@ class Separation:
             tuple(geometry.geometryObjects[shape].parentJoint for shape in (pair.first, pair.second))
             for pair in geometry.collisionPairs
         ]
-        self._points, self._row = np.zeros((3, 3)), np.zeros(model.nv)
+        self._points, self._row = np.zeros((2, 3)), np.zeros(model.nv)
         self._written: Array | None = None
         self.is_clear = False
         self._compiled, self._rates = compiled, dict[int, Callable[[], float]]()
@@ -96,10 +96,8 @@ class Separation:
                 row = self._gradient(data, near[slot])
                 rate = float(row @ v)
             else:
-                result, row = self._results[near[slot]], self._row
-                normal, first, second = self._points
-                np.negative(result.normal, out=normal)
-                first[:], second[:] = result.getNearestPoint1(), result.getNearestPoint2()
+                result, row, points = self._results[near[slot]], self._row, self._points
+                points[0], points[1] = result.getNearestPoint1(), result.getNearestPoint2()
                 rate = (self._rates.get(near[slot]) or self._bound(self._compiled, near[slot]))()
             rows[slot] = row
             lower[slot] = -2.0 / p.horizon * rate - gap / p.horizon**2
@@ -129,6 +127,7 @@ class Separation:
             first_columns=columns[0],
             second_count=len(columns[1]),
             second_columns=columns[1],
+            direction=self._results[pair].normal,  # where Coal keeps it
             points=self._points,
             gradient=self._row,
         )

@@ -241,9 +241,10 @@ typedef struct {
 void hard_rows_write(const HardRows *rows, int64_t left, int64_t right, int64_t rolling, double left_cap,
                      double right_cap);
 
-/* Counterpart of `wbc.separation.Separation._gradient`: two points of two bodies, and the direction from b to a. */
+/* Counterpart of `wbc.separation.Separation._gradient`: two points of two bodies, and the direction from a to b. */
 typedef struct {
     const Terms *terms;
+    const double *direction;
     int64_t first_count;
     const int64_t *first_columns;
     int64_t second_count;

@@ -110,13 +110,13 @@ static void add_point(const Distance *distance, double sign, const double *norma
     }
 }
 
-/* Fills the gradient of a distance; returns its rate. `points`: direction from b to a, point a, point b. */
+/* Fills the gradient of a distance; returns its rate. `points`: point a, point b. */
 double distance_rate(const Distance *distance) {
-    const double *normal = distance->points;
+    const double normal[3] = {-distance->direction[0], -distance->direction[1], -distance->direction[2]};
     const int64_t nv = distance->terms->nv;
     memset(distance->gradient, 0, nv * sizeof(double));
-    add_point(distance, 1.0, normal, distance->points + 3, distance->first_count, distance->first_columns);
-    add_point(distance, -1.0, normal, distance->points + 6, distance->second_count, distance->second_columns);
+    add_point(distance, 1.0, normal, distance->points, distance->first_count, distance->first_columns);
+    add_point(distance, -1.0, normal, distance->points + 3, distance->second_count, distance->second_columns);
     return dot(distance->gradient, distance->terms->v, nv);
 }
 

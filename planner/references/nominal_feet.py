@@ -166,8 +166,9 @@ class CompiledFeet:
             **self.arrays,
         )
         self._place = kernels.bind("nominal_feet_make", self._feet)
-        # What has been laid, and of which phases, steps and plan frame.
-        self._laid: tuple[tuple[Phase, ...], Schedule, Array, Array] | None = None
+        # Of which phases, steps and plan frame the kernel is told, and its rows of phases from one up to another.
+        self._laid: tuple[tuple[Phase, ...], Schedule, Array] | None = None
+        self._rows, self._from, self._to, self._places = np.zeros((0, 36)), 0, 0, np.zeros((0, 4))
 
     def move(
         self,
@@ -181,11 +182,19 @@ class CompiledFeet:
         which, phases = samples.which[:count], samples.phases
         self._which[:count], self._elapsed[:count] = which, samples.elapsed[:count]
         self._clock[:count] = samples.clock[:count]
+        first, last = which[[0, -1]].tolist()
         laid = self._laid
         if laid is None or laid[0] is not phases or laid[1] is not schedule or laid[2] is not frame[0]:
-            self._laid = laid = phases, schedule, frame[0], self._lay(phases, schedule, frame)
-        first, last = which[[0, -1]].tolist()
-        rows = laid[3][first : last + 1]
+            self._laid = phases, schedule, frame[0]
+            self._rows, self._from, self._to = np.zeros((len(phases), 36)), first, first
+            self._place_steps(schedule, frame)
+        # Phases beyond those asked for wait until they are: where all were laid at once, that plan took the longest.
+        if first < self._from:
+            self._from = self._to = first
+        if last >= self._to:
+            self._lay(self._rows[self._to : last + 1], phases[self._to : last + 1], schedule)
+            self._to = last + 1
+        rows = self._rows[first : last + 1]
         elapsed = samples.elapsed[which.searchsorted(range(first, last + 1))].tolist()
         late = [gone % 1.0 for gone in elapsed]
         if any(CLOCK_ROUNDING < begun < 1.0 - CLOCK_ROUNDING for begun in late):
@@ -199,10 +208,17 @@ class CompiledFeet:
             foot = flown[0].foot
             _fly(self._soles[foot, :count], self._heading[foot, :count], samples, frame, *flown)
 
-    def _lay(self, phases: tuple[Phase, ...], schedule: Schedule, frame: tuple[Array, Array]) -> Array:
-        """Tell the kernel the places of steps; phases as it takes them, with swings that begin with theirs, (n, 36)."""
-        (rotation, origin), position, steps = frame, schedule.positions, schedule.steps
-        rows, heads, last = np.zeros((len(phases), 36)), [], len(steps) - 1
+    def _place_steps(self, schedule: Schedule, frame: tuple[Array, Array]) -> None:
+        """Tell the kernel the places of steps."""
+        (rotation, origin), position = frame, schedule.positions
+        self._places = places = np.empty((len(position), 4))
+        places[:, :2], places[:, 2], places[:, 3] = (position[:, :2] - origin) @ rotation, position[:, 2], schedule.yaws
+        self._feet.struct.heading_of_frame = math.atan2(rotation[1, 0], rotation[0, 0])
+        self._feet.point(steps=places)
+
+    def _lay(self, rows: Array, phases: tuple[Phase, ...], schedule: Schedule) -> None:
+        """Fill the rows of phases, shape (n, 36), with swings that begin with theirs."""
+        steps, heads, last = schedule.steps, [], len(schedule.steps) - 1
         for row, phase in zip(rows, phases, strict=True):
             at, single = schedule.index(phase.leaves - 1), phase.kind is PhaseKind.SINGLE
             if single:
@@ -210,12 +226,6 @@ class CompiledFeet:
             around = at - 1 if at else last, at, min(at + 1, last)
             heads.append((*around, steps[at].place.foot is Foot.RIGHT, single, 0.0, *(phase.roll or _LEVEL)))
         rows[:, :9] = heads
-        places = np.empty((last + 1, 4))
-        places[:, :2], places[:, 2], places[:, 3] = (position[:, :2] - origin) @ rotation, position[:, 2], schedule.yaws
-        self._feet.struct.heading_of_frame = math.atan2(rotation[1, 0], rotation[0, 0])
-        self._feet.point(steps=places)
-        self._places = places  # which the kernel sees
-        return rows
 
 
 def _swing_in(row: Array, phase: Phase, schedule: Schedule, elapsed: float) -> None:

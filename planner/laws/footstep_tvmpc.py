@@ -187,7 +187,7 @@ class FootstepTvmpc:
         self._at_once = self._compiled if own and self._solver.compiled else None
 
     def plan(self, problem: MotionProblem) -> Motion:
-        """See `MotionPlanner`; a kernel does the three steps at once unless it solves one of the QPs not."""
+        """See `MotionPlanner`; one kernel builds, solves and interprets where it solves both QPs."""
         if self._at_once is not None and self._at_once.holds(problem):
             motion = self._at_once.plan(self._as_seen(problem))
             if motion is not None:

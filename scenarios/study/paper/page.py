@@ -16,6 +16,7 @@ from surefoot.scenarios.run.run import made_folder
 from surefoot.scenarios.show.kit import html
 from surefoot.scenarios.show.kit.html import MISSING, PageTable, TableCell, TableRow, escape, section, tag
 from surefoot.scenarios.show.kit.html import tally as tally_html
+from surefoot.scenarios.show.kit.svg import figure_html
 from surefoot.scenarios.study.campaigns.engine import Worker, local_workers
 from surefoot.scenarios.study.campaigns.sweep import CampaignBar
 from surefoot.scenarios.study.paper import studies
@@ -243,7 +244,7 @@ def _section(part: PageSection, content: Sequence[str], results: Results, plates
     """Its text, its figures, its tables."""
     points = tag("ul", "".join(tag("li", entry) for entry in part.points)) if part.points else ""
     figures = (
-        html.figure_html(plates[one["name"]](results), one["caption"], one["name"], "half" if one.get("half") else "")
+        figure_html(plates[one["name"]](results), one["caption"], one["name"], "half" if one.get("half") else "")
         for one in part.figures
         if one["name"] in plates
     )

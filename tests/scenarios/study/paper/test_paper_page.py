@@ -11,7 +11,8 @@ from paper_samples import FALL, outcome, results
 from surefoot.scenarios.apps import cli
 from surefoot.scenarios.judge.verdict import judge
 from surefoot.scenarios.log import read
-from surefoot.scenarios.show.kit.html import number, svg
+from surefoot.scenarios.show.kit.html import number
+from surefoot.scenarios.show.kit.svg import svg
 from surefoot.scenarios.study.campaigns.sweep import InterruptedRunsError
 from surefoot.scenarios.study.paper import page
 from surefoot.scenarios.study.paper.figures import JERKS, PLATES, POSITIONS, PanelColumn, grid

@@ -46,8 +46,11 @@ def problems_of(error: ValidationError, data: Any, root: type[BaseModel] = Scena
 
 
 def without(data: Any, problems: list[Problem]) -> Any:
-    """The data without what is at fault, so that the rest can still be checked; a list goes as a whole."""
-    rest = copy.deepcopy(data)
+    """The data without what is at fault, so that the rest can still be checked; a list goes as a whole.
+
+    It is a copy, but for data without a fault.
+    """
+    rest = copy.deepcopy(data) if problems else data
     for problem in problems:
         path = list(itertools.takewhile(lambda part: isinstance(part, str), problem.key))
         path = path[:2] if path[:1] == ["criteria"] else path

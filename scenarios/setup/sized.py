@@ -79,7 +79,7 @@ def say_for(source: Source, overrides: Overrides, robots: Robots) -> tuple[str, 
     Raises:
         ScenarioError: an override leads nowhere.
     """
-    named = copy.deepcopy(source)
+    named = Source(source.name, copy.deepcopy(source.value))
     apply_overrides(named, overrides)
     origin, robot = named.value.get(_KEY), named.value.get("robot", REFERENCE)
     if origin is None:

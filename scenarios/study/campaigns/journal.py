@@ -8,7 +8,7 @@ import os
 import shutil
 import threading
 from collections.abc import Callable, Iterator, Mapping
-from dataclasses import asdict, replace
+from dataclasses import fields, is_dataclass, replace
 from functools import lru_cache
 from pathlib import Path
 from typing import Any, Self
@@ -62,7 +62,7 @@ class MadeOf:
 def robot_digest(name: str) -> str:
     """Digest of a robot as it is described now, of what is wrong with it if it cannot be."""
     try:
-        return _digest(asdict(describe(name, RobotOptions())))
+        return _digest(describe(name, RobotOptions()))
     except (Exception, SystemExit) as error:  # whatever the parts of others raise
         return _digest(f"{type(error).__name__}: {error}")
 
@@ -89,8 +89,13 @@ def _words(value: Any) -> Iterator[str]:
         yield value
 
 
+def _plain(value: Any) -> Any:
+    """An array as a list; a dataclass as its fields by name, of which none is copied as `asdict` does."""
+    return {entry.name: getattr(value, entry.name) for entry in fields(value)} if is_dataclass(value) else value.tolist()
+
+
 def _digest(values: Any) -> str:
-    text = json.dumps(values, sort_keys=True, default=lambda value: value.tolist())
+    text = json.dumps(values, sort_keys=True, default=_plain)
     return hashlib.sha256(text.encode()).hexdigest()[:16]
 
 

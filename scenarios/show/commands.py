@@ -85,7 +85,7 @@ EVENTS = "/events"
 def _show_events(log: "Log", told: InspectOptions) -> None:
     """Print what happens, in words."""
     from surefoot.scenarios.record.foxglove.views import events
-    from surefoot.scenarios.show.console import plain_console, plain_table
+    from surefoot.scenarios.show.console import print_table
 
     if told.field is not None or told.export is not None:
         option = "--field" if told.field is not None else "--export"
@@ -96,7 +96,7 @@ def _show_events(log: "Log", told: InspectOptions) -> None:
         typer.echo(json.dumps([one._asdict() for one in found], allow_nan=False))
         return
     rows = ((f"{one.time:.3f}", one.kind, one.text) for one in found)
-    plain_console().print(plain_table("time [s]", "kind", "event", rows=rows))
+    print_table(("time [s]", "kind", "event"), rows)
 
 
 @app.command()

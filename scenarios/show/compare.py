@@ -1,11 +1,12 @@
 """``surefoot compare``: two logs side by side."""
 
 import math
+from collections.abc import Iterator
 from dataclasses import asdict
 from pathlib import Path
 from typing import Any
 
-from rich.table import Table
+import typer
 
 from surefoot.scenarios.errors import LogError
 from surefoot.scenarios.judge.metrics import known, plain
@@ -14,7 +15,7 @@ from surefoot.scenarios.log import Log, read
 from surefoot.scenarios.output import shown
 from surefoot.scenarios.record.foxglove import DERIVED_TOPICS
 from surefoot.scenarios.record.provenance import SCENARIO_FILE
-from surefoot.scenarios.show.console import number, plain_console, plain_table, print_valueless
+from surefoot.scenarios.show.console import number, print_table, print_valueless
 from surefoot.scenarios.show.differences import (
     VERSIONS_RECORD,
     ChannelDifference,
@@ -192,26 +193,29 @@ def _damage(name: str, log: Log, common: tuple[str, ...]) -> list[str]:
 
 def print_comparison(found: Comparison) -> None:
     """Print what is the same and what is not, the answer first."""
-    console = plain_console()
-    console.print(found.summary)
-    console.print(f"A: {found.a}\nB: {found.b}")
+    typer.echo(found.summary)
+    typer.echo(f"A: {found.a}\nB: {found.b}")
     for note in (*found.notes, *found.unread):
-        console.print(f"note: {note}")
+        typer.echo(f"note: {note}")
     for title, pairs in (("version", found.versions), ("setting", found.settings)):
         rows = ((one.name, number(one.a), number(one.b)) for one in pairs)
-        console.print(plain_table(title, "A", "B", rows=rows) if pairs else f"{title}s: the same")
+        if pairs:
+            print_table((title, "A", "B"), rows)
+        else:
+            typer.echo(f"{title}s: the same")
     if found.files:
-        console.print(f"attached files that differ: {', '.join(found.files)}")
+        typer.echo(f"attached files that differ: {', '.join(found.files)}")
     if found.records:
-        console.print(f"metadata records that differ: {', '.join(found.records)}")
+        typer.echo(f"metadata records that differ: {', '.join(found.records)}")
     empty = {one.name for one in found.metrics if one.a is None and one.b is None}
     shown = [_metric(one) for one in found.metrics if one.name not in empty]
-    console.print(plain_table("metric", "A", "B", "B - A", "unit", rows=shown))
-    print_valueless(console, empty)
-    console.print(_channels(found.channels, found.tolerance))
+    print_table(("metric", "A", "B", "B - A", "unit"), shown)
+    print_valueless(empty)
+    head = ("channel", "messages", "from [s]", f"beyond {found.tolerance:g}", "field", "A", "B")
+    print_table(head, _channels(found.channels))
     for name, topics in (("A", found.only_a), ("B", found.only_b)):
         if topics:
-            console.print(f"only in {name}: {', '.join(topics)}")
+            typer.echo(f"only in {name}: {', '.join(topics)}")
 
 
 def _metric(one: Difference) -> tuple[str, ...]:
@@ -222,19 +226,17 @@ def _metric(one: Difference) -> tuple[str, ...]:
     return one.name, value_text(one.name, one.a), value_text(one.name, one.b), f"{delta}{clock}", shown_unit(one.name)
 
 
-def _channels(channels: tuple[ChannelDifference, ...], tolerance: float) -> Table:
+def _channels(channels: tuple[ChannelDifference, ...]) -> Iterator[tuple[str, ...]]:
     """Times at which each channel parts, with the value that differs beyond the tolerance, or else by a bit."""
-    rows = plain_table("channel", "messages", "from [s]", f"beyond {tolerance:g}", "field", "A", "B")
     for one in channels:
         shown = one.tolerated or one.exact
         values = (shown.field, f"{shown.a:.5g}", f"{shown.b:.5g}") if shown else ()
         counts = " / ".join(str(count) for count in dict.fromkeys(one.messages))
         times = ("identical", "-") if one.same else (_time(one.exact), _time(one.tolerated))
-        rows.add_row(one.topic, counts, *times, *values)
+        yield one.topic, counts, *times, *values
         alone = [] if one.only_one is None else [f"in one log only at {one.only_one:.3f} s"]
         for remark in (*alone, *one.layout):
-            rows.add_row("", "", "", "", remark)
-    return rows
+            yield "", "", "", "", remark
 
 
 def _time(point: FirstDifference | None) -> str:

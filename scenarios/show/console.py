@@ -3,20 +3,18 @@
 import csv
 import importlib
 import io
+import sys
 import time
 from collections.abc import Callable, Collection, Iterable, Iterator, Mapping, Sequence
 from contextlib import contextmanager
+from itertools import zip_longest
 from pathlib import Path
 from shlex import quote
 from types import TracebackType
 from typing import TYPE_CHECKING, Any, Self
 
 import numpy as np
-from rich.console import Console
-from rich.progress import BarColumn, ProgressColumn, TextColumn
-from rich.progress import Progress as RichProgress
-from rich.table import Table
-from rich.text import Text
+import typer
 
 from surefoot.scenarios.errors import LogError, require
 from surefoot.scenarios.judge.finding import Finding
@@ -27,95 +25,113 @@ from surefoot.scenarios.output import refuse_existing, write_whole
 from surefoot.scenarios.run.skeleton import Progress
 
 if TYPE_CHECKING:
+    from rich.progress import ProgressColumn
+
     from surefoot.scenarios.show.touching import Touch
 
 _REFRESH = 0.1
 
-WIDTH = 10_000
-"""Columns that a table may have: as many as it needs. A narrow terminal wraps a line; it never loses what it says."""
-
 
 class TerminalLine:
-    """One line of some columns on standard error for as long as its context, only on a terminal."""
+    """One line on standard error for as long as its context, only on a terminal.
 
-    def __init__(self, *columns: ProgressColumn) -> None:
-        console = Console(stderr=True)
-        self._bar = RichProgress(
-            *columns, console=console, transient=True, disable=not console.is_terminal, redirect_stdout=False
-        )
+    Args:
+        columns: makes its columns, and imports them: rich takes longer than all else that a short command prints.
+        total: of its bar; None where that is not known yet.
+        state: what it says at first.
+    """
+
+    def __init__(self, columns: "Callable[[], Iterable[ProgressColumn]]", total: float | None, state: str) -> None:
+        self._bar = None
+        if sys.stderr.isatty():
+            from rich.console import Console
+            from rich.progress import Progress as RichProgress
+
+            console = Console(stderr=True)
+            self._bar = RichProgress(*columns(), console=console, transient=True, redirect_stdout=False)
+            self._task = self._bar.add_task("", total=total, state=state)
 
     def __enter__(self) -> Self:
-        self._bar.start()
+        if self._bar is not None:
+            self._bar.start()
         return self
+
+    def update(self, **changes: Any) -> None:
+        """Change what it shows, as `rich.progress.Progress.update` does."""
+        if self._bar is not None:
+            self._bar.update(self._task, **changes)
 
     @contextmanager
     def hidden(self) -> Iterator[None]:
         """Make way for what is printed meanwhile."""
-        if not self._bar.disable:
+        if self._bar is not None:
             self._bar.stop()
         try:
             yield
         finally:
-            if not self._bar.disable:
+            if self._bar is not None:
                 self._bar.start()
 
     def __exit__(
         self, kind: type[BaseException] | None, value: BaseException | None, trace: TracebackType | None
     ) -> None:
-        self._bar.stop()
+        if self._bar is not None:
+            self._bar.stop()
 
 
 class ProgressLine(TerminalLine):
     """How far a run is: simulated time, phase, real-time factor."""
 
     def __init__(self, title: str) -> None:
-        super().__init__(TextColumn("{task.description}"), BarColumn(), TextColumn("{task.fields[state]}"))
-        self._task = self._bar.add_task(title, total=1.0, state="starting")
+        def columns() -> "Iterable[ProgressColumn]":
+            from rich.progress import BarColumn, TextColumn
+
+            return TextColumn(title, markup=False), BarColumn(), TextColumn("{task.fields[state]}")
+
+        super().__init__(columns, 1.0, "starting")
         self._due = 0.0
 
     def __call__(self, progress: Progress) -> None:
         """Show where the run is, at most ten times a second."""
         now = time.monotonic()
-        if self._bar.disable or now < self._due:
+        if now < self._due:
             return
         self._due = now + _REFRESH
         speed = f"{progress.real_time_factor:.1f} x real time"
         state = f"{progress.time:6.2f} of {progress.duration:.2f} s  {progress.phase}  {speed}"
-        self._bar.update(self._task, completed=progress.time / max(progress.duration, 1e-9), state=state)
+        self.update(completed=progress.time / max(progress.duration, 1e-9), state=state)
 
 
 def print_result(name: str, verdict: Verdict, log: Path) -> None:
     """Print verdict, reasons, the first metrics, the path of the log, and of a failure what says why."""
-    console = plain_console()
-    _print_verdict(console, name, verdict)
-    console.print(_metric_table(verdict, FIRST_METRICS))
-    console.print(f"log: {log}")
+    _print_verdict(name, verdict)
+    _print_metrics(verdict, FIRST_METRICS)
+    typer.echo(f"log: {log}")
     if not verdict.passed:
-        console.print(f"why: surefoot inspect {quote(str(log))}")
+        typer.echo(f"why: surefoot inspect {quote(str(log))}")
 
 
 def print_inspection(found: Inspection, touches: "Sequence[Touch]") -> None:
     """Print everything that an inspection found."""
-    console = plain_console()
-    console.print(f"{found.log}: {found.start:.3f} s to {found.end:.3f} s")
+    typer.echo(f"{found.log}: {found.start:.3f} s to {found.end:.3f} s")
     for line in _health_lines(found.health):
-        console.print(f"health: {line}")
+        typer.echo(f"health: {line}")
     for touch in touches:
-        console.print(f"touching: {touch.one} and {touch.other}, from {touch.time:.3f} s on")
-    _print_verdict(console, found.scenario, found.verdict)
+        typer.echo(f"touching: {touch.one} and {touch.other}, from {touch.time:.3f} s on")
+    _print_verdict(found.scenario, found.verdict)
     metrics = found.verdict.metrics
     judged = {key.partition(".")[0] for key in found.verdict.criteria}
     empty = {name for name, value in metrics.items() if value is None and name not in judged}
-    console.print(_metric_table(found.verdict, tuple(name for name in metrics if name not in empty)))
-    print_valueless(console, empty)
+    _print_metrics(found.verdict, tuple(name for name in metrics if name not in empty))
+    print_valueless(empty)
     topics = ((one.topic, str(one.messages), f"{one.rate:.1f}") for one in found.topics)
-    console.print(plain_table("topic", "messages", "rate [Hz]", rows=topics))
+    print_table(("topic", "messages", "rate [Hz]"), topics)
 
 
-def print_valueless(console: Console, names: Collection[str]) -> None:
+def print_valueless(names: Collection[str]) -> None:
     """Name the metrics that nothing in a run has a value for, which would be rows without one."""
     if names:
-        console.print(f"without a value: {', '.join(sorted(names))}")
+        typer.echo(f"without a value: {', '.join(sorted(names))}")
 
 
 def _health_lines(health: Sequence[Finding]) -> list[str]:
@@ -131,35 +147,32 @@ def _health_lines(health: Sequence[Finding]) -> list[str]:
 
 def print_topic(topic: str, fields: Mapping[str, Mapping[str, Any]]) -> None:
     """Print the summary of a topic's fields."""
-    table = plain_table(topic, "shape", "unit", "messages", "not finite", "min", "mean", "max")
+    rows = []
     for name, row in fields.items():
         shape = "x".join(str(n) for n in row["shape"]) or "scalar"
         spread = [number(row[key]) for key in ("min", "mean", "max")]
-        table.add_row(name, shape, row["unit"], str(row["messages"]), str(row["not_finite"]), *spread)
-    plain_console().print(table)
+        rows.append((name, shape, row["unit"], str(row["messages"]), str(row["not_finite"]), *spread))
+    print_table((topic, "shape", "unit", "messages", "not finite", "min", "mean", "max"), rows)
 
 
-def _print_verdict(console: Console, name: str, verdict: Verdict) -> None:
-    console.print(Text(f"{name}: "), end="")
-    console.print(
-        f"verdict {'pass' if verdict.passed else 'fail'}", style="bold green" if verdict.passed else "bold red"
-    )
+def _print_verdict(name: str, verdict: Verdict) -> None:
+    word, color = ("pass", "green") if verdict.passed else ("fail", "red")
+    typer.echo(f"{name}: {typer.style(f'verdict {word}', fg=color, bold=True)}")
     for reason in verdict.reasons:
-        console.print(f"  - {reason}")
+        typer.echo(f"  - {reason}")
     for note in verdict.notes:
-        console.print(f"  note: {note}", style="yellow")
+        typer.secho(f"  note: {note}", fg="yellow")
 
 
-def _metric_table(verdict: Verdict, names: tuple[str, ...]) -> Table:
-    table = plain_table("metric", "value", "unit", "criterion")
-    missed = {reason.partition(" ")[0].partition("[")[0] for reason in verdict.reasons}
+def _print_metrics(verdict: Verdict, names: tuple[str, ...]) -> None:
+    rows, missed = [], {reason.partition(" ")[0].partition("[")[0] for reason in verdict.reasons}
     for name in names:
         value, unit = value_text(name, verdict.metrics.get(name)), shown_unit(name)
         if name == "steps_taken":
             value = f"{value} of {value_text(name, verdict.metrics.get('steps_planned'))}"
         bounds = [bound_text(name, bound) for key, bound in verdict.criteria.items() if key.partition(".")[0] == name]
-        table.add_row(name, value, unit, ", ".join(bounds), style="red" if name in missed else None)
-    return table
+        rows.append((name, value, unit, ", ".join(bounds)))
+    print_table(("metric", "value", "unit", "criterion"), rows, missed)
 
 
 def number(value: Any) -> str:
@@ -173,22 +186,19 @@ def number(value: Any) -> str:
     return f"{value:.4g}" if isinstance(value, float) else str(value).lower()
 
 
-def plain_table(*columns: str, rows: Iterable[Sequence[str]] = ()) -> Table:
-    """A table without lines, whose cells are not wrapped."""
-    table = Table(box=None, pad_edge=False)
-    for column in columns:
-        table.add_column(column, no_wrap=True)
-    for row in rows:
-        table.add_row(*row)
-    return table
+def print_table(head: Sequence[str], rows: Iterable[Sequence[str]], red: Collection[str] = ()) -> None:
+    """Print a table without lines, as wide as its cells need: a narrow terminal wraps it, and loses none of it.
 
-
-def plain_console() -> Console:
-    """Standard output; lines are never wrapped, so that paths and names can be copied, nor tables cut.
-
-    The height is given too: without it a dumb terminal, as of many CI services, has 80 columns whatever the width.
+    Args:
+        head: of its columns.
+        rows: cells; a row may end early.
+        red: first cells of the rows that a terminal shows in red.
     """
-    return Console(soft_wrap=True, markup=False, highlight=False, width=WIDTH, height=25)
+    every = [head, *rows]
+    widths = [max(map(len, column)) for column in zip_longest(*every, fillvalue="")]
+    for number, row in enumerate(every):
+        line = "  ".join(cell.ljust(width) for cell, width in zip(row, widths, strict=False)).rstrip()
+        typer.secho(line, bold=True if number == 0 else None, fg="red" if row[0] in red else None)
 
 
 _ROWS_AT_ONCE = 4096

@@ -114,20 +114,16 @@ def check(told: CheckOptions) -> None:
     """Hold scenarios against their baselines."""
     with importing():
         from surefoot.scenarios.output import refuse_existing
-        from surefoot.scenarios.show.console import plain_console
         from surefoot.scenarios.study.campaigns.sweep import cores
         from surefoot.scenarios.study.checks import check as checking
         from surefoot.scenarios.study.checks import report
 
-    console = plain_console()
     for report_file in (told.junit, told.markdown):
         if report_file is not None:
             refuse_existing(report_file, told.force)
     chosen = checking.cases(told.scenarios or (), told.baselines, told.set_ or ())
     try:
-        found = checking.check(
-            chosen, told.out, told.jobs or cores(), lambda one: report.print_checked(one, console), told.update
-        )
+        found = checking.check(chosen, told.out, told.jobs or cores(), report.print_checked, told.update)
     except KeyboardInterrupt:
         typer.echo("interrupted", err=True)
         raise typer.Exit(INTERRUPTED) from None

@@ -25,16 +25,15 @@ def check(
     """Say what was derived of a robot, measure it, and which scenarios it takes."""
     from surefoot.scenarios.apps.robots.examine import examine, known, print_examination, to_json
     from surefoot.scenarios.apps.robots.taken import CatalogueBar, chosen, rows, summary
-    from surefoot.scenarios.show.console import plain_console
     from surefoot.scenarios.study.campaigns.sweep import cores
 
-    names, console = chosen(only or ()), plain_console()
+    names = chosen(only or ())
     explained = known(robot)
     found = examine(explained.description)
     if not as_json:
-        print_examination(console, explained, found)
+        print_examination(explained, found)
     try:
-        with CatalogueBar(None if as_json else console, names) as bar:
+        with CatalogueBar(names, not as_json) as bar:
             table = bar.shown(rows(robot, names, walk, jobs or cores(), out, bar.begun))
     except KeyboardInterrupt:
         typer.echo("interrupted", err=True)

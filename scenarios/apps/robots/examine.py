@@ -7,8 +7,8 @@ from typing import Any
 
 import numpy as np
 import pinocchio as pin
+import typer
 from numpy.typing import NDArray
-from rich.console import Console
 
 from surefoot.engine import mujoco
 from surefoot.models.consistency import EnginePair
@@ -20,7 +20,7 @@ from surefoot.plugins import PluginError
 from surefoot.scenarios.errors import ScenarioError
 from surefoot.scenarios.judge.metrics import plain
 from surefoot.scenarios.setup.stance import Body, TorqueMargin, body_of, on_one_foot, standing
-from surefoot.scenarios.show.console import plain_table
+from surefoot.scenarios.show.console import print_table
 from surefoot.values import dataclass
 
 Array = NDArray[np.float64]
@@ -210,18 +210,19 @@ def _touching(robot: RobotDescription, q: Array) -> tuple[tuple[str, str], ...]:
     return tuple(dict.fromkeys(found))
 
 
-def print_examination(console: Console, explained: Explanation, found: Examination) -> None:
+def print_examination(explained: Explanation, found: Examination) -> None:
     """Print what the robot is, what was derived and what was measured."""
     robot = explained.description
-    console.print(plain_table("robot", robot.name, rows=_facts(robot)))
+    print_table(("robot", robot.name), _facts(robot))
     for title, lines in (
         ("derived", explained.derived),
         ("note", (*explained.notes, *found.notes)),
         ("fault", found.faults),
     ):
         for line in lines:
-            console.print(f"{title}: {line}", style="bold red" if title == "fault" else None)
-    console.print(plain_table("measured", "value", rows=_measured(found)))
+            fault = title == "fault" or None
+            typer.secho(f"{title}: {line}", fg="red" if fault else None, bold=fault)
+    print_table(("measured", "value"), _measured(found))
 
 
 def _facts(robot: RobotDescription) -> Iterator[tuple[str, str]]:

@@ -1,12 +1,11 @@
 """Which scenarios of the catalogue a robot takes, looked at or run, and how far that is."""
 
-from collections.abc import Callable, Iterable, Iterator, Sequence
+from collections.abc import Callable, Iterable, Iterator, Mapping, Sequence
 from dataclasses import replace
 from pathlib import Path
-from typing import Any, Literal, NamedTuple
+from typing import TYPE_CHECKING, Any, Literal, NamedTuple
 
-from rich.console import Console
-from rich.progress import BarColumn, TextColumn, TimeElapsedColumn, TimeRemainingColumn
+import typer
 
 from surefoot.scenarios import catalogue
 from surefoot.scenarios.errors import LogError, ScenarioError, SetupError
@@ -17,6 +16,9 @@ from surefoot.scenarios.setup.load import load
 from surefoot.scenarios.show.console import TerminalLine
 from surefoot.scenarios.study.campaigns.engine import side_by_side
 from surefoot.values import dataclass
+
+if TYPE_CHECKING:
+    from rich.progress import ProgressColumn
 
 CatalogueOutcome = Literal["accepted", "walks", "fails", "refused"]
 
@@ -111,23 +113,31 @@ def _lost(row: CatalogueRow, scenario: Scenario, out: Path, why: str) -> Catalog
     return replace(row, outcome="fails", why=(why,))
 
 
-_STYLES = {"walks": "bold green", "accepted": None, "fails": "bold red", "refused": "yellow"}
+_STYLES: Mapping[CatalogueOutcome, Mapping[str, Any]] = {
+    "walks": {"fg": "green", "bold": True},
+    "accepted": {},
+    "fails": {"fg": "red", "bold": True},
+    "refused": {"fg": "yellow"},
+}
 
 
 class CatalogueBar(TerminalLine):
-    """Prints each row on a console, if any; on a terminal how much simulated time is left, and how long that takes."""
+    """Shows on a terminal how much simulated time is left, and how long that takes.
 
-    def __init__(self, console: Console | None, names: Sequence[str]) -> None:
-        left = (TextColumn("left"), TimeRemainingColumn(elapsed_when_finished=True))
-        super().__init__(TextColumn("{task.fields[state]}"), BarColumn(), TimeElapsedColumn(), *left)
-        self._console, self._names = console, names
-        self._task = self._bar.add_task("", total=None, state=f"looking at {len(names)} scenarios")
+    Args:
+        names: of the scenarios.
+        printing: whether each row is printed.
+    """
+
+    def __init__(self, names: Sequence[str], printing: bool) -> None:
+        super().__init__(_columns, None, f"looking at {len(names)} scenarios")
+        self._names, self._printing = names, printing
         self._left = 0
 
     def begun(self, runs: int, duration: float) -> None:
         """See `rows`."""
         self._left = runs
-        self._bar.update(self._task, total=duration, state=f"{runs} runs, {duration:.0f} s of simulated time")
+        self.update(total=duration, state=f"{runs} runs, {duration:.0f} s of simulated time")
 
     def shown(self, rows: Iterable[CatalogueRow]) -> tuple[CatalogueRow, ...]:
         """Show rows as they come; gives them in the order of the names."""
@@ -136,17 +146,23 @@ class CatalogueBar(TerminalLine):
             found[row.scenario] = row
             if row.outcome in ("walks", "fails"):
                 self._left -= 1
-                self._bar.update(self._task, advance=row.duration, state=f"{self._left} runs left")
-            if self._console is not None:
+                self.update(advance=row.duration, state=f"{self._left} runs left")
+            if self._printing:
                 with self.hidden():
-                    self._print(self._console, row)
+                    self._print(row)
         return tuple(found[name] for name in self._names)
 
-    def _print(self, console: Console, row: CatalogueRow) -> None:
-        console.print(f"{row.scenario:<{max(map(len, self._names))}}  ", end="")
-        console.print(row.outcome, style=_STYLES[row.outcome])
+    def _print(self, row: CatalogueRow) -> None:
+        typer.echo(f"{row.scenario:<{max(map(len, self._names))}}  {typer.style(row.outcome, **_STYLES[row.outcome])}")
         for reason in row.why:
-            console.print(f"  - {reason}")
+            typer.echo(f"  - {reason}")
+
+
+def _columns() -> "Iterable[ProgressColumn]":
+    from rich.progress import BarColumn, TextColumn, TimeElapsedColumn, TimeRemainingColumn
+
+    left = (TextColumn("left"), TimeRemainingColumn(elapsed_when_finished=True))
+    return TextColumn("{task.fields[state]}"), BarColumn(), TimeElapsedColumn(), *left
 
 
 def summary(rows: Sequence[CatalogueRow]) -> str:

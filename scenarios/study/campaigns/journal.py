@@ -91,7 +91,9 @@ def _words(value: Any) -> Iterator[str]:
 
 def _plain(value: Any) -> Any:
     """An array as a list; a dataclass as its fields by name, of which none is copied as `asdict` does."""
-    return {entry.name: getattr(value, entry.name) for entry in fields(value)} if is_dataclass(value) else value.tolist()
+    if is_dataclass(value):
+        return {entry.name: getattr(value, entry.name) for entry in fields(value)}
+    return value.tolist()
 
 
 def _digest(values: Any) -> str:
@@ -171,7 +173,7 @@ class Journal:
         if record.status == "broken":
             self._broken[record.id] = record
             return
-        line = json.dumps(asdict(record), allow_nan=False).encode() + b"\n"
+        line = json.dumps(record, default=_plain, allow_nan=False).encode() + b"\n"
         with self._writing:
             try:
                 self._file.write(line)

@@ -5,11 +5,11 @@ import queue
 import threading
 from collections.abc import Callable, Iterable, Iterator, Sequence
 from contextlib import suppress
+from functools import partial
 from pathlib import Path
-from typing import Any, Literal, get_args
+from typing import TYPE_CHECKING, Any, Literal, get_args
 
 import yaml
-from rich.progress import BarColumn, MofNCompleteColumn, TextColumn, TimeElapsedColumn, TimeRemainingColumn
 
 from surefoot.scenarios.errors import install_command
 from surefoot.scenarios.output import write_whole
@@ -28,6 +28,9 @@ from surefoot.scenarios.study.campaigns.table import (
 )
 from surefoot.values import dataclass
 
+if TYPE_CHECKING:
+    from rich.progress import ProgressColumn
+
 SPEC_FILE, PAGE, RUNS_TABLE, THRESHOLDS_TABLE = "campaign.yaml", "report.html", "table", "thresholds"
 STATUSES: tuple[RunStatus, ...] = get_args(RunStatus)
 
@@ -41,11 +44,7 @@ class CampaignBar(TerminalLine):
     """
 
     def __init__(self, total: int, what: str = "runs") -> None:
-        super().__init__(
-            *(TextColumn(what), BarColumn(), MofNCompleteColumn(), TextColumn("{task.fields[state]}")),
-            *(TimeElapsedColumn(), TextColumn("left"), TimeRemainingColumn()),
-        )
-        self._task = self._bar.add_task("", total=total, state="")
+        super().__init__(partial(_columns, what), total, "")
         self._counts = dict.fromkeys(("fail", "refused", "broken"), 0)
         self._runs = 0
 
@@ -55,11 +54,18 @@ class CampaignBar(TerminalLine):
         if record.status in self._counts:
             self._counts[record.status] += 1
         counts = ", ".join(f"{count} {status}" for status, count in self._counts.items() if count)
-        self._bar.update(self._task, state=f"{self._runs} runs" + (f", {counts}" if counts else ""))
+        self.update(state=f"{self._runs} runs" + (f", {counts}" if counts else ""))
 
     def cell(self) -> None:
         """Count a cell."""
-        self._bar.advance(self._task)
+        self.update(advance=1)
+
+
+def _columns(what: str) -> "Iterable[ProgressColumn]":
+    from rich.progress import BarColumn, MofNCompleteColumn, TextColumn, TimeElapsedColumn, TimeRemainingColumn
+
+    done = (TextColumn(what), BarColumn(), MofNCompleteColumn(), TextColumn("{task.fields[state]}"))
+    return *done, TimeElapsedColumn(), TextColumn("left"), TimeRemainingColumn()
 
 
 class InterruptedRunsError(Exception):

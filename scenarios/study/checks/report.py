@@ -5,7 +5,7 @@ from collections.abc import Sequence
 from pathlib import Path
 from xml.etree import ElementTree as Xml
 
-from rich.console import Console
+import typer
 
 from surefoot.scenarios.judge.metrics import known
 from surefoot.scenarios.judge.verdict import shown_unit, value_text
@@ -68,13 +68,12 @@ def _figures(partings: Sequence[Parting]) -> list[str]:
     return list(dict.fromkeys(shown)) or [""]
 
 
-def print_checked(checked: Checked, console: Console) -> None:
+def print_checked(checked: Checked) -> None:
     """Print one run as soon as it is done."""
-    style = "bold green" if checked.passed else "bold red"
-    console.print(f"{checked.case.scenario.name}: ", end="", markup=False, highlight=False)
-    console.print(checked.status, style=style, highlight=False)
+    status = typer.style(checked.status, fg="green" if checked.passed else "red", bold=True)
+    typer.echo(f"{checked.case.scenario.name}: {status}")
     for line in lines_of(checked):
-        console.print(f"  - {line}", markup=False, highlight=False, soft_wrap=True)
+        typer.echo(f"  - {line}")
 
 
 def summary(checked: Sequence[Checked]) -> str:

@@ -5,7 +5,7 @@ import pytest
 from surefoot.scenarios.file.criteria import Bound
 from surefoot.scenarios.judge.metrics import OWN
 from surefoot.scenarios.judge.verdict import bound_text, shown_unit, value_text
-from surefoot.scenarios.show.console import plain_console, plain_table
+from surefoot.scenarios.show.console import print_table
 
 pytestmark = pytest.mark.unit
 
@@ -47,7 +47,5 @@ def test_lengths_are_in_millimetres():
 def test_no_table_is_cut_wherever_it_goes(capsys, monkeypatch, place):
     for name, value in place.items():
         monkeypatch.setenv(name, value)
-    table = plain_table("metric", "value", "note")
-    table.add_row("m" * 60, "v" * 300, "n" * 60)
-    plain_console().print(table)
+    print_table(("metric", "value", "note"), [("m" * 60, "v" * 300, "n" * 60)])
     assert f"{'m' * 60} {'v' * 300} {'n' * 60}" in " ".join(capsys.readouterr().out.split())

@@ -138,5 +138,5 @@ def test_each_scenario_is_looked_at_once_and_the_longest_run_comes_first(monkeyp
         found.append(row)
     assert looked == list(durations)
     assert told == ["3 runs of 6.00 s", "stairs-tall refused", "slope walks", "walk walks", "stand walks"]
-    with CatalogueBar(None, names) as bar:
+    with CatalogueBar(names, printing=False) as bar:
         assert [row.scenario for row in bar.shown(found)] == list(durations)

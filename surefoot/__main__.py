@@ -1,5 +1,5 @@
 """``python -m surefoot`` is the command line."""
 
-from surefoot.scenarios.apps.cli import main
+from surefoot.scenarios.apps.cli import program
 
-main()
+program()

@@ -17,7 +17,7 @@ from typing import TYPE_CHECKING, Annotated
 import typer
 
 from surefoot.errors import PluginError
-from surefoot.lazy import importing
+from surefoot.lazy import ending_at_once, importing
 from surefoot.scenarios.apps.bridge import command as bridge
 from surefoot.scenarios.apps.drive import command as drive
 from surefoot.scenarios.apps.robots import command as robots
@@ -172,6 +172,12 @@ def run(told: RunOptions) -> None:
 for product in (drive, bridge, shown, studies):
     app.add_typer(product.app)
 app.add_typer(robots.app, name="robot", cls=Commands)
+
+
+def program() -> None:
+    """Be the command line of a process, which ends with it."""
+    with ending_at_once():
+        main()
 
 
 def main(arguments: Sequence[str] | None = None) -> None:

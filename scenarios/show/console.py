@@ -18,7 +18,6 @@ import typer
 
 from surefoot.scenarios.errors import LogError, require
 from surefoot.scenarios.judge.finding import Finding
-from surefoot.scenarios.judge.inspection import Inspection
 from surefoot.scenarios.judge.verdict import FIRST_METRICS, Verdict, bound_text, shown_unit, value_text
 from surefoot.scenarios.log import ChannelData, Log
 from surefoot.scenarios.output import refuse_existing, write_whole
@@ -27,6 +26,7 @@ from surefoot.scenarios.run.skeleton import Progress
 if TYPE_CHECKING:
     from rich.progress import ProgressColumn
 
+    from surefoot.scenarios.judge.inspection import Inspection
     from surefoot.scenarios.show.touching import Touch
 
 _REFRESH = 0.1
@@ -111,7 +111,7 @@ def print_result(name: str, verdict: Verdict, log: Path) -> None:
         typer.echo(f"why: surefoot inspect {quote(str(log))}")
 
 
-def print_inspection(found: Inspection, touches: "Sequence[Touch]") -> None:
+def print_inspection(found: "Inspection", touches: "Sequence[Touch]") -> None:
     """Print everything that an inspection found."""
     typer.echo(f"{found.log}: {found.start:.3f} s to {found.end:.3f} s")
     for line in _health_lines(found.health):

@@ -5,15 +5,13 @@ from dataclasses import replace
 import numpy as np
 
 from surefoot.errors import ParameterError, at_least
-from surefoot.planner.ground.terrain import Terrain
-from surefoot.planner.parameters import PlannerParameters
 from surefoot.planner.references.com_height import STEEPEST_FALL, HeightProfile, Rise, shortest_support
 from surefoot.planner.steps.gait import GaitParameters
 from surefoot.planner.steps.phases import PhaseSamples
 from surefoot.planner.steps.schedule import Schedule
-from surefoot.planner.swing.course import Ground
+from surefoot.planner.steps.source import GaitSource
 from surefoot.planner.swing.trajectory import FEWEST_SWING_SAMPLES
-from surefoot.planner.types import Array, FeetState
+from surefoot.planner.types import Array
 
 _AT_ONCE = 2000
 """Samples of a walk that are checked together, so that a long one takes no more memory [-]."""
@@ -23,23 +21,20 @@ _DISTINCT = 6
 the last [-]."""
 
 
-def check_walk(
-    gait: GaitParameters,
-    feet: FeetState,
-    foot_length: float,
-    foot_width: float,
-    terrain: Terrain,
-    parameters: PlannerParameters,
-    height_profile: HeightProfile,
-) -> None:
-    """Refuse a gait of which `WalkingPlanner` would refuse a step while it walks; arguments as there.
+def check_walk(schedule: Schedule, height_profile: HeightProfile) -> None:
+    """Refuse a gait of which `WalkingPlanner` would refuse a step while it walks.
+
+    Args:
+        schedule: of the planner before its first plan; steps that it has laid out are not laid again.
+        height_profile: vertical CoM motion.
 
     Raises:
         ParameterError: see `WalkingPlanner`.
     """
-    if not gait.bouts and not terrain.has_edges:
+    gait = schedule.gait
+    if not gait.bouts and not schedule.ground.terrain.has_edges:
         gait = replace(gait, steps=min(gait.steps, _DISTINCT))
-    schedule = Schedule.start(gait, feet, Ground(terrain, 0.5 * np.array([foot_length, foot_width]), parameters))
+    schedule = replace(schedule, gait=gait, source=GaitSource(gait), steps=schedule.steps[:2], stands=True)
     clock, last = 0, 0.0
     while clock <= last:
         schedule = schedule.extended(clock + _AT_ONCE)

@@ -253,9 +253,10 @@ class Walk:
                 planner = profile.planner(*given, profile)
                 index(planner.parameters.horizon)
                 return planner
-        check_walk(*given)
         legs = leg_reach(self.parameters, facts, height, self.standing_height)
-        return WalkingPlanner(*given, profile, region_of(self.parameters, facts, height), legs)
+        planner = WalkingPlanner(*given, profile, region_of(self.parameters, facts, height), legs)
+        check_walk(planner.schedule, self.formulation.heights)
+        return planner
 
     @cached_property
     def robot(self) -> "RobotDescription":

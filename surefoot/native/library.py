@@ -130,7 +130,7 @@ class Library:
             raise TypeError(f"{struct} has the fields {sorted(fields)}, not {sorted(values)}")
         made = self._layouts[struct]()
         for name, value in values.items():
-            setattr(made, name, _address(f"{struct}.{name}", fields[name], value) if fields[name].pointer else value)
+            setattr(made, name, _address(struct, name, fields[name], value) if fields[name].pointer else value)
         return Bound(made, tuple(values.values()))
 
     def bind(self, function: str, bound: Bound | None = None, **values: Any) -> Callable[..., Any]:
@@ -234,7 +234,7 @@ def _function(handle: ctypes.CDLL, name: str, result: str, more: str) -> Any:
     return function
 
 
-def _address(name: str, field: Field, value: Any) -> int:
+def _address(struct: str, name: str, field: Field, value: Any) -> int:
     if isinstance(value, Bound):
         right = type(value.struct).__name__ == field.type
         address = ctypes.addressof(value.struct)
@@ -242,14 +242,14 @@ def _address(name: str, field: Field, value: Any) -> int:
         right = value.dtype == _TYPES.get(field.type) and value.flags.forc
         address = _begin(value)
     if not right:
-        raise TypeError(f"{name} points to {field.type}, which this is not: {value!r}")
+        raise TypeError(f"{struct}.{name} points to {field.type}, which this is not: {value!r}")
     return int(address)
 
 
 def _begin(array: NDArray[Any]) -> int:
     """Where the memory of an array begins, in a third of the time that its ``ctypes.data`` takes."""
-    try:
-        memory: Any = array if array.flags.c_contiguous else array.T
-        return ctypes.addressof(ctypes.c_char.from_buffer(memory))
-    except (TypeError, ValueError):  # it cannot be written to, has no element, or is not contiguous
+    flags = array.flags
+    if not (flags.writeable and flags.forc and array.size):
         return int(array.ctypes.data)
+    memory: Any = array if flags.c_contiguous else array.T
+    return ctypes.addressof(ctypes.c_char.from_buffer(memory))

@@ -300,8 +300,8 @@ def test_a_step_that_is_not_in_sight_is_refused_before_the_walk(stand):
     good, far = Twist(0.2, width=0.2), Twist(0.7, width=0.2)
     gait = GaitParameters(steps=13, bouts=(Bout(1.0, (*(good,) * 11, far, good)),))
     given = (gait, stand(), *HUMAN, flat(), PlannerParameters())
-    WalkingPlanner(*given)
+    planner = WalkingPlanner(*given)
     with pytest.raises(ParameterError, match="footstep 12 would land") as refused:
-        check_walk(*given, SmoothHeight())
+        check_walk(planner.schedule, SmoothHeight())
     assert refused.value.key == ("footsteps", 11, "ahead")
-    check_walk(GaitParameters(steps=10**6), *given[1:], SmoothHeight())
+    check_walk(WalkingPlanner(GaitParameters(steps=10**6), *given[1:]).schedule, SmoothHeight())

@@ -196,9 +196,9 @@ def print_table(head: Sequence[str], rows: Iterable[Sequence[str]], red: Collect
     """
     every = [head, *rows]
     widths = [max(map(len, column)) for column in zip_longest(*every, fillvalue="")]
-    for number, row in enumerate(every):
+    for at, row in enumerate(every):
         line = "  ".join(cell.ljust(width) for cell, width in zip(row, widths, strict=False)).rstrip()
-        typer.secho(line, bold=True if number == 0 else None, fg="red" if row[0] in red else None)
+        typer.secho(line, bold=True if at == 0 else None, fg="red" if row[0] in red else None)
 
 
 _ROWS_AT_ONCE = 4096

@@ -135,6 +135,9 @@ def _rest_of(step: Step, samples: float, ground: Ground) -> SwingTrajectory:
 _LEVEL = RollSpan(0.0, 1.0, 0.0)
 """That of a foot that does not roll."""
 
+_ROW = 34
+"""Numbers by which the kernel knows a phase [-]."""
+
 
 class CompiledFeet:
     """Kernel beside `nominal_feet`, and where it writes.
@@ -157,18 +160,23 @@ class CompiledFeet:
             sample_time=sample_time,
             touching=TOUCHING,
             heading_of_frame=0.0,
+            sunk=0.0,
             most=most,
             which=self._which,
             elapsed=self._elapsed,
             clock=self._clock,
             phases=self._clock,
+            first=0,
+            count=0,
             steps=self._clock,
             **self.arrays,
         )
         self._place = kernels.bind("nominal_feet_make", self._feet)
-        # Of which phases, steps and plan frame the kernel is told, and its rows of phases from one up to another.
-        self._laid: tuple[tuple[Phase, ...], Schedule, Array] | None = None
-        self._rows, self._from, self._to, self._places = np.zeros((0, 36)), 0, 0, np.zeros((0, 4))
+        # Of which phases there are rows, from one up to another; of which steps and plan frame the kernel is told.
+        self._phases: tuple[Phase, ...] = ()
+        self._rows, self._from, self._to = np.zeros((0, _ROW)), 0, 0
+        self._placed: tuple[Schedule, Array] | None = None
+        self._places = np.zeros((0, 4))
 
     def move(
         self,
@@ -183,13 +191,13 @@ class CompiledFeet:
         self._which[:count], self._elapsed[:count] = which, samples.elapsed[:count]
         self._clock[:count] = samples.clock[:count]
         first, last = which[[0, -1]].tolist()
-        laid = self._laid
-        if laid is None or laid[0] is not phases or laid[1] is not schedule or laid[2] is not frame[0]:
-            self._laid = phases, schedule, frame[0]
-            self._rows, self._from, self._to = np.zeros((len(phases), 36)), first, first
+        if phases is not self._phases:
+            self._keep(phases)
+        if self._placed is None or self._placed[0] is not schedule or self._placed[1] is not frame[0]:
+            self._placed = schedule, frame[0]
             self._place_steps(schedule, frame)
         # Phases beyond those asked for wait until they are: where all were laid at once, that plan took the longest.
-        if first < self._from:
+        if not self._from <= first <= self._to:
             self._from = self._to = first
         if last >= self._to:
             self._lay(self._rows[self._to : last + 1], phases[self._to : last + 1], schedule)
@@ -208,36 +216,52 @@ class CompiledFeet:
             foot = flown[0].foot
             _fly(self._soles[foot, :count], self._heading[foot, :count], samples, frame, *flown)
 
+    def _keep(self, phases: tuple[Phase, ...]) -> None:
+        """Look at other phases, of which those have rows already that were seen before: the very same ones."""
+        before, rows, gone = self._phases, np.empty((len(phases), _ROW)), 0
+        while gone < len(before) and before[gone] is not phases[0]:
+            gone += 1
+        same = 0
+        for one, other in zip(before[gone:], phases, strict=False):
+            if one is not other:
+                break
+            same += 1
+        rows[:same] = self._rows[gone : gone + same]
+        self._phases, self._rows = phases, rows
+        self._from, self._to = max(self._from - gone, 0), min(max(self._to - gone, 0), same)
+
     def _place_steps(self, schedule: Schedule, frame: tuple[Array, Array]) -> None:
         """Tell the kernel the places of steps."""
-        (rotation, origin), position = frame, schedule.positions
+        (rotation, origin), position, struct = frame, schedule.positions, self._feet.struct
         self._places = places = np.empty((len(position), 4))
         places[:, :2], places[:, 2], places[:, 3] = (position[:, :2] - origin) @ rotation, position[:, 2], schedule.yaws
-        self._feet.struct.heading_of_frame = math.atan2(rotation[1, 0], rotation[0, 0])
+        struct.heading_of_frame = math.atan2(rotation[1, 0], rotation[0, 0])
+        struct.first, struct.count = schedule.steps[0].number, len(position)
+        struct.sunk = _SUNK * schedule.ground.parameters.size.length
         self._feet.point(steps=places)
 
     def _lay(self, rows: Array, phases: tuple[Phase, ...], schedule: Schedule) -> None:
-        """Fill the rows of phases, shape (n, 36), with swings that begin with theirs."""
-        steps, heads, last = schedule.steps, [], len(schedule.steps) - 1
+        """Fill the rows of phases, shape (n, 34), with swings that begin with theirs."""
+        heads = []
         for row, phase in zip(rows, phases, strict=True):
-            at, single = schedule.index(phase.leaves - 1), phase.kind is PhaseKind.SINGLE
+            stands, single = phase.leaves - 1, phase.kind is PhaseKind.SINGLE
             if single:
                 _swing_in(row, phase, schedule, 0.0)
-            around = at - 1 if at else last, at, min(at + 1, last)
-            heads.append((*around, steps[at].place.foot is Foot.RIGHT, single, 0.0, *(phase.roll or _LEVEL)))
-        rows[:, :9] = heads
+            right = schedule.step(stands).place.foot is Foot.RIGHT
+            heads.append((stands, right, single, 0.0, *(phase.roll or _LEVEL)))
+        rows[:, :7] = heads
 
 
 def _swing_in(row: Array, phase: Phase, schedule: Schedule, elapsed: float) -> None:
     """Tell the swing of a single support in its row; see `_swing`."""
-    swing, row[5] = _swing(phase, schedule, elapsed)
-    row[9:-1], row[-1] = _told(swing), _over(schedule.index(phase.leaves - 1), swing, schedule)
+    swing, row[3] = _swing(phase, schedule, elapsed)
+    row[7:] = _told(swing)
 
 
 @lru_cache(maxsize=16)
 def _told(swing: SwingTrajectory) -> Array:
-    """The swing of a step as the kernel takes it, shape (26,)."""
+    """The swing of a step as the kernel takes it, shape (27,)."""
     end, past = swing.target, swing.search.motion(-TOUCHING)[0]
     times = swing.start_time, swing.glide_end, swing.apex_time, swing.touchdown_time, swing.rise_start, swing.fall_start
     ways = swing.level[:, 0], swing.rise[:, 0], swing.fall[:, 0]
-    return np.concatenate(((*times, end[0], end[2] - past), *ways))
+    return np.concatenate(((*times, end[0], end[2] - past), *ways, end[2:3]))

@@ -624,21 +624,25 @@ typedef struct {
 /*
  * Counterpart of `planner.references.nominal_feet.nominal_feet` without a swing that is flown.
  *
- * Of each phase from that of the first sample on `phases` has 36 numbers: rows of `steps` before, stance and after; 1
- * for a right stance foot; 1 for a single support; how late its swing begins; begin, end and angle of a roll; then of
- * the swing start and end of the glide, apex, touchdown, starts of rise and fall, progress and height at the touchdown, and
- * the coefficients of progress, rise and fall; and how far over the swing's end the foot lands. Soles and angles have rows
- * of `most` samples.
+ * Of each phase from that of the first sample on `phases` has 34 numbers: of the step whose foot stands its number, and 1
+ * for a right one; 1 for a single support; how late its swing begins; begin, end and angle of a roll; then of the swing
+ * start and end of the glide, apex, touchdown, starts of rise and fall, progress and height at the touchdown, the
+ * coefficients of progress, rise and fall, and the height of its target. `steps` has `count` rows, from number `first` on.
+ * A foot that lands higher than its swing ends, or lower, by more than `sunk`, is there. Soles and angles have rows of
+ * `most` samples.
  */
 typedef struct {
     double sample_time;
     double touching;
     double heading_of_frame;
+    double sunk;
     int64_t most;
     const int64_t *which;
     const double *elapsed;
     const double *clock;
     const double *phases;
+    int64_t first;
+    int64_t count;
     const double *steps;
     double *soles;
     double *heading;

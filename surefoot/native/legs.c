@@ -21,24 +21,25 @@ static double polynomial(const double *c, double t) {
 
 void nominal_feet_make(const NominalFeet *feet, int64_t samples) {
     for (int64_t k = 0; k < samples; k++) {
-        const double *phase = feet->phases + 36 * (feet->which[k] - feet->which[0]), *swing = phase + 9;
+        const double *phase = feet->phases + 34 * (feet->which[k] - feet->which[0]), *swing = phase + 7;
+        const int64_t row = (int64_t)phase[0] - feet->first, last = feet->count - 1;
+        const double *before = feet->steps + 4 * (row ? row - 1 : last), *stance = feet->steps + 4 * row;
+        const double *after = feet->steps + 4 * (row < last ? row + 1 : last);
         double progress = 0.0, height = 0.0, rolled = 0.0;
-        if (phase[4] != 0.0) {
-            const double last = swing[3], touching = feet->touching;
-            const double t = (feet->elapsed[k] - phase[5]) * feet->sample_time;
+        if (phase[2] != 0.0) {
+            const double end = swing[3], touching = feet->touching, over = after[2] - before[2] - swing[26];
+            const double t = (feet->elapsed[k] - phase[3]) * feet->sample_time;
             const int falls = t >= swing[2] - touching;
             progress = polynomial(swing + 8, clamp(t - swing[0], 0.0, swing[1] - swing[0]));
             height = falls ? polynomial(swing + 20, t - swing[5]) : polynomial(swing + 14, t - swing[4]);
-            if (t >= last - touching) progress = swing[6], height = swing[7];
-            height += progress * phase[35];
+            if (t >= end - touching) progress = swing[6], height = swing[7];
+            if (fabs(over) > feet->sunk) height += progress * over;
         }
-        if (phase[8] != 0.0) {
-            const double s = (feet->clock[k] - phase[6]) / (phase[7] - phase[6]), w = s * (1.0 - s);
-            rolled = s > 0.0 && s < 1.0 ? phase[8] * (64.0 * w * w * w) : 0.0;
+        if (phase[6] != 0.0) {
+            const double s = (feet->clock[k] - phase[4]) / (phase[5] - phase[4]), w = s * (1.0 - s);
+            rolled = s > 0.0 && s < 1.0 ? phase[6] * (64.0 * w * w * w) : 0.0;
         }
-        const double *before = feet->steps + 4 * (int64_t)phase[0], *stance = feet->steps + 4 * (int64_t)phase[1];
-        const double *after = feet->steps + 4 * (int64_t)phase[2];
-        const int64_t right = phase[3] != 0.0, stands = right * feet->most + k, swings = (1 - right) * feet->most + k;
+        const int64_t right = phase[1] != 0.0, stands = right * feet->most + k, swings = (1 - right) * feet->most + k;
         for (int i = 0; i < 3; i++) {
             feet->soles[3 * stands + i] = stance[i];
             feet->soles[3 * swings + i] = before[i] + (i < 2 ? progress * (after[i] - before[i]) : height);

@@ -106,7 +106,7 @@ class CompiledPreview:
         """See `ReferencePreview._sight`; the height that `moved` gets is where the kernels read it."""
         clock, steady = execution.clock, execution.clock.steady
         if support is not self._support:
-            self._turn_to(execution, support)
+            self.turn_to(execution.schedule, support)
         if not steady:
             self._course[:] = clock.begun, clock.elapsed, clock.length, *clock.coefficients
         self._look(steady, clock.now, self._smooth is not None)
@@ -130,9 +130,8 @@ class CompiledPreview:
         made = np.ndarray((), self._layout, memory)
         return self._samples(execution, made), made["point"], _a_height(made["height"], made["stiffness"])
 
-    def _turn_to(self, execution: Execution, support: Support) -> None:
+    def turn_to(self, schedule: Schedule, support: Support) -> None:
         """Look at other steps from now on."""
-        schedule = execution.schedule
         table = schedule.phase_table
         size = max(len(table.phases), len(support.heights))
         if size > self._room:

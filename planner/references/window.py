@@ -179,6 +179,12 @@ class ReferencePreview:
         self._support = present_support(last, execution, half_size, self._margin, self._room, tabulated)
         return self._support
 
+    def foresee(self, execution: Execution) -> None:
+        """Make now what the next tick makes of its support, if the execution then is this one."""
+        support = self.support(execution)
+        if self._compiled is not None:
+            self._compiled.turn_to(execution.schedule, support)
+
     def window(
         self,
         execution: Execution,

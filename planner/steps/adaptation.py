@@ -1,5 +1,6 @@
 """What a step that is adapted to a push does to the schedule: steps inserted, later ones moved, a heel lifted."""
 
+import math
 from dataclasses import replace
 
 import numpy as np
@@ -8,7 +9,7 @@ from surefoot.planner.geometry import frame_rotation
 from surefoot.planner.steps.schedule import Schedule
 from surefoot.planner.steps.step import Stop
 from surefoot.planner.swing.heel_off import roll_span, stretched
-from surefoot.planner.types import Foot, PhaseKind, Twist
+from surefoot.planner.types import Array, Foot, PhaseKind, Twist
 
 
 def with_step_in_place(schedule: Schedule, now: float, foot: Foot | None = None, at_once: bool = True) -> Schedule:
@@ -91,3 +92,13 @@ def with_heel_lifted(schedule: Schedule, number: int, radius: float) -> Schedule
         return schedule
     step = replace(step, roll=roll_span(stance.double, step.lift_off, step.single, angle))
     return replace(schedule, steps=(*schedule.steps[:at], step, *schedule.steps[at + 1 :]))
+
+
+def beyond(schedule: Schedule, number: int, foot: Foot, position: Array, dcm: Array) -> bool:
+    """Whether the DCM is beyond a foot that lands, on its own side of the step of a number, by half of its width.
+
+    The other foot would have to cross that one to catch the body. `position` and `dcm` are in the world frame, shape (3,) and (2,) [m].
+    """
+    yaw, (u, v), (x, y, _) = schedule.step(number).place.yaw, dcm.tolist(), position.tolist()
+    ahead = math.cos(yaw) * (v - y) - math.sin(yaw) * (u - x)
+    return foot.side * ahead > float(schedule.ground.half_size[1])

@@ -7,9 +7,10 @@ from dataclasses import replace
 
 import numpy as np
 
-from surefoot.planner.geometry import frame_rotation, greatest, sole_pose, wrap_angle
+from surefoot.planner.geometry import greatest, sole_pose, wrap_angle
 from surefoot.planner.model.time_scaling import CLOCK_ROUNDING, TimeScaling
-from surefoot.planner.steps.adaptation import aligned, with_foot_again, with_heel_lifted
+from surefoot.planner.steps.adaptation import aligned, beyond, with_foot_again, with_heel_lifted
+from surefoot.planner.steps.foresight import Foresight
 from surefoot.planner.steps.gait import GaitParameters
 from surefoot.planner.steps.phases import Phase, PhaseSamples
 from surefoot.planner.steps.schedule import Schedule
@@ -66,6 +67,7 @@ class Execution:
             before the present double support [m].
         adapts: whether footsteps may be adapted at all.
         legs: what they can do; None where it is not known.
+        foresight: of the tick in which the next phase begins.
     """
 
     def __init__(self, schedule: Schedule, window: int, legs: LegReach | None = None) -> None:
@@ -74,7 +76,7 @@ class Execution:
         self.landed, self.waited, self.lowering = 0, 0, 0.0
         self.early = self.fixed = self.adapted = False
         self.swing: SwingTrajectory | None = None
-        self.clock = TimeScaling(t)
+        self.clock, self.foresight = TimeScaling(t), Foresight()
         # Where footsteps were chosen for the faces that they land on it takes legs that are known to move them.
         self._wide = schedule.ground.terrain.footholds.follow
         self.adapts = parameters.step_adaptation.places and (self._wide or legs is not None)
@@ -166,32 +168,28 @@ class Execution:
                 if not contact and self.waited < self._patience:
                     self.waited += 1
                     return
-                self._land(feet.position[swing])
+                self._land(feet.position[swing], clock.now)
             elif felt:
                 if self.adapted and self._times:
-                    self._land(feet.position[swing])
                     clock, over = clock.showing(phase.end), True
+                    self._land(feet.position[swing], clock.now)
                 else:
                     self.early = True
                     self.fix(feet.position[swing])
+        elif over:
+            self.schedule = self.foresight.forgotten(self.schedule, clock.now)
         self.clock = clock
-        if over:
-            self.schedule = self.schedule.forgotten(clock.now)
         if over or phase.samples == math.inf:
             self.follow(self.schedule)
         if self.phase.swing_foot is None:
             self.swing = None
 
     def _lands_short(self, feet: FeetState, tell_dcm: Callable[[], Array | None]) -> bool:
-        """Whether the DCM is beyond the swing foot on its own side as it lands; nothing is on it yet, so it goes on.
-
-        The other foot would have to cross that one to catch the body.
-        """
+        """Whether the DCM is beyond the swing foot on its own side as it lands; nothing is on it yet, so it goes on."""
         foot = self.phase.swing_foot
         if foot is None or not self._times or (dcm := tell_dcm()) is None:
             return False
-        across = frame_rotation(self.schedule.step(self.landed).place.yaw)[:, 1]
-        return foot.side * float(across @ (dcm - feet.position[foot, :2])) > float(self.schedule.ground.half_size[1])
+        return beyond(self.schedule, self.landed, foot, feet.position[foot], dcm)
 
     def change(self, gait: GaitParameters, source: StepSource | None, time: float) -> None:
         """Walk on otherwise; what is left of the present phase changes in proportion to its duration.
@@ -249,7 +247,8 @@ class Execution:
         if swing is not None and not self.fixed and swing.touchdown_time - time <= frozen + CLOCK_ROUNDING:
             self.fix(swing.footstep)
 
-    def _land(self, position: Array) -> None:
+    def _land(self, position: Array, now: float) -> None:
+        self.schedule = self.foresight.forgotten(self.schedule, now)
         self.fix(position)
         self.landed += 1
         if self.adapted and self.legs is not None:

@@ -1,0 +1,53 @@
+"""What the tick in which a phase begins makes of the schedule, made by the tick before it."""
+
+from copy import copy
+from typing import TYPE_CHECKING
+
+from surefoot.errors import ParameterError
+from surefoot.planner.model.time_scaling import CLOCK_ROUNDING
+from surefoot.planner.steps.schedule import Schedule
+
+if TYPE_CHECKING:
+    from surefoot.planner.steps.execution import Execution
+
+
+class Foresight:
+    """Spreads over two ticks what a tick in which a phase begins would do alone, which has the most to do of all.
+
+    It changes no plan: what was foreseen is taken where the very same would be made, else it is made.
+    """
+
+    def __init__(self) -> None:
+        self._from: tuple[Schedule, float] | None = None
+        self._foreseen: Schedule
+
+    def forgotten(self, schedule: Schedule, now: float) -> Schedule:
+        """The schedule without what lies behind an instant of the clock [samples]."""
+        return self._foreseen if self._knows(schedule, now) else schedule.forgotten(now)
+
+    def _knows(self, schedule: Schedule, now: float) -> bool:
+        return self._from is not None and self._from[0] is schedule and self._from[1] == now
+
+    def next_of(self, execution: "Execution") -> "Execution | None":
+        """An execution at the next tick, where a foot then leaves the ground or the weight begins to move.
+
+        It is None where the present phase goes on, and before a touchdown. Where that is will be felt, so that of the
+        schedule only its phases are known.
+        """
+        if execution.left > 1.0 + CLOCK_ROUNDING:
+            return None
+        schedule, clock, later = execution.schedule, execution.clock.advanced(), None
+        if self._knows(schedule, clock.now):
+            return None
+        ahead = schedule.forgotten(clock.now)
+        if execution.phase.swing_foot is None:
+            later = copy(execution)
+            later.clock = clock
+            try:
+                later.follow(ahead)
+            except ParameterError:  # which is said when the step is to come into sight
+                return None
+            ahead = later.schedule
+        ahead.phase_table, ahead.first_support, ahead.supports, ahead.yaws  # noqa: B018  known from now on
+        self._from, self._foreseen = (schedule, clock.now), ahead
+        return later

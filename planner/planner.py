@@ -217,7 +217,7 @@ class WalkingPlanner:
         if execution.phase.swing_foot is not None:
             execution.swing_to(footsteps[0], time, feet, motion.solver is SolverStatus.HELD)
         self._plan = self._world_plan(time, support, window, local, motion, footsteps, balance)
-        if self._plan.phase.left < 1.5 * self.parameters.sample_time:  # the next tick may begin another phase
+        if self._plan.phase.left < 2.0 * self.parameters.sample_time:  # the next tick may begin another
             later = execution.foresight.next_of(execution)
             if later is not None:
                 self._preview.foresee(later)

@@ -97,8 +97,9 @@ def with_heel_lifted(schedule: Schedule, number: int, radius: float) -> Schedule
 def beyond(schedule: Schedule, number: int, foot: Foot, position: Array, dcm: Array) -> bool:
     """Whether the DCM is beyond a foot that lands, on its own side of the step of a number, by half of its width.
 
-    The other foot would have to cross that one to catch the body. `position` and `dcm` are in the world frame, shape (3,) and (2,) [m].
+    The other foot would have to cross that one to catch the body. Where that foot and the DCM are is told in the world
+    frame, shape (3,) and (2,) [m].
     """
     yaw, (u, v), (x, y, _) = schedule.step(number).place.yaw, dcm.tolist(), position.tolist()
     ahead = math.cos(yaw) * (v - y) - math.sin(yaw) * (u - x)
-    return foot.side * ahead > float(schedule.ground.half_size[1])
+    return bool(foot.side * ahead > schedule.ground.half_size[1])

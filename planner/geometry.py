@@ -25,9 +25,11 @@ def wrap_angle(angle: float) -> float:
 
 def seen_from(stance: Footstep, place: Footstep) -> Footstep:
     """A foothold in the frame of another one, that of its stance foot; its turn is not wrapped."""
-    rotation, way = frame_rotation(stance.yaw), place.position - stance.position
-    position, normal = np.array((way, place.normal))
-    position[:2], normal[:2] = way[:2] @ rotation, place.normal[:2] @ rotation
+    # In plain numbers: for products of small arrays numpy takes longer than for all of this.
+    c, s = math.cos(stance.yaw), math.sin(stance.yaw)
+    (x, y, z), (u, v, w), (a, b, upright) = place.position.tolist(), stance.position.tolist(), place.normal.tolist()
+    x, y = x - u, y - v
+    position, normal = np.array(((x * c + y * s, y * c - x * s, z - w), (a * c + b * s, b * c - a * s, upright)))
     return Footstep(place.foot, position, place.yaw - stance.yaw, normal, place.step, place.touchdown_time)
 
 
@@ -94,8 +96,13 @@ def sole_corners(footstep: Footstep, half_size: Array) -> Array:
         footstep: where the sole stands.
         half_size: half of its length and width, shape (2,) [m].
     """
+    return points_of_sole(footstep, CORNERS * half_size)
+
+
+def points_of_sole(footstep: Footstep, points: Array) -> Array:
+    """Points of a sole seen from above, which are told in its own frame, shape (n, 2) [m]."""
     rotation = sole_rotation(footstep.yaw, *sole_angles(footstep.normal, footstep.yaw))
-    return np.asarray(footstep.position[:2] + (CORNERS * half_size) @ rotation[:2, :2].T)
+    return np.asarray(footstep.position[:2] + points @ rotation[:2, :2].T)
 
 
 def rotations(quaternions: Array) -> Array:

@@ -223,11 +223,12 @@ class WalkingPlanner:
                 self._preview.foresee(later)
         return self._plan
 
-    def _dcm(self, state: CentroidalState) -> Array | None:
-        """DCM in the world frame by the ω of the last plan, shape (2,) [m]; None without one."""
+    def _dcm(self, state: CentroidalState) -> tuple[float, float] | None:
+        """DCM in the world frame by the ω of the last plan [m]; None without one."""
         if self._plan is None:
             return None
-        return np.asarray(state.com[:2] + state.com_velocity[:2] / self._plan.omega[0])
+        (x, y, _), (u, v, _), omega = state.com.tolist(), state.com_velocity.tolist(), self._plan.omega.item(0)
+        return x + u / omega, y + v / omega
 
     @staticmethod
     def _unsure(state: CentroidalState, window: Window) -> float:

@@ -29,7 +29,6 @@ docs/recovery.md has every formula.
 """
 
 import math
-from dataclasses import replace
 from functools import lru_cache
 
 import numpy as np
@@ -123,7 +122,7 @@ class StepProblem:
         )
 
 
-_a_step = maker(StepProblem)
+_a_step, _a_footstep = maker(StepProblem), maker(Footstep)
 
 
 @lru_cache(maxsize=2)
@@ -133,7 +132,8 @@ def _known(step: Step, stance: Step, ground: Ground, hips: float) -> tuple[Foots
     The hips swing a foot with an acceleration, infinite for legs that nobody knows [m/s^2].
     """
     numbers = ground.parameters.recovery
-    place = replace(seen_from(stance.place, step.place), yaw=wrap_angle(step.place.yaw - stance.place.yaw))
+    seen, turn = seen_from(stance.place, step.place), wrap_angle(step.place.yaw - stance.place.yaw)
+    place = _a_footstep(seen.foot, seen.position, turn, seen.normal, seen.step, seen.touchdown_time)
     face = place.position[:2] + room_left(step, stance.place, numbers.parallel)
     shortest = 0.0 if hips == math.inf else shortest_swing(step, hips, numbers.lifting)
     return place, face, shortest, ground.terrain.footholds.crossed(step.lift)

@@ -5,13 +5,13 @@ from typing import NamedTuple
 
 import numpy as np
 
-from surefoot.planner.geometry import frame_rotation, sole_corners
+from surefoot.planner.geometry import CORNERS, frame_rotation, points_of_sole
 from surefoot.planner.steps.execution import Execution
 from surefoot.planner.steps.phases import PhaseSamples
 from surefoot.planner.steps.schedule import Schedule
 from surefoot.planner.types import Array, Foot, Footstep, PhaseKind
 from surefoot.polygon import convex_hull
-from surefoot.values import dataclass
+from surefoot.values import dataclass, maker
 
 
 @dataclass(frozen=True, slots=True)
@@ -146,7 +146,8 @@ class Sole(NamedTuple):
     @classmethod
     def of(cls, place: Footstep, half_size: Array, margin: float) -> "Sole":
         """That of a foot, arguments as of `present_support`."""
-        return cls(place, sole_corners(place, half_size), sole_corners(place, margin * half_size))
+        corners = points_of_sole(place, np.concatenate((CORNERS * half_size, CORNERS * (margin * half_size))))
+        return cls(place, corners[:4], corners[4:])
 
 
 def hull_of(corners: Array, *others: Array) -> Array:
@@ -192,6 +193,9 @@ class Support:
         return self.rotation, self.origin
 
 
+_a_support = maker(Support)
+
+
 def load_left(samples: PhaseSamples, support: Support) -> Array:
     """Planned share of the weight on the left foot over a window, shape (n,) [-]; it goes with the ZMP reference."""
     index, fraction, share = samples.index, samples.fraction, support.on_left
@@ -229,13 +233,14 @@ def present_support(
     else:
         outer, inner = hull_of(*(sole.outer for sole in soles)), hull_of(*(sole.inner for sole in soles))
     stay = not schedule.ground.terrain.footholds.follow
-    return Support(
+    table = tabulated(schedule, landed, key.free, np.minimum(margin * half_size, room), stay)
+    return _a_support(
         key=key,
         rotation=frame_rotation(latest.yaw),
         origin=latest.position[:2],
-        table=tabulated(schedule, landed, key.free, np.minimum(margin * half_size, room), stay),
-        heights=schedule.support_points[:, 2],
-        on_left=schedule.at_supports(np.array([float(step.place.foot is Foot.LEFT) for step in schedule.steps])),
+        table=table,
+        heights=table[0, :, 6],
+        on_left=schedule.on_left,
         outer=outer,
         inner=inner,
         footholds=(latest, before) if latest.foot is Foot.LEFT else (before, latest),

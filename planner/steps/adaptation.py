@@ -11,6 +11,9 @@ from surefoot.planner.steps.step import Stop
 from surefoot.planner.swing.heel_off import roll_span, stretched
 from surefoot.planner.types import Array, Foot, PhaseKind, Twist
 
+Dcm = tuple[float, float]
+"""The DCM in the world frame [m]."""
+
 
 def with_step_in_place(schedule: Schedule, now: float, foot: Foot | None = None, at_once: bool = True) -> Schedule:
     """A step on the spot is inserted where the robot stands or would stand next, before anything else.
@@ -94,12 +97,11 @@ def with_heel_lifted(schedule: Schedule, number: int, radius: float) -> Schedule
     return replace(schedule, steps=(*schedule.steps[:at], step, *schedule.steps[at + 1 :]))
 
 
-def beyond(schedule: Schedule, number: int, foot: Foot, position: Array, dcm: Array) -> bool:
+def beyond(schedule: Schedule, number: int, foot: Foot, position: Array, dcm: Dcm) -> bool:
     """Whether the DCM is beyond a foot that lands, on its own side of the step of a number, by half of its width.
 
-    The other foot would have to cross that one to catch the body. Where that foot and the DCM are is told in the world
-    frame, shape (3,) and (2,) [m].
+    The other foot would have to cross that one to catch the body. Position and DCM are in the world frame [m].
     """
-    yaw, (u, v), (x, y, _) = schedule.step(number).place.yaw, dcm.tolist(), position.tolist()
+    yaw, (u, v), (x, y, _) = schedule.step(number).place.yaw, dcm, position.tolist()
     ahead = math.cos(yaw) * (v - y) - math.sin(yaw) * (u - x)
     return bool(foot.side * ahead > schedule.ground.half_size[1])

@@ -9,7 +9,7 @@ import numpy as np
 
 from surefoot.planner.geometry import greatest, sole_pose, wrap_angle
 from surefoot.planner.model.time_scaling import CLOCK_ROUNDING, TimeScaling
-from surefoot.planner.steps.adaptation import aligned, beyond, with_foot_again, with_heel_lifted
+from surefoot.planner.steps.adaptation import Dcm, aligned, beyond, with_foot_again, with_heel_lifted
 from surefoot.planner.steps.foresight import Foresight
 from surefoot.planner.steps.gait import GaitParameters
 from surefoot.planner.steps.phases import Phase, PhaseSamples
@@ -147,12 +147,12 @@ class Execution:
             return self.schedule.samples(np.maximum(clock, 0.0))
         return self.schedule.samples(clock, (rate, bend / self._parameters.sample_time))
 
-    def advance(self, feet: FeetState, dcm: Callable[[], Array | None] = lambda: None) -> None:
+    def advance(self, feet: FeetState, dcm: Callable[[], Dcm | None] = lambda: None) -> None:
         """Go on by one tick.
 
         Args:
             feet: as measured.
-            dcm: tells it likewise, in the world frame, shape (2,) [m]; None where it is not known yet.
+            dcm: tells it likewise, in the world frame [m]; None where it is not known yet.
         """
         clock = self.clock.advanced()
         phase, swing = self.phase, self.phase.swing_foot
@@ -184,7 +184,7 @@ class Execution:
         if self.phase.swing_foot is None:
             self.swing = None
 
-    def _lands_short(self, feet: FeetState, tell_dcm: Callable[[], Array | None]) -> bool:
+    def _lands_short(self, feet: FeetState, tell_dcm: Callable[[], Dcm | None]) -> bool:
         """Whether the DCM is beyond the swing foot on its own side as it lands; nothing is on it yet, so it goes on."""
         foot = self.phase.swing_foot
         if foot is None or not self._times or (dcm := tell_dcm()) is None:

@@ -48,6 +48,7 @@ class Foresight:
             except ParameterError:  # which is said when the step is to come into sight
                 return None
             ahead = later.schedule
-        ahead.phase_table, ahead.first_support, ahead.supports, ahead.yaws  # noqa: B018  known from now on
+        ahead.phase_table, ahead.first_support, ahead.supports, ahead.on_left  # noqa: B018  known from now on
+        ahead.positions, ahead.yaws  # noqa: B018  likewise
         self._from, self._foreseen = (schedule, clock.now), ahead
         return later

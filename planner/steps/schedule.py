@@ -24,7 +24,7 @@ from surefoot.planner.steps.phases import Phase, PhaseSamples, PhaseTable, phase
 from surefoot.planner.steps.source import GaitSource, StepSource
 from surefoot.planner.steps.step import Step, Stop, durations, known_step, lay, start_step
 from surefoot.planner.swing.course import Ground
-from surefoot.planner.types import Array, FeetState, PhaseKind, Twist
+from surefoot.planner.types import Array, FeetState, Foot, PhaseKind, Twist
 from surefoot.values import dataclass
 
 _MORE_STEPS = 3
@@ -36,8 +36,8 @@ _STOP_AHEAD = 4
 _LAID_OUT = 120.0
 """Time of a walk on bare ground whose steps are laid before it begins; a minute of them takes some milliseconds [s]."""
 
-_OF_PHASES = ("phases", "phase_table", "_starts", "first_support", "supports", "yaws")
-"""What of a schedule does not depend on where its steps land."""
+_START, _OF_PHASES = attrgetter("start"), ("phases", "phase_table", "first_support", "supports", "on_left", "yaws")
+"""When a phase begins, and what of a schedule does not depend on where its steps land."""
 
 
 @dataclass(frozen=True)
@@ -100,10 +100,6 @@ class Schedule:
         return PhaseTable.of(self.phases)
 
     @cached_property
-    def _starts(self) -> list[float]:
-        return [phase.start for phase in self.phases]
-
-    @cached_property
     def first_support(self) -> int:
         """Number in the walk of the first support point in sight."""
         return max(self.phases[0].support - 2, 0)
@@ -136,6 +132,11 @@ class Schedule:
     def at_supports(self, values: Array) -> Array:
         """What values of the steps, shape (n, ...), are at the support points: means of two, shape (m, ...)."""
         return np.asarray(0.5 * (values[self.supports[:, 0]] + values[self.supports[:, 1]]))
+
+    @cached_property
+    def on_left(self) -> Array:
+        """Share of the weight on the left foot at the support points, shape (m,) [-]."""
+        return self.at_supports(np.array([float(step.place.foot is Foot.LEFT) for step in self.steps]))
 
     @cached_property
     def support_points(self) -> Array:
@@ -171,7 +172,7 @@ class Schedule:
 
     def following(self, clock: float) -> tuple[Phase, ...]:
         """The phase at an instant and those after it."""
-        return self.phases[max(bisect_right(self._starts, clock + CLOCK_ROUNDING) - 1, 0) :]
+        return self.phases[max(bisect_right(self.phases, clock + CLOCK_ROUNDING, key=_START) - 1, 0) :]
 
     def stops(self, clock: float) -> bool:
         """Whether the robot stands at an instant, or will with the next step that lands."""
@@ -331,13 +332,16 @@ class Schedule:
         if not terrain.footholds.follow:
             moved = step.landing(position, step.place.normal)
             return self._placed((*self.steps[:at], moved, *self.steps[at + 1 :]), self.shift)
-        way, places = position[:2] - step.place.position[:2], self.positions[at:].copy()
+        way, positions = position[:2] - step.place.position[:2], self.positions.copy()
+        places = positions[at:]
         places[0] = position
         places[1:, :2] += way
         places[1:, 2] = terrain.heights(places[1:, :2])
         landings = zip(self.steps[at:], places, terrain.normals(places[:, :2]), strict=True)
         later = (step.landing(place, normal) for step, place, normal in landings)
-        return self._placed((*self.steps[:at], *later), self.shift + way)
+        placed = self._placed((*self.steps[:at], *later), self.shift + way)
+        vars(placed)["positions"] = positions
+        return placed
 
     def _placed(self, steps: tuple[Step, ...], shift: Array) -> "Schedule":
         """The schedule with steps that differ in their places alone, of which the same phases follow."""

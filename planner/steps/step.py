@@ -17,7 +17,7 @@ from surefoot.planner.swing.quintics import PEAK
 from surefoot.planner.swing.step_region import check_reach
 from surefoot.planner.swing.trajectory import SwingCourse, SwingTrajectory, start_swing
 from surefoot.planner.types import Array, Foot, Footstep, Twist
-from surefoot.values import dataclass
+from surefoot.values import dataclass, maker
 
 _MEASURED = 6
 """Decimals to which heights of footholds are compared: start feet may be some nanometres off the ground [-]."""
@@ -117,8 +117,8 @@ class Step:
     def landing(self, position: Array, normal: Array) -> "Step":
         """The step that lands elsewhere, positions and normals of shape (3,) [m, -]."""
         values = [*_values(self)]
-        values[_PLACE] = Footstep(self.place.foot, position, self.place.yaw, normal)
-        return Step(*values)
+        values[_PLACE] = _a_footstep(self.place.foot, position, self.place.yaw, normal)
+        return _a_step(*values)
 
     def beside(self, shift: Array, terrain: Terrain) -> Footstep:
         """The footstep so far from its nominal place as its face goes.
@@ -158,8 +158,8 @@ class Step:
         return replace(self, stop=stop, lift_off=lift_off, single=single, double=double, roll=roll, swing=swing)
 
 
-_values = attrgetter(*Step.__slots__)
-"""What a step is made of; `dataclasses.replace` would take three times as long."""
+_values, _a_step, _a_footstep = attrgetter(*Step.__slots__), maker(Step), maker(Footstep)
+"""What a step is made of, and made by; `dataclasses.replace` would take three times as long."""
 
 _PLACE = Step.__slots__.index("place")
 
@@ -280,9 +280,10 @@ def room_left(step: Step, stance: Footstep, parallel: float) -> Array:
 
     Told as `turned_room` is.
     """
-    yaw = step.nominal.yaw
-    way = (step.place.position - step.nominal.position)[:2] @ frame_rotation(yaw)
-    return turned_room(step.room - way, yaw - stance.yaw, parallel)
+    yaw, (x, y, _), (u, v, _) = step.nominal.yaw, step.place.position.tolist(), step.nominal.position.tolist()
+    c, s, x, y, ((a, b), (d, e)) = math.cos(yaw), math.sin(yaw), x - u, y - v, step.room.tolist()
+    ahead, left = x * c + y * s, y * c - x * s
+    return turned_room(np.array(((a - ahead, b - left), (d - ahead, e - left))), yaw - stance.yaw, parallel)
 
 
 def turned_room(room: Array, angle: float, parallel: float) -> Array:
@@ -290,7 +291,7 @@ def turned_room(room: Array, angle: float, parallel: float) -> Array:
 
     Rooms are told as least and greatest way, shape (2, 2) [m]; up to the angle `parallel` both are the same [rad].
     """
-    if not np.isfinite(room).all() or abs(angle) < parallel:
+    if abs(angle) < parallel or not all(map(math.isfinite, room.ravel().tolist())):
         return room
     # As far as the room goes along each axis; of the rhombus between these ends the box with half their ways.
     axes = frame_rotation(angle).T

@@ -6,6 +6,7 @@ the tilt; uphill, pitch is negative.
 """
 
 import math
+from collections.abc import Sequence
 
 import numpy as np
 
@@ -205,13 +206,13 @@ def quintic(start: Array, end: Array, duration: float) -> Array:
         Coefficients of 1, t, ..., t^5, shape (6, k).
     """
     if start.shape[1] == 1:
-        return np.array(_quintic(start[:, 0].tolist(), end[:, 0].tolist(), duration))[:, None]
+        return np.array(one_quintic(start[:, 0].tolist(), end[:, 0].tolist(), duration))[:, None]
     columns = zip(start.T.tolist(), end.T.tolist(), strict=True)
-    return np.array([*zip(*(_quintic(*ends, duration) for ends in columns), strict=True)])
+    return np.array([*zip(*(one_quintic(*ends, duration) for ends in columns), strict=True)])
 
 
-def _quintic(start: list[float], end: list[float], t: float) -> tuple[float, ...]:
-    """The coefficients in plain numbers, which are fast."""
+def one_quintic(start: Sequence[float], end: Sequence[float], t: float) -> tuple[float, ...]:
+    """The coefficients of a single quintic as `quintic` tells them, in plain numbers, which are fast."""
     (x, v, a), (y, w, b) = start, end
     gap = y - x - t * v - 0.5 * t * t * a
     speed, bend = t * (w - v - t * a), t * t * (b - a)

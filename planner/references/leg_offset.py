@@ -25,6 +25,7 @@ from surefoot.planner.model.leg_chain import LegChain, bind_chain
 from surefoot.planner.parameters import LegInertia
 from surefoot.planner.references.com_height import HeightPreview
 from surefoot.planner.references.nominal_feet import CompiledFeet, Feet, Moving, nominal_feet
+from surefoot.planner.steps.schedule import Schedule
 from surefoot.planner.types import GRAVITY, Array
 
 
@@ -78,6 +79,11 @@ class LegOffset:
         compiled = None if leg.chain is None or kernels is None else (kernels, leg.chain)
         self._compiled = compiled and _CompiledOffset(*compiled, toe, sample_time, most)
 
+    def foresee(self, schedule: Schedule, frame: tuple[Array, Array]) -> None:
+        """Make now what takes no more than the steps and the plan frame of the next tick."""
+        if self._compiled is not None:
+            self._compiled.feet.turn_to(schedule.phases, schedule, frame)
+
     def made(
         self,
         moving: Moving,
@@ -109,12 +115,12 @@ class LegOffset:
 
 
 class _CompiledOffset:
-    """Arrays of the kernel that does what `LegOffset.made` does."""
+    """Arrays of the kernel that does what `LegOffset.made` does, and `feet`, the kernel that moves them."""
 
     def __init__(self, kernels: Library, chain: LegChain, toe: float, sample_time: float, most: int) -> None:
         (bound, points), stride = bind_chain(kernels, chain), most + 9
         (self._point, self._offset), self._stiffness = np.empty((2, most, 2)), np.empty(most)
-        self._height, self._feet = np.empty((3, most)), CompiledFeet(kernels, sample_time, most + 1)
+        self._height, self.feet = np.empty((3, most)), CompiledFeet(kernels, sample_time, most + 1)
         motion, own = bind_motion(kernels, sample_time, most)
         self._position, self._softened = own["position"], own["stiffness"]
         self._run = kernels.bind(
@@ -128,7 +134,7 @@ class _CompiledOffset:
             point=self._point,
             stiffness=self._stiffness,
             height=self._height,
-            **self._feet.arrays,
+            **self.feet.arrays,
             zmp=own["zmp"],
             com=np.empty((most + 1, 3)),
             scratch=np.empty((23, stride)),
@@ -148,7 +154,7 @@ class _CompiledOffset:
         passes: int,
     ) -> Array:
         n = len(point)
-        self._feet.move(n + 1, *moving)
+        self.feet.move(n + 1, *moving)
         self._position[:], self._point[:n], self._offset[:n] = position, point, offset
         self._softened[:n], self._stiffness[:n], self._height[:, :n] = softened, height.stiffness, height.height
         self._run(n, passes)

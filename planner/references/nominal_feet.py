@@ -191,11 +191,7 @@ class CompiledFeet:
         self._which[:count], self._elapsed[:count] = which, samples.elapsed[:count]
         self._clock[:count] = samples.clock[:count]
         first, last = which[[0, -1]].tolist()
-        if phases is not self._phases:
-            self._keep(phases)
-        if self._placed is None or self._placed[0] is not schedule or self._placed[1] is not frame[0]:
-            self._placed = schedule, frame[0]
-            self._place_steps(schedule, frame)
+        self.turn_to(phases, schedule, frame)
         # Phases beyond those asked for wait until they are: where all were laid at once, that plan took the longest.
         if not self._from <= first <= self._to:
             self._from = self._to = first
@@ -215,6 +211,14 @@ class CompiledFeet:
         if flown is not None:
             foot = flown[0].foot
             _fly(self._soles[foot, :count], self._heading[foot, :count], samples, frame, *flown)
+
+    def turn_to(self, phases: tuple[Phase, ...], schedule: Schedule, frame: tuple[Array, Array]) -> None:
+        """Look at other phases, or steps, or from another plan frame, from now on."""
+        if phases is not self._phases:
+            self._keep(phases)
+        if self._placed is None or self._placed[0] is not schedule or self._placed[1] is not frame[0]:
+            self._placed = schedule, frame[0]
+            self._place_steps(schedule, frame)
 
     def _keep(self, phases: tuple[Phase, ...]) -> None:
         """Look at other phases, of which those have rows already that were seen before: the very same ones."""

@@ -184,6 +184,7 @@ class ReferencePreview:
         support = self.support(execution)
         if self._compiled is not None:
             self._compiled.turn_to(execution.schedule, support)
+        self._legs.foresee(execution.schedule, support.frame)
 
     def window(
         self,

@@ -1,10 +1,11 @@
 """What a quintic between two states asks for: its acceleration, its way, and a way round."""
 
 import math
+from collections.abc import Sequence
 
 import numpy as np
 
-from surefoot.planner.geometry import quintic
+from surefoot.planner.geometry import one_quintic, quintic
 from surefoot.planner.types import Array
 
 PEAK = 5.77
@@ -24,6 +25,11 @@ def farthest(acceleration: Array | float, speed: Array | float, time: Array | fl
     """
     changed = np.where(np.asarray(speed) > 0.0, BRAKING, GAINING) * speed
     return np.asarray((acceleration * np.square(time) + changed * time) / PEAK)
+
+
+def farthest_of_one(acceleration: float, speed: float, time: float) -> float:
+    """The same as `farthest` in plain numbers, which are fast [m]."""
+    return (acceleration * (time * time) + (BRAKING if speed > 0.0 else GAINING) * speed * time) / PEAK
 
 
 def detour(time: float, duration: float) -> tuple[Array, Array]:
@@ -62,3 +68,37 @@ def to_rest(state: Array, target: Array, duration: float) -> Array:
     end = np.zeros((3, state.shape[1]))
     end[0] = target
     return quintic(state, end, duration)
+
+
+def up_and_down(
+    state: Sequence[float],
+    apex: float,
+    end: tuple[float, float],
+    times: tuple[float, float, float],
+    lifting: float,
+    soon: float,
+) -> tuple[Array | None, Array]:
+    """Height of a foot from a state up to an apex, unless that is over, and down to the ground.
+
+    The apex is no higher than an acceleration lifts the foot until then and lowers it from there; a foot that is too
+    high for that goes down at once. 4 h / t² at the apex keeps both monotone.
+
+    Args:
+        state: height, its rate and the rate of that now [m, m/s, m/s^2].
+        apex: height of the apex [m].
+        end: height and speed down at the touchdown [m, m/s].
+        times: now, at the apex, and at the touchdown [s].
+        lifting: vertical acceleration that is not to be exceeded [m/s^2].
+        soon: time before an apex up to which it counts as over [s].
+
+    Returns:
+        Coefficients of the rise, none where the foot goes down at once, and of the fall, shape (6, 1) each.
+    """
+    (now, highest, touchdown), (low, sinking), (height, speed, _) = times, end, state
+    up, down, rest = highest - now, touchdown - highest, (low, -sinking, 0.0)
+    room = lifting * down**2 / PEAK
+    if up <= soon or height - low > room:
+        return None, np.array(one_quintic(state, rest, touchdown - now))[:, None]
+    apex = min(apex, low + room, height + farthest_of_one(lifting, speed, up))
+    top = apex, 0.0, -4.0 * min((apex - height) / up**2, (apex - low) / down**2)
+    return np.array(one_quintic(state, top, up))[:, None], np.array(one_quintic(top, rest, down))[:, None]

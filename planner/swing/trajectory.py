@@ -6,11 +6,11 @@ from functools import lru_cache
 
 import numpy as np
 
-from surefoot.planner.geometry import quintic, shifted
+from surefoot.planner.geometry import one_quintic, shifted
 from surefoot.planner.parameters import GroundSearch, PlannerParameters
-from surefoot.planner.swing.quintics import PEAK, detour, farthest, straight_time, to_rest
+from surefoot.planner.swing.quintics import detour, straight_time, to_rest, up_and_down
 from surefoot.planner.types import Array, Foot
-from surefoot.values import dataclass
+from surefoot.values import dataclass, maker
 
 TOUCHING = 1e-9
 """Times of ticks carry rounding; a piece begins this much early [s]."""
@@ -234,23 +234,15 @@ class SwingTrajectory:
         return moved._with_height(time, state[:, 2:3], max(float(state[0, 2]), self.footstep[2] + self.clearance))
 
     def _with_height(self, time: float, state: Array, apex: float) -> "SwingTrajectory":
-        """Height from a state at `time` up to an apex, unless that is over, and down to the target.
-
-        The apex is no higher than the acceleration `lifting` lifts the foot until then and lowers it from there; a foot
-        that is too high for that goes down at once. 4 h / t² at the apex keeps both monotone.
-        """
-        end = np.array([[self.target[2]], [-self.search.touchdown_speed], [0.0]])
-        up, down, (height, speed) = self.apex_time - time, self.touchdown_time - self.apex_time, state[:2, 0].tolist()
-        room = self.lifting * down**2 / PEAK
-        if up <= TOUCHING or height - self.target[2] > room:
-            fall = quintic(state, end, self.touchdown_time - time)
+        """Height from a state at `time` on, shape (3, 1), as of `up_and_down`."""
+        end, times = (self.target.item(2), self.search.touchdown_speed), (time, self.apex_time, self.touchdown_time)
+        rise, fall = up_and_down(state[:, 0].tolist(), apex, end, times, self.lifting, TOUCHING)
+        if rise is None:
             return replace(self, apex_time=min(self.apex_time, time), fall_start=time, fall=fall)
-        apex = min(apex, float(self.target[2]) + room, height + float(farthest(self.lifting, speed, up)))
-        bend = -4.0 * min((apex - state[0, 0]) / up**2, (apex - end[0, 0]) / down**2)
-        top = np.array([[apex], [0.0], [bend]])
-        rise, fall = quintic(state, top, up), quintic(top, end, down)
         return replace(self, rise_start=time, rise=rise, fall_start=self.apex_time, fall=fall)
 
+
+_a_swing = maker(SwingTrajectory)
 
 _FACTORIAL = np.array([[1.0], [1.0], [2.0]])
 _EXPONENTS = np.arange(6)
@@ -299,31 +291,32 @@ def start_swing(
             it stands, so that the ground is there. Of the truth, whose deviation is zero, neither counts [m].
         lifting: vertical acceleration that it is not to exceed where it is replanned [m/s^2].
     """
-    t, rest = parameters.sample_time, np.zeros((3, 6))
-    search, aim = parameters.search.unsure(*unsure)
+    t, (search, aim), begin = parameters.sample_time, parameters.search.unsure(*unsure), pose.tolist()
     target = np.array(footstep)
     target[2] -= aim
-    rest[0] = pose
     touchdown = start + samples * t - min(parameters.touchdown_lead, _MOST_LEAD * samples * t)
     glide_start, apex, glide_end = (
         start + round(share * samples) * t for share in (course.glide_start, course.apex, course.glide_end)
     )
-    glide_end = min(glide_end, touchdown)
-    trajectory = SwingTrajectory(
+    glide_end, end = min(glide_end, touchdown), target.tolist()
+    ways = [((begin[k], 0.0, 0.0), (end[k], 0.0, 0.0), glide_end - glide_start) for k in _GLIDING]
+    top, still, times = max(begin[2], footstep.item(2)) + course.height, (begin[2], 0.0, 0.0), (start, apex, touchdown)
+    rise, fall = up_and_down(still, top, (end[2], search.touchdown_speed), times, lifting, TOUCHING)
+    falls = rise is None
+    return _a_swing(
         foot=foot,
         start_time=glide_start,
         glide_end=glide_end,
-        apex_time=apex,
+        apex_time=min(apex, start) if falls else apex,
         touchdown_time=touchdown,
         target=target,
         clearance=course.height,
         search=search,
-        level=to_rest(rest[:, _GLIDING], target[_GLIDING], glide_end - glide_start),
+        level=np.array([*zip(*(one_quintic(*way) for way in ways), strict=True)]),
         rise_start=start,
-        rise=np.zeros((6, 1)),
-        fall_start=apex,
-        fall=np.zeros((6, 1)),
+        rise=np.zeros((6, 1)) if rise is None else rise,
+        fall_start=start if falls else apex,
+        fall=fall,
         aim=aim,
         lifting=lifting,
     )
-    return trajectory._with_height(start, rest[:, 2:3], max(float(pose[2]), float(footstep[2])) + course.height)

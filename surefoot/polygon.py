@@ -5,7 +5,7 @@ from numpy.typing import NDArray
 
 Array = NDArray[np.float64]
 
-_FLAT, _ROUNDING = 1e-12, 16.0 * float(np.finfo(np.float64).eps)
+FLAT, ROUNDING = 1e-12, 16.0 * float(np.finfo(np.float64).eps)
 """Which part of the extent a vertex stands out at least, and what rounding of the coordinates may feign [-]."""
 
 
@@ -22,7 +22,7 @@ def convex_hull(points: Array) -> Array:
     hull = [*_chain(ordered)[:-1], *_chain(ordered[::-1])[:-1]]
     right, left, above, below = max(x), min(x), max(y), min(y)
     extent = max(right - left, above - below)
-    flat = extent * (_FLAT * extent + _ROUNDING * max(abs(right), abs(left), abs(above), abs(below)))
+    flat = extent * (FLAT * extent + ROUNDING * max(abs(right), abs(left), abs(above), abs(below)))
     corner = 0
     while corner < len(hull):
         if _left_turn(hull[corner - 1], hull[corner], hull[(corner + 1) % len(hull)]) > flat:

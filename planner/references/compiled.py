@@ -19,12 +19,13 @@ from surefoot.planner.references.com_height import (
     preview_limits,
 )
 from surefoot.planner.references.height_transition import LOOKED_AT
-from surefoot.planner.references.zmp_reference import Support, ZmpReference
+from surefoot.planner.references.zmp_reference import Sole, Support, ZmpReference, hulls_of
 from surefoot.planner.steps.execution import Execution
 from surefoot.planner.steps.gait import GaitParameters
 from surefoot.planner.steps.phases import PhaseSamples
 from surefoot.planner.steps.schedule import Schedule
 from surefoot.planner.types import GRAVITY, Array
+from surefoot.polygon import FLAT, ROUNDING
 from surefoot.values import maker
 
 if TYPE_CHECKING:
@@ -98,7 +99,7 @@ class CompiledPreview:
         )
         self._support: Support | None = None
         self._make_room(_ROOM)
-        self.support_table = CompiledTable(kernels).fill
+        self.support_table, self.sole_hulls = CompiledTable(kernels).fill, CompiledHulls(kernels).find
 
     def sight(
         self, execution: Execution, support: Support, moved: Callable[[Execution, Array], Array | None]
@@ -229,3 +230,32 @@ class CompiledTable:
             steps=self._table[1],
         )
         self._run = self._kernels.bind("support_table_fill", self._bound)
+
+
+class CompiledHulls:
+    """Kernel beside `planner.references.zmp_reference.hulls_of`.
+
+    Args:
+        kernels: the library.
+    """
+
+    def __init__(self, kernels: Library) -> None:
+        self._corners, self._hulls, self._counts = np.zeros((2, 8, 2)), np.zeros((2, 8, 2)), np.zeros(2, np.int64)
+        self._find = kernels.bind(
+            "sole_hulls_find",
+            flat=FLAT,
+            rounding=ROUNDING,
+            corners=self._corners,
+            hulls=self._hulls,
+            counts=self._counts,
+        )
+
+    def find(self, soles: tuple[Sole, ...]) -> tuple[Array, Array]:
+        """See `hulls_of`; that of a single sole is its corners."""
+        if len(soles) != 2:
+            return hulls_of(soles)
+        (one, other), corners = soles, self._corners
+        corners[0, :4], corners[0, 4:], corners[1, :4], corners[1, 4:] = one.outer, other.outer, one.inner, other.inner
+        self._find()
+        (outer, inner), hulls = self._counts.tolist(), self._hulls.copy()
+        return hulls[0, :outer], hulls[1, :inner]

@@ -21,6 +21,7 @@ from surefoot.planner.references.zmp_reference import (
     Support,
     SupportKey,
     ZmpReference,
+    hulls_of,
     load_left,
     present_support,
     support_table,
@@ -174,9 +175,11 @@ class ReferencePreview:
 
     def support(self, execution: Execution) -> Support:
         """What carries the robot now."""
-        tabulated = support_table if self._compiled is None else self._compiled.support_table
+        kernels = (support_table, hulls_of)
+        if self._compiled is not None:
+            kernels = self._compiled.support_table, self._compiled.sole_hulls
         last, half_size = self._support, self._half_size
-        self._support = present_support(last, execution, half_size, self._margin, self._room, tabulated)
+        self._support = present_support(last, execution, half_size, self._margin, self._room, *kernels)
         return self._support
 
     def foresee(self, execution: Execution) -> None:

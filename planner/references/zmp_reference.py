@@ -159,6 +159,11 @@ def hull_of(corners: Array, *others: Array) -> Array:
     return np.concatenate((corners[first:], corners[:first]))
 
 
+def hulls_of(soles: tuple[Sole, ...]) -> tuple[Array, Array]:
+    """Convex hulls of soles and of what of them is inside the ZMP margin, as `convex_hull` tells them."""
+    return hull_of(*(sole.outer for sole in soles)), hull_of(*(sole.inner for sole in soles))
+
+
 @dataclass(frozen=True, slots=True)
 class Support:
     """The present support and the plan frame on it.
@@ -209,6 +214,7 @@ def present_support(
     margin: float,
     room: tuple[float, float],
     tabulated: Callable[..., Array] = support_table,
+    hulls: Callable[[tuple[Sole, ...]], tuple[Array, Array]] = hulls_of,
 ) -> Support:
     """The support of this tick, the last one while its key stays.
 
@@ -219,6 +225,7 @@ def present_support(
         margin: share of the sole in which the ZMP must stay [-].
         room: what of the half size the ankles can bear, forward and sideways [m].
         tabulated: `support_table`, or a kernel in its place.
+        hulls: `hulls_of`, likewise.
     """
     schedule, landed, phase = execution.schedule, execution.landed, execution.phase
     key = SupportKey(schedule, landed, phase.start, execution.free)
@@ -231,7 +238,7 @@ def present_support(
     if last is not None and [*map(id, soles)] == [*map(id, last.soles)]:
         outer, inner = last.outer, last.inner
     else:
-        outer, inner = hull_of(*(sole.outer for sole in soles)), hull_of(*(sole.inner for sole in soles))
+        outer, inner = hulls(soles)
     stay = not schedule.ground.terrain.footholds.follow
     table = tabulated(schedule, landed, key.free, np.minimum(margin * half_size, room), stay)
     return _a_support(

@@ -105,4 +105,32 @@ void backward_solve(const double *U, int64_t size, int64_t stride, double *x);
 /* The least multiple of four from a count on: right sides of `equality_qp_solve` take so much. */
 int64_t padded(int64_t count);
 
+/* Twice the area of a triangle, positive where the way from a by b to c turns left. */
+static inline double left_turn(const double *a, const double *b, const double *c) {
+    return (b[0] - a[0]) * (c[1] - a[1]) - (b[1] - a[1]) * (c[0] - a[0]);
+}
+
+/* Anticlockwise hull of a few points by Andrew's monotone chain; sorts them. Returns how many vertices there are. */
+static inline int64_t hull(double (*points)[2], int64_t count, double (*vertices)[2]) {
+    int64_t found = 0;
+    for (int64_t k = 1; k < count; k++)
+        for (int64_t i = k; i > 0; i--) {
+            double *a = points[i - 1], *b = points[i];
+            if (a[0] < b[0] || (a[0] == b[0] && a[1] <= b[1])) break;
+            const double swapped[2] = {a[0], a[1]};
+            memcpy(a, b, sizeof swapped);
+            memcpy(b, swapped, sizeof swapped);
+        }
+    for (int upper = 0; upper < 2; upper++) {
+        const int64_t first = found;
+        for (int64_t k = 0; k < count; k++) {
+            const double *point = points[upper ? count - 1 - k : k];
+            while (found >= first + 2 && left_turn(vertices[found - 2], vertices[found - 1], point) <= 0.0) found--;
+            memcpy(vertices[found++], point, sizeof *points);
+        }
+        found--; /* The last one begins the other half. */
+    }
+    return found;
+}
+
 #endif

@@ -697,6 +697,17 @@ typedef struct {
     const double *on_left;
 } Sight;
 
+/* Counterpart of `planner.references.zmp_reference.hulls_of` two soles: eight outer corners of both, eight inner ones. */
+typedef struct {
+    double flat;
+    double rounding;
+    const double *corners;
+    double *hulls;
+    int64_t *counts;
+} SoleHulls;
+
+void sole_hulls_find(const SoleHulls *soles);
+
 /* Counterpart of `planner.references.zmp_reference.support_table`, of the steps of a schedule. */
 typedef struct {
     int64_t points;

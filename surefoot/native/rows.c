@@ -120,34 +120,6 @@ double distance_rate(const Distance *distance) {
     return dot(distance->gradient, distance->terms->v, nv);
 }
 
-/* Whether c is to the right of the way from a to b, or on it. */
-static int not_left(const double *a, const double *b, const double *c) {
-    return (b[0] - a[0]) * (c[1] - a[1]) - (b[1] - a[1]) * (c[0] - a[0]) <= 0.0;
-}
-
-/* Anticlockwise hull of a few points by Andrew's monotone chain; sorts them. Returns how many vertices there are. */
-static int64_t hull(double (*points)[2], int64_t count, double (*vertices)[2]) {
-    int64_t found = 0;
-    for (int64_t k = 1; k < count; k++)
-        for (int64_t i = k; i > 0; i--) {
-            double *a = points[i - 1], *b = points[i];
-            if (a[0] < b[0] || (a[0] == b[0] && a[1] <= b[1])) break;
-            const double swapped[2] = {a[0], a[1]};
-            memcpy(a, b, sizeof swapped);
-            memcpy(b, swapped, sizeof swapped);
-        }
-    for (int upper = 0; upper < 2; upper++) {
-        const int64_t first = found;
-        for (int64_t k = 0; k < count; k++) {
-            const double *point = points[upper ? count - 1 - k : k];
-            while (found >= first + 2 && not_left(vertices[found - 2], vertices[found - 1], point)) found--;
-            memcpy(vertices[found++], point, sizeof *points);
-        }
-        found--; /* The last one begins the other half. */
-    }
-    return found;
-}
-
 /* Counterpart of `wbc.balance.SupportRegion.rebuild`. */
 void support_rebuild(const Support *support, int64_t left, int64_t right, int64_t rolling) {
     const int64_t active[2] = {left, right};

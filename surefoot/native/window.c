@@ -69,6 +69,37 @@ static void join_boxes(double x, double y, double *box) {
     memcpy(box, wide[0] * wide[1] >= along[0] * along[1] ? wide : along, sizeof wide);
 }
 
+/* Counterpart of `surefoot.polygon.convex_hull`, of the corners of two soles; sorts them. */
+static int64_t hull_of_soles(double (*points)[2], double (*vertices)[2], double flat, double rounding) {
+    double low[2] = {INFINITY, INFINITY}, high[2] = {-INFINITY, -INFINITY};
+    int64_t count = hull(points, 8, vertices), corner = 0;
+    for (int64_t k = 0; k < 8; k++)
+        for (int i = 0; i < 2; i++) low[i] = fmin(low[i], points[k][i]), high[i] = fmax(high[i], points[k][i]);
+    const double extent = fmax(high[0] - low[0], high[1] - low[1]);
+    const double far = fmax(fmax(fabs(high[0]), fabs(low[0])), fmax(fabs(high[1]), fabs(low[1])));
+    const double least = extent * (flat * extent + rounding * far);
+    while (corner < count) {
+        const double *before = vertices[corner ? corner - 1 : count - 1], *after = vertices[(corner + 1) % count];
+        if (left_turn(before, vertices[corner], after) > least) {
+            corner++;
+            continue;
+        }
+        memmove(vertices + corner, vertices + corner + 1, (count - 1 - corner) * sizeof *vertices);
+        count--;
+        corner = corner > 1 ? corner - 1 : 0;
+    }
+    return count;
+}
+
+void sole_hulls_find(const SoleHulls *soles) {
+    double points[8][2], vertices[18][2];
+    for (int64_t k = 0; k < 2; k++) {
+        memcpy(points, soles->corners + 16 * k, sizeof points);
+        soles->counts[k] = hull_of_soles(points, vertices, soles->flat, soles->rounding);
+        memcpy(soles->hulls + 16 * k, vertices, soles->counts[k] * sizeof *vertices);
+    }
+}
+
 void support_table_fill(const SupportTable *table) {
     const double *origin = table->positions + 3 * table->stance, yaw = table->yaws[table->stance];
     const double c = cos(yaw), s = sin(yaw);

@@ -10,6 +10,7 @@ from functools import lru_cache
 import numpy as np
 
 from surefoot.native.library import Bound, Library
+from surefoot.planner.model.vectors import bend, cross, crossed, dot, headings, pitched, turned
 from surefoot.planner.types import Array
 from surefoot.values import dataclass
 
@@ -111,65 +112,72 @@ class LegChain:
         Returns:
             At all samples but the first and the last, shape (n - 2, 3) [m^2/s^2].
         """
-        frame, legs = _headings(0.5 * (heading[0] + heading[1])), _headings(heading)
-        offsets = self._rolled(legs, pitch, toe)
-        ankles = soles - com + offsets[0]
-        foot = ankles + offsets[1] + _OUTWARD * self.foot_outward * legs[..., 1, :]
-        hips, knees, middle = self._posture(ankles, frame, legs[..., 0, :])
-        trunk = middle + _turned(frame, self.trunk)
+        frame, legs = headings(0.5 * (heading[0] + heading[1])), headings(heading)
+        left, (ankles, lever) = legs[:, 1], self._rolled(legs, pitch, toe)
+        ankles += (soles - com).swapaxes(1, 2)
+        foot = ankles + lever + _OUTWARD * self.foot_outward * left
+        hips, knees, middle = self._posture(ankles, frame, legs[:, 0])
+        trunk = middle + turned(frame, self.trunk)
         points = np.concatenate((hips, knees, ankles, foot, trunk[None]))
-        bend = _bend(points, sample_time)
-        rate = _crossed(points[:, 1:-1], np.tensordot(_masses(self), bend, 1))
-        return rate + self._beside(hips, knees, ankles, legs[..., 1, :], sample_time)
+        bends = bend(points, sample_time)
+        pull = (_masses(self) @ bends.reshape(len(points), -1)).reshape(bends.shape)
+        rate = crossed(points[..., 1:-1], pull)
+        if any(link.ahead or link.outward for link in (self.thigh, self.shank)):
+            rate += self._beside(points[:6], left, sample_time)
+        return rate.T
 
     def joints(
         self, com: Array, soles: Array, heading: Array, pitch: Array | None = None, toe: float = 0.0
     ) -> tuple[Array, Array, Array]:
         """Hips, knees and ankles in the world, shape (2, n, 3) each [m]; arguments as of `momentum_rate`."""
-        frame, legs = _headings(0.5 * (heading[0] + heading[1])), _headings(heading)
-        ankles = soles - com + self._rolled(legs, pitch, toe)[0]
-        hips, knees, _ = self._posture(ankles, frame, legs[..., 0, :])
-        return hips + com, knees + com, ankles + com
+        frame, legs = headings(0.5 * (heading[0] + heading[1])), headings(heading)
+        ankles = self._rolled(legs, pitch, toe)[0] + (soles - com).swapaxes(1, 2)
+        hips, knees, _ = self._posture(ankles, frame, legs[:, 0])
+        return hips.swapaxes(1, 2) + com, knees.swapaxes(1, 2) + com, ankles.swapaxes(1, 2) + com
 
-    def _beside(self, hips: Array, knees: Array, ankles: Array, left: Array, sample_time: float) -> Array:
-        """What links whose CoM lies beside their rod add to the rate of angular momentum, shape (n - 2, 3) [m^2/s^2].
+    def _beside(self, ends: Array, left: Array, sample_time: float) -> Array:
+        """What links whose CoM lies beside their rod add to the rate of angular momentum, shape (3, n - 2) [m^2/s^2].
 
         With a the point of the rod beside the CoM, and b the way from there to it, Σ m (a x b'' + b x a''); b x b'' is
         in the rods' inertia.
-        """
-        rate = np.zeros((left.shape[1] - 2, 3))
-        for link, upper, lower in ((self.thigh, hips, knees), (self.shank, knees, ankles)):
-            if link.ahead == link.outward == 0.0:
-                continue
-            along = lower - upper
-            a, b = upper + link.centre * along, link.ahead * np.cross(along, left) + _OUTWARD * link.outward * left
-            a_bend, b_bend = _bend(a, sample_time), _bend(b, sample_time)
-            rate += link.mass * (_crossed(a[:, 1:-1], b_bend) + _crossed(b[:, 1:-1], a_bend))
-        return rate
-
-    def _rolled(self, frame: Array, pitch: Array | None, toe: float) -> tuple[Array, Array]:
-        """Ankles from the level soles, and the feet's CoMs from the ankles, shape (2, n, 3) each."""
-        if pitch is None or not pitch.any():
-            return _turned(frame, self.ankle), _turned(frame, self.foot_centre)
-        edge = np.array([toe, 0.0, 0.0])
-        lever = _pitched(frame, np.array(self.ankle) - edge, pitch)
-        return _turned(frame, edge) + lever, _pitched(frame, np.array(self.foot_centre), pitch)
-
-    def _posture(self, ankles: Array, frame: Array, ahead: Array) -> tuple[Array, Array, Array]:
-        """Hips and knees, shape (2, n, 3) each, and the middle of the pelvis, shape (n, 3), all from the CoM.
 
         Args:
-            ankles: from the CoM, shape (2, n, 3) [m].
-            frame: of the trunk, shape (n, 3, 3).
-            ahead: where the knees point, shape (2, n, 3).
+            ends: hips, knees and ankles, shape (6, 3, n) [m].
+            left: of the legs, shape (2, 3, n).
+            sample_time: between the samples [s].
         """
-        thigh, shank = self.thigh, self.shank
+        links, shape = (self.thigh, self.shank), (2, 2, 3, left.shape[-1])
+        numbers = np.array([(link.centre, link.ahead, link.outward) for link in links])
+        centre, ahead, outward = numbers.T[:, :, None, None, None]
+        upper, along = ends[:4].reshape(shape), (ends[2:] - ends[:4]).reshape(shape)
+        ways = np.stack((upper + centre * along, ahead * cross(along, left) + _OUTWARD * outward * left))
+        bends = bend(ways, sample_time)
+        thigh, shank = crossed(ways[..., 1:-1], bends[::-1]).swapaxes(0, 1)
+        return self.thigh.mass * (thigh[0] + thigh[1]) + self.shank.mass * (shank[0] + shank[1])
+
+    def _rolled(self, frame: Array, pitch: Array | None, toe: float) -> tuple[Array, Array]:
+        """Ankles from the level soles, and the feet's CoMs from the ankles, shape (2, 3, n) each."""
+        if pitch is None or not pitch.any():
+            return turned(frame, self.ankle), turned(frame, self.foot_centre)
+        edge = np.array([toe, 0.0, 0.0])
+        lever = pitched(frame, np.array(self.ankle) - edge, pitch)
+        return turned(frame, edge) + lever, pitched(frame, np.array(self.foot_centre), pitch)
+
+    def _posture(self, ankles: Array, frame: Array, ahead: Array) -> tuple[Array, Array, Array]:
+        """Hips and knees, shape (2, 3, n) each, and the middle of the pelvis, shape (3, n), all from the CoM.
+
+        Args:
+            ankles: from the CoM, shape (2, 3, n) [m].
+            frame: of the trunk, as of `headings`, shape (2, 3, n).
+            ahead: where the knees point, shape (2, 3, n).
+        """
+        thigh, shank, carried = self.thigh, self.shank, self.carried
         (at_hip, at_ankle, trunk_mass), at_knee = self._shares, self._at_knee
-        fixed = at_ankle * (ankles[0] + ankles[1]) + _turned(
+        fixed = at_ankle * (ankles[0] + ankles[1]) + turned(
             frame, trunk_mass * np.array(self.trunk) + 2.0 * self.foot_mass * np.array(self.foot_centre)
         )
         middle = np.zeros_like(fixed)
-        middle[:, 2] = _GUESS
+        middle[2] = _GUESS
         for _ in range(self._corrections):
             hips = self._hips(middle, ankles, frame)
             knees = self._knees(hips, ankles, ahead)
@@ -177,29 +185,31 @@ class LegChain:
             if thigh.ahead or shank.ahead:
                 ways = ((thigh, knees - hips), (shank, ankles - knees))
                 beside = sum(link.mass * link.ahead * (way[0] + way[1]) for link, way in ways)
-                error += np.cross(beside, frame[:, 1])
-            middle = middle - error / self.carried
+                error += cross(beside, frame[1])
+            middle = middle - error / carried
         hips = self._hips(middle, ankles, frame)
         return hips, self._knees(hips, ankles, ahead), middle
 
     def _hips(self, middle: Array, ankles: Array, frame: Array) -> Array:
-        """The hips beside the middle of the pelvis, shape (2, n, 3).
+        """The hips beside the middle of the pelvis, shape (2, 3, n).
 
         A leg with a lever rolls about its axis until its plane, so far beside the axis, goes through the ankle.
         """
-        left = frame[:, 1]
-        hips = np.stack((middle + self.hip_half_width * left, middle - self.hip_half_width * left))
+        left, hips = frame[1], np.empty_like(ankles)
+        half = self.hip_half_width * left
+        np.add(middle, half, out=hips[0])
+        np.subtract(middle, half, out=hips[1])
         beside, above = self.hip_lever
         if beside == above == 0.0:
             return hips
         outward = _OUTWARD * left
         way = ankles - hips
-        y, z = np.einsum("kni,kni->kn", way, outward), way[..., 2]
+        y, z = dot(way, outward), way[:, 2]
         square = y * y + z * z
         down = np.sqrt(np.maximum(square - beside * beside, 0.0))
         c, s = (y * beside - z * down) / square, (z * beside + y * down) / square
-        hips += (c * beside - s * above)[..., None] * outward
-        hips[..., 2] += s * beside + c * above
+        hips += (c * beside - s * above)[:, None] * outward
+        hips[:, 2] += s * beside + c * above
         return hips
 
     @property
@@ -233,24 +243,24 @@ class LegChain:
         knees = self._bent(hips, ankles, forward)
         if self.rolls_first:
             shank = ankles - knees
-            rising = np.einsum("kni,kni->kn", shank, forward)
-            forward = -shank[..., 2:] * forward
-            forward[..., 2] += rising
-            knees = self._bent(hips, ankles, forward / np.linalg.norm(forward, axis=-1, keepdims=True))
+            rising = dot(shank, forward)
+            forward = -shank[:, 2:] * forward
+            forward[:, 2] += rising
+            knees = self._bent(hips, ankles, forward / np.linalg.norm(forward, axis=1, keepdims=True))
         return knees
 
     def _bent(self, hips: Array, ankles: Array, forward: Array) -> Array:
         leg = ankles - hips
-        long = np.sqrt(np.einsum("kni,kni->kn", leg, leg))
+        long = np.sqrt(dot(leg, leg))
         a, b = self.thigh.length, self.shank.length
         slack = 1.0 - long / (a + b)
         reach = (a + b) * (1.0 - 0.5 * (slack + np.sqrt(slack * slack + _BEND * _BEND)))
         reach = np.maximum(reach, abs(a - b) + 1e-6)
         along = (a * a - b * b + reach * reach) / (2.0 * reach)
-        down = leg / long[..., None]
-        ahead = forward - np.einsum("kni,kni->kn", down, forward)[..., None] * down
-        bent = np.sqrt((a * a - along * along) / np.einsum("kni,kni->kn", ahead, ahead))
-        return np.asarray(hips + along[..., None] * down + bent[..., None] * ahead)
+        down = leg / long[:, None]
+        ahead = forward - dot(down, forward)[:, None] * down
+        bent = np.sqrt((a * a - along * along) / dot(ahead, ahead))
+        return np.asarray(hips + along[:, None] * down + bent[:, None] * ahead)
 
 
 def bind_chain(kernels: Library, chain: LegChain) -> tuple[Bound, int]:
@@ -298,53 +308,3 @@ def _masses(chain: LegChain) -> Array:
     M[8, 8] = 1.0 - 2.0 * (chain.thigh.mass + chain.shank.mass + chain.foot_mass)
     M.flags.writeable = False
     return M
-
-
-def _bend(ways: Array, sample_time: float) -> Array:
-    """Accelerations of points at all samples but the first and the last, shape (points, n - 2, 3) [m/s^2].
-
-    Second differences alone are a mean over two samples, which takes a tenth off what a leg swings in a double support.
-    What is left to fourth order is taken off them; at either end as beside it.
-    """
-    bend: Array = np.diff(ways, 2, axis=1)
-    if bend.shape[1] > 2:
-        rest = np.diff(bend, 2, axis=1) / 12.0
-        bend[:, 1:-1] -= rest
-        bend[:, 0] -= rest[:, 0]
-        bend[:, -1] -= rest[:, -1]
-    bend /= sample_time**2
-    return bend
-
-
-def _headings(heading: Array) -> Array:
-    """Forward, left and up at each sample, shape (..., n, 3, 3)."""
-    frame = np.zeros((*heading.shape, 3, 3))
-    c, s = np.cos(heading), np.sin(heading)
-    frame[..., 0, 0], frame[..., 0, 1], frame[..., 1, 0], frame[..., 1, 1], frame[..., 2, 2] = c, s, -s, c, 1.0
-    return frame
-
-
-def _turned(frame: Array, vector: Vector | Array) -> Array:
-    return np.asarray(np.asarray(vector) @ frame)
-
-
-def _pitched(frame: Array, vector: Array, pitch: Array) -> Array:
-    """A vector of a foot that is pitched heel up, shape (2, n, 3)."""
-    c, s = np.cos(pitch), np.sin(pitch)
-    x, y, z = vector
-    rolled = np.stack((c * x + s * z, np.full_like(c, y), c * z - s * x), axis=-1)
-    return np.asarray(np.einsum("kni,knij->knj", rolled, frame))
-
-
-def _crossed(points: Array, rates: Array) -> Array:
-    """Sum over the points of their cross products, shape (n, 3)."""
-    x, y, z = (points[..., i] for i in range(3))
-    u, v, w = (rates[..., i] for i in range(3))
-    return np.stack(
-        (
-            np.einsum("kn,kn->n", y, w) - np.einsum("kn,kn->n", z, v),
-            np.einsum("kn,kn->n", z, u) - np.einsum("kn,kn->n", x, w),
-            np.einsum("kn,kn->n", x, v) - np.einsum("kn,kn->n", y, u),
-        ),
-        axis=1,
-    )

@@ -3,7 +3,8 @@ from dataclasses import replace
 import numpy as np
 import pytest
 
-from surefoot.planner.model.leg_chain import LegChain, Link, _bend, _headings
+from surefoot.planner.model.leg_chain import LegChain, Link
+from surefoot.planner.model.vectors import bend, headings
 
 pytestmark = pytest.mark.unit
 
@@ -21,11 +22,29 @@ def walking(n=41):
     return com, np.stack([stance, swing])
 
 
+def axes(heading):
+    """Forward, left and up at each sample, shape (..., n, 3, 3)."""
+    level = np.moveaxis(headings(heading), -1, -3)
+    return np.concatenate((level, np.broadcast_to([0.0, 0.0, 1.0], level[..., :1, :].shape)), axis=-2)
+
+
+def posture(chain, ankles, heading):
+    """Hips and knees, shape (2, n, 3) each, and the middle of the pelvis, shape (n, 3)."""
+    frame, legs = headings(heading.mean(axis=0)), headings(heading)
+    hips, knees, middle = chain._posture(ankles.swapaxes(1, 2), frame, legs[:, 0])
+    return hips.swapaxes(1, 2), knees.swapaxes(1, 2), middle.T
+
+
+def bent(ways, sample_time):
+    """Accelerations of points of shape (points, n, 3)."""
+    return bend(ways.swapaxes(1, 2), sample_time).swapaxes(1, 2)
+
+
 def bodies(chain, com, soles, heading):
     """Point masses (points, masses) that are equimomental to the chain's rods, feet and trunk."""
-    frame, legs = _headings(heading.mean(axis=0)), _headings(heading)
+    frame, legs = axes(heading.mean(axis=0)), axes(heading)
     ankles = soles - com + np.array(chain.ankle) @ legs
-    hips, knees, middle = chain._posture(ankles, frame, legs[..., 0, :])
+    hips, knees, middle = posture(chain, ankles, heading)
     outward = legs[..., 1, :] * np.array([1.0, -1.0])[:, None, None]
     points, masses = [], []
     for upper, lower, link in ((hips, knees, chain.thigh), (knees, ankles, chain.shank)):
@@ -59,9 +78,8 @@ def test_a_rods_mass_matrix_gives_its_kinetic_energy():
 
 def test_links_keep_their_lengths_and_knees_bend_forward():
     com, soles = walking()
-    legs = _headings(np.zeros((2, len(com))))
     ankles = soles - com + np.array(CHAIN.ankle)
-    hips, knees, _ = CHAIN._posture(ankles, legs[0], legs[..., 0, :])
+    hips, knees, _ = posture(CHAIN, ankles, np.zeros((2, len(com))))
     np.testing.assert_allclose(np.linalg.norm(knees - hips, axis=-1), THIGH.length, rtol=1e-12)
     np.testing.assert_allclose(np.linalg.norm(knees - ankles, axis=-1), SHANK.length, rtol=0.02)
     assert np.all(knees[..., 0] > np.minimum(hips[..., 0], ankles[..., 0]))
@@ -99,9 +117,9 @@ def test_a_heavy_leg_whose_mass_lies_ahead_leaves_the_com_where_it_was_asked_for
 def test_a_knee_near_straight_is_hardly_bent_more_than_it_is(degrees, most):
     angle = np.radians(degrees)
     reach = np.sqrt(THIGH.length**2 + SHANK.length**2 + 2.0 * THIGH.length * SHANK.length * np.cos(angle))
-    hips, ankles = np.zeros((2, 1, 3)), np.zeros((2, 1, 3))
-    ankles[..., 2] = -reach
-    knee = CHAIN._bent(hips, ankles, np.broadcast_to([1.0, 0.0, 0.0], (2, 1, 3)))[0, 0]
+    hips, ankles, ahead = np.zeros((3, 2, 3, 1))
+    ankles[:, 2], ahead[:, 0] = -reach, 1.0
+    knee = CHAIN._bent(hips, ankles, ahead)[0, :, 0]
     lean = np.arcsin(SHANK.length * np.sin(angle) / reach)  # of the thigh, in the triangle of hip, knee and ankle
     assert 0.0 <= 2.0 * np.degrees(np.arctan2(knee[0], -knee[2]) - lean) < most
 
@@ -119,7 +137,7 @@ def test_momentum_rate_is_that_of_the_point_masses(chain, turned, splay):
     com, soles = com @ R.T, soles @ R.T
     heading = np.array([[turned + splay], [turned - splay]]).repeat(len(com), axis=1)
     points, masses = bodies(chain, com, soles, heading)
-    expected = np.einsum("k,kni->ni", masses, np.cross(points[:, 1:-1], _bend(points, T)))
+    expected = np.einsum("k,kni->ni", masses, np.cross(points[:, 1:-1], bent(points, T)))
     rate = chain.momentum_rate(com, soles, heading, T)
     # What a CoM ahead of its rod does to the rod's inertia is meant about the pitch axis alone.
     np.testing.assert_allclose(rate, expected, atol=0.02 * np.abs(expected).max() if chain is AHEAD else 1e-9)
@@ -152,8 +170,8 @@ def test_accelerations_are_exact_to_more_than_second_order(sample):
     def second(ways, step):
         return np.diff(ways, 2, axis=1) / step**2
 
-    assert error(0.02, _bend) < 0.7 * error(0.02, second)
-    assert error(0.01, _bend) < error(0.02, _bend) / 6.0
+    assert error(0.02, bent) < 0.7 * error(0.02, second)
+    assert error(0.01, bent) < error(0.02, bent) / 6.0
 
 
 @pytest.mark.parametrize("lever", [(0.06, -0.13), (0.03, 0.0), (0.0, 0.1)])
@@ -164,7 +182,7 @@ def test_a_leg_rolls_about_an_axis_beside_it(lever):
     soles = soles + np.array([[[0.0, 0.08, 0.0]], [[0.0, -0.02, 0.1]]])
     heading = np.zeros((2, len(com)))
     ankles = soles - com + np.array(chain.ankle)
-    hips, knees, middle = chain._posture(ankles, _headings(heading[0]), _headings(heading)[..., 0, :])
+    hips, knees, middle = posture(chain, ankles, heading)
     for k, side in ((0, 1.0), (1, -1.0)):
         axis = middle + np.array([0.0, side * chain.hip_half_width, 0.0])
         arm = hips[k] - axis

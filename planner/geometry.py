@@ -53,14 +53,15 @@ def sole_pose(position: Array, yaw: float, normal: Array) -> Array:
 
 def sole_rotation(yaw: float, pitch: float, roll: float) -> Array:
     """Rotation from the sole's frame to the world, shape (3, 3)."""
-    (cy, cp, cr), (sy, sp, sr) = ((f(yaw), f(pitch), f(roll)) for f in (math.cos, math.sin))
+    cy, cp, cr = math.cos(yaw), math.cos(pitch), math.cos(roll)
+    sy, sp, sr = math.sin(yaw), math.sin(pitch), math.sin(roll)
     return np.array(
-        [
-            [cy * cp, cy * sp * sr - sy * cr, cy * sp * cr + sy * sr],
-            [sy * cp, sy * sp * sr + cy * cr, sy * sp * cr - cy * sr],
-            [-sp, cp * sr, cp * cr],
-        ]
-    )
+        (
+            cy * cp, cy * sp * sr - sy * cr, cy * sp * cr + sy * sr,
+            sy * cp, sy * sp * sr + cy * cr, sy * sp * cr - cy * sr,
+            -sp, cp * sr, cp * cr,
+        )
+    ).reshape(3, 3)  # fmt: skip
 
 
 def sole_rates(angles: Array, rates: Array, accelerations: Array) -> tuple[Array, Array]:

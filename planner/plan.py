@@ -1,7 +1,7 @@
 """What the planner hands over at every tick, and the references that follow from it at any instant."""
 
 from collections.abc import Mapping
-from dataclasses import field, replace
+from dataclasses import field
 from typing import TYPE_CHECKING, Any, Protocol
 
 import numpy as np
@@ -10,7 +10,7 @@ from numpy.typing import NDArray
 
 from surefoot.planner.geometry import quintic, shifted
 from surefoot.planner.parameters import PlannerParameters
-from surefoot.planner.plan_kernel import COLUMNS, PlanKernel
+from surefoot.planner.plan_kernel import COLUMNS, POINT, PlanKernel
 from surefoot.planner.swing.heel_off import FootRoll
 from surefoot.planner.swing.trajectory import TOUCHING, SwingTrajectory
 from surefoot.planner.types import (
@@ -24,7 +24,7 @@ from surefoot.planner.types import (
     PhaseKind,
     PlanStatus,
 )
-from surefoot.values import dataclass, opened
+from surefoot.values import dataclass, maker, opened
 
 
 @dataclass(frozen=True, slots=True)
@@ -145,7 +145,7 @@ class PlanSample:
         swing: swing sole x, y, z [m], yaw, pitch, roll [rad], shape (6,).
         swing_velocity: shape (6,) [m/s, rad/s].
         swing_acceleration: shape (6,) [m/s^2, rad/s^2].
-        point: the numbers above as the kernel gives them, shape (POINT,) [SI]; None of plain Python.
+        point: the numbers above as a sampler gives them, shape (POINT,) [SI]; None of a sample that none has made.
     """
 
     time: float
@@ -190,12 +190,14 @@ class PlanSample:
         """What is to be done over a time that begins with this sample: its state, and all else of the middle."""
         if middle.swing_foot is not self.swing_foot:
             return middle
-        return replace(
-            middle, com=self.com, com_velocity=self.com_velocity, swing=self.swing, swing_velocity=self.swing_velocity
-        )
+        return _a_sample(
+            middle.time, self.com, self.com_velocity, middle.com_acceleration, middle.zmp, middle.pendulum_zmp,
+            middle.zmp_reference, middle.dcm, middle.omega, middle.stiffness, middle.contacts, middle.load_left,
+            middle.swing_foot, self.swing, self.swing_velocity, middle.swing_acceleration,
+        )  # fmt: skip
 
 
-_OpenSample = opened(PlanSample)
+_OpenSample, _a_sample = opened(PlanSample), maker(PlanSample)
 
 
 class PlanSampler:
@@ -247,28 +249,20 @@ class PlanSampler:
         t = min(max(time - self._start, 0.0), self.plan.sample_time)
         t2 = t * t
         t3 = t2 * t
-        values = np.array((1.0, t, t2, t3, t3 * t, t3 * t2)) @ self._table
-        com, velocity, acceleration = values[7:10], values[16:19], values[25:28]
-        omega, stiffness, load = values[4:7].tolist()
-        pendulum_zmp = com[:2] - acceleration[:2] / stiffness
-        return PlanSample(
-            time,
-            com,
-            velocity,
-            acceleration,
-            pendulum_zmp + values[2:4],
-            pendulum_zmp,
-            values[:2],
-            com[:2] + velocity[:2] / omega,
-            omega,
-            stiffness,
-            self.contacts_at(time),
-            load,
-            self.swing_foot,
-            values[10:16],
-            values[19:25],
-            values[28:],
-        )
+        point = np.empty(POINT)
+        table = np.array((1.0, t, t2, t3, t3 * t, t3 * t2)).dot(self._table, out=point[:COLUMNS]).tolist()
+        _, _, x_offset, y_offset, omega, stiffness, load, x, y = table[:9]
+        # Plain floats: at this size they are faster than arrays.
+        p_x, p_y = x - table[25] / stiffness, y - table[26] / stiffness
+        point[COLUMNS:] = p_x, p_y, p_x + x_offset, p_y + y_offset, x + table[16] / omega, y + table[17] / omega
+        sample = _OpenSample()
+        sample.time, sample.contacts, sample.swing_foot = time, self.contacts_at(time), self.swing_foot
+        sample.omega, sample.stiffness, sample.load_left = omega, stiffness, load
+        sample.com, sample.com_velocity, sample.com_acceleration = point[7:10], point[16:19], point[25:28]
+        sample.swing, sample.swing_velocity, sample.swing_acceleration = point[10:16], point[19:25], point[28:34]
+        sample.point, sample.zmp_reference, sample.pendulum_zmp = point, point[:2], point[34:36]
+        sample.zmp, sample.dcm, sample.__class__ = point[36:38], point[38:], PlanSample
+        return sample  # type: ignore[no-any-return]
 
     def tick(self, time: float, middle: float) -> tuple[PlanSample, PlanSample]:
         """The references at an instant, and what is to be done from there on over a time with that middle [s]."""

@@ -25,12 +25,10 @@ class ArmSwing:
 
     def offset(self, terms: RobotTerms) -> tuple[float, float]:
         """How far the left arm is swung back from the posture, and its rate [rad, rad/s]; the right one mirrors it."""
-        forward = terms.base_rotation[:, 0]
-        x, y = forward[:2].tolist()
+        x, y = terms.base_rotation.item(0, 0), terms.base_rotation.item(1, 0)
         length = float(np.hypot(x, y))
-        left, right = terms.sole_position
-        dx, dy, _ = (left - right).tolist()
-        velocity = [terms.contact_rotation[k] @ terms.sole_velocity[k, :3] for k in (0, 1)]
-        vx, vy, _ = (velocity[0] - velocity[1]).tolist()
+        (lx, ly, _), (rx, ry, _) = terms.sole_position.tolist()
+        velocity = np.matmul(terms.contact_rotation, terms.sole_velocity[:, :3, None])
+        vx, vy, _, wx, wy, _ = velocity.ravel().tolist()
         scale = self.gain / max(length, 1e-3)
-        return scale * (x * dx + y * dy), scale * (x * vx + y * vy)
+        return scale * (x * (lx - rx) + y * (ly - ry)), scale * (x * (vx - wx) + y * (vy - wy))

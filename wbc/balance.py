@@ -64,7 +64,10 @@ class SupportRegion:
 
     def project(self, x: float, y: float) -> tuple[float, float]:
         """The point of the region nearest to (x, y)."""
-        if all((x - ex) * uy - (y - ey) * ux <= 0.0 for ex, ey, ux, uy, _ in self._edges):
+        for ex, ey, ux, uy, _ in self._edges:
+            if not (x - ex) * uy - (y - ey) * ux <= 0.0:
+                break
+        else:
             return x, y
         nearest, least = (x, y), math.inf
         for ex, ey, ux, uy, length in self._edges:
@@ -108,8 +111,9 @@ def com_acceleration(
     Returns:
         x, y, z [m/s^2].
     """
-    dx, dy, dz = (com - reference.com).tolist()
-    vx, vy, vz = (com_velocity - reference.com_velocity).tolist()
+    (x, y, z), (x_ref, y_ref, z_ref) = com.tolist(), reference.com.tolist()
+    (vx, vy, vz), (vx_ref, vy_ref, vz_ref) = com_velocity.tolist(), reference.com_velocity.tolist()
+    dx, dy, dz, vx, vy, vz = x - x_ref, y - y_ref, z - z_ref, vx - vx_ref, vy - vy_ref, vz - vz_ref
     px, py = reference.zmp.tolist()
     offset_x, offset_y = reference.zmp_offset.tolist()
     zmp_x, zmp_y = region.project(

@@ -54,6 +54,7 @@ class HardConstraints:
         """
         self._gains = gains
         self._joints, self._ankles = AccelerationBounds(limits), [list(columns) for columns in ankles]
+        self._at_ankles = [_place(columns) for columns in self._ankles]
         self._tipping = tipping
         self._rates = np.zeros(layout.nv)
         self._torque_span = np.concatenate([np.zeros(6), limits.torque])
@@ -135,9 +136,9 @@ class HardConstraints:
         self._contacts(terms, contacts, ground_normal, roll)
         np.copyto(self._rates, v)
         held = [contacts.active[k] and k != contacts.rolling for k in (0, 1)]
-        for k, columns in enumerate(self._ankles):
+        for k, columns in enumerate(self._at_ankles):
             if held[k]:
-                self._rates[columns] -= terms.sole_velocity[k, 3:] @ terms.sole_jacobian[k, 3:, columns].T
+                self._rates[columns] -= terms.sole_jacobian[k, 3:][:, columns].T.dot(terms.sole_velocity[k, 3:])
         self._joints.write(q[7:], self._rates[6:], self._joint_lower, self._joint_upper)
         for k, column in enumerate(self._tipping):
             if held[k] and column >= 0:
@@ -196,3 +197,9 @@ class HardConstraints:
     def _release(self, k: int) -> None:
         self._contact_rows[k][:] = 0.0
         self._no_wrench_rows[k][:] = np.eye(6)
+
+
+def _place(columns: list[int]) -> list[int] | slice:
+    """Columns as a slice where they are neighbours, of which numpy makes a view in a fifth of a copy's time."""
+    first, count = columns[0] if columns else 0, len(columns)
+    return slice(first, first + count) if columns == list(range(first, first + count)) else columns

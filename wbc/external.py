@@ -100,6 +100,7 @@ class LoadObserver:
         self._span = self._ticks * period
         self._felt, self._com = np.zeros(6), np.zeros(3)
         self._momentum: Array | None = None
+        # Of each tick the CoM's velocity, the angular momentum about it, and the CoM.
         self._past: deque[Array] = deque(maxlen=PAST)
         self._age, self._period = 0.0, period
         self._count = 0 if compiled is None else -1
@@ -111,6 +112,7 @@ class LoadObserver:
         self._estimate = np.zeros(sum(_ROWS))
         self._deviation = self._wide_for = (0.0, 0.0)
         self._late = False
+        self._ramps = self._ramps_now()
         self.load = NO_LOAD
         self._wrench = np.zeros((2, 6))
         self._add: Callable[[], None] | None = None
@@ -180,11 +182,11 @@ class LoadObserver:
         self._deviation = deviation
         if self._add is not None:
             return self._turn_compiled()
-        self._past.append(self._moving(terms))
+        self._past.append(np.concatenate((terms.com_velocity, terms.angular_momentum, terms.com)))
         if self._momentum is None:
-            self._momentum, self._age = self._past[-1], 0.0
+            self._momentum, self._age = self._moving(-1), 0.0
             return self.load
-        self._felt += terms.sole_wrench_map @ wrench.ravel()
+        self._felt += terms.sole_wrench_map.dot(wrench.ravel())
         self._com += terms.com
         self._count += 1
         if self._count == self._ticks:
@@ -199,11 +201,12 @@ class LoadObserver:
         return max(0.0, min(late, PAST - 2.0))
 
     def _then(self, late: float) -> Array:
-        """What `_moving` gave so many ticks ago, or at the first one, shape (6,) [N·s, N·m·s]."""
+        """What `_moving` was so many ticks ago, or at the first one, shape (6,) [N·s, N·m·s]."""
         whole = min(int(late), len(self._past) - 1)
-        younger, older = self._past[-1 - whole], self._past[max(-2 - whole, -len(self._past))]
-        then: Array = younger + (late - int(late)) * (older - younger)
-        return then
+        younger, more = self._moving(-1 - whole), late - int(late)
+        if not more:
+            return younger
+        return younger + more * (self._moving(max(-2 - whole, -len(self._past))) - younger)
 
     def _turn_compiled(self) -> ExternalLoad:
         """Begin the first span, or end one, by kernels, for the terms that they are bound to."""
@@ -234,22 +237,33 @@ class LoadObserver:
         share = _wider(WEIGHT, unsure / (self._mass * GRAVITY), LASTING)
         return share, _wider(self._kept, wider, LASTING), _wider(self._sudden, wider, ACTING)
 
-    def _moving(self, terms: RobotTerms) -> Array:
-        """Momentum and moment of momentum about the origin, by the model's masses, shape (6,) [N·s, N·m·s]."""
-        momentum = self._mass * terms.com_velocity
-        return np.concatenate((momentum, terms.angular_momentum + cross(terms.com, momentum)))
+    def _ramps_now(self) -> list[Any]:
+        """The same as plain numbers: none and all of the share, and of each number of what lasts and of what acts."""
+        return [np.transpose(limits).tolist() for limits in self._limits_now()]
+
+    def _moving(self, at: int) -> Array:
+        """Momentum and moment of momentum about the origin, by the model's masses, shape (6,) [N·s, N·m·s].
+
+        Args:
+            at: place in the past [ticks].
+        """
+        velocity, spin, com = self._past[at].reshape(3, 3)
+        momentum = self._mass * velocity
+        return np.concatenate((momentum, spin + cross(com, momentum)))
 
     def _end_span(self, before: Array, moving: Array, age: float) -> None:
         """Hold the forces of a span, of that age, against its change of momentum."""
-        felt, com, change = self._felt / self._ticks, self._com / self._ticks, (moving - before) / self._span
+        # Plain floats: at this size they are faster than arrays.
+        felt, com = (self._felt / self._ticks).tolist(), self._com / self._ticks
         com -= 0.5 * age / self._mass * (before[:3] + moving[:3])
+        change = ((moving - before) / self._span).tolist()
         self._momentum, self._count = moving, 0
         self._felt[:], self._com[:] = 0.0, 0.0
         weight = self._mass * GRAVITY
-        pressing = float(change[2]) + weight
-        known = min(pressing, float(felt[2])) > LEAST_PRESS * weight
-        scale = float(felt[2]) / pressing if known else 1.0 + float(self._estimate[-1])
-        x, y, _, *moment = (scale * change - felt).tolist()
+        pressing = change[2] + weight
+        known = min(pressing, felt[2]) > LEAST_PRESS * weight
+        scale = felt[2] / pressing if known else 1.0 + float(self._estimate[-1])
+        x, y, _, *moment = (scale * rate - force for rate, force in zip(change, felt, strict=True))
         turning = cross(com, np.array([x, y, -scale * weight])).tolist()
         span = [x, y, *(n - t for n, t in zip(moment, turning, strict=True)), scale - 1.0]
         if math.isfinite(sum(span)):
@@ -261,22 +275,25 @@ class LoadObserver:
 
     def _follow(self) -> None:
         """Let the load follow what lasts."""
-        weight_limits, kept_limits, sudden_limits = self._limits_now()
-        lasting, latest = _median(self._spans), _median(self._spans[-LATEST:])
-        share = _ramp(np.array([min(max(float(lasting[-1]), -MOST), MOST)]), weight_limits)
-        if len(self._spans) < SPANS:
-            pull = np.zeros(len(lasting) - 1)
-        else:
-            kept = np.where(lasting * latest > 0.0, np.minimum(np.abs(lasting), np.abs(latest)), 0.0)
-            kept = _ramp(np.copysign(kept, latest)[:-1], kept_limits)
-            sudden = np.clip(_ramp(latest[:-1], sudden_limits), -self._bound, self._bound)
+        if self._deviation != self._wide_for:
+            self._wide_for, self._ramps = self._deviation, self._ramps_now()
+        weight_limits, kept_limits, sudden_limits = self._ramps
+        lasting, latest = _median(self._spans).tolist(), _median(self._spans[-LATEST:]).tolist()
+        wanted = [0.0] * len(kept_limits)
+        if len(self._spans) == SPANS:
             none, push = self._push
             # The span in which a push ends has only part of it.
             hardest = max(math.hypot(x, y) for x, y in self._spans[-LATEST:, :2].tolist())
-            sudden = sudden * min(max((push - hardest) / (push - none), 0.0), 1.0)
-            pull = np.where(np.abs(sudden) > np.abs(kept), sudden, kept)
-        wanted = np.concatenate((pull, share))
-        self._estimate = self._estimate + np.clip(wanted - self._estimate, -self._most, self._most)
+            soft = min(max((push - hardest) / (push - none), 0.0), 1.0)
+            for k, bound in enumerate(self._bound.tolist()):
+                one, other = lasting[k], latest[k]
+                both = min(abs(one), abs(other)) if one * other > 0.0 else 0.0
+                kept = _ramp(math.copysign(both, other), *kept_limits[k])
+                sudden = min(max(_ramp(other, *sudden_limits[k]), -bound), bound) * soft
+                wanted[k] = sudden if abs(sudden) > abs(kept) else kept
+        wanted.append(_ramp(min(max(lasting[-1], -MOST), MOST), *weight_limits))
+        steps = zip(self._estimate.tolist(), wanted, self._most.tolist(), strict=True)
+        self._estimate = np.array([now + min(max(then - now, -most), most) for now, then, most in steps])
         self._tell()
 
     def _tell(self) -> None:
@@ -292,10 +309,9 @@ def _wider(limits: tuple[Any, ...], deviation: Any, times: tuple[float, float]) 
     return np.hypot(limits[0], times[0] * deviation), np.hypot(limits[1], times[1] * deviation)
 
 
-def _ramp(values: Array, limits: tuple[Any, ...]) -> Array:
-    """Values of which nothing counts up to the first limit, all from the second one on."""
-    none, full = limits
-    return np.asarray(values * np.clip((np.abs(values) - none) / (full - none), 0.0, 1.0))
+def _ramp(value: float, none: float, full: float) -> float:
+    """A value of which nothing counts up to the first limit, all from the second one on."""
+    return value * min(max((abs(value) - none) / (full - none), 0.0), 1.0)
 
 
 def _median(spans: Array) -> Array:

@@ -115,6 +115,7 @@ class RobotTerms:
         self.base_rotation: Array = data.oMi[1].rotation
         self.torso_rotation: Array = data.oMf[self._torso].rotation
         self.torso_position: Array = data.oMf[self._torso].translation
+        self._sole_places = [(data.oMf[sole].translation, data.oMf[sole].rotation) for sole in self._soles]
         torso = self._allocate(model.nv)
         kernels = library()
         self.compiled = CompiledTerms(kernels, self, self._soles, self._torso, torso) if kernels else None
@@ -183,9 +184,9 @@ class RobotTerms:
     def _update_sole(self, k: int) -> None:
         model, data, frame = self.model, self.data, self._soles[k]
         placement = pin.updateFramePlacement(model, data, frame)
-        self.sole_position[k] = placement.translation
-        self.sole_rotation[k] = placement.rotation
-        self.contact_position[k], self.contact_rotation[k] = self.sole_position[k], self.sole_rotation[k]
+        position, rotation = self._sole_places[k]
+        self.sole_position[k] = self.contact_position[k] = position
+        self.sole_rotation[k] = self.contact_rotation[k] = rotation
         self.sole_pose[k] = pin.SE3ToXYZQUAT(placement)
         self.sole_wrench_map[:, 6 * k : 6 * k + 6] = placement.toDualActionMatrix()
         self.sole_jacobian[k] = pin.getFrameJacobian(model, data, frame, _LOCAL)
@@ -229,7 +230,7 @@ class RobotTerms:
             turned = line_frame(k, self.sole_rotation[k], self.leaning) * turned
         action = turned.toActionMatrixInverse()
         spin = self.sole_velocity[k, 3:]
-        centripetal = np.cross(spin, np.cross(spin, turned.translation))
+        centripetal = cross(spin, cross(spin, turned.translation))
         self.sole_jacobian[k] = action @ self.sole_jacobian[k]
         self.sole_velocity[k] = action @ self.sole_velocity[k]
         self.sole_bias[k] = action @ self.sole_bias[k]

@@ -122,11 +122,13 @@ class QpData:
             x: a solution, shape (n,) [as of the QP].
             soft: numbers of bounds and rows that do not count, shape (k,) [-]; None for none.
         """
-        values = np.concatenate((x, self.A @ x))
-        beyond = np.maximum(self.bounds_lower - values, values - self.bounds_upper)
+        values = np.concatenate((x, self.A.dot(x)))
+        above = values - self.bounds_upper
+        np.subtract(self.bounds_lower, values, out=values)
+        beyond = np.maximum(values, above, out=above)
         if soft is not None:
             beyond[soft] = 0.0
-        excess = float(beyond.max())
+        excess = float(np.maximum.reduce(beyond))
         return excess if not excess < 0.0 else 0.0
 
 

@@ -6,6 +6,7 @@ import numpy as np
 import pinocchio as pin
 
 from surefoot.wbc.compiled import CompiledTerms, moving_columns
+from surefoot.wbc.model import cross
 from surefoot.wbc.parameters import SeparationParameters
 from surefoot.wbc.types import Array
 
@@ -104,7 +105,10 @@ class Separation:
 
     def _all_distances(self, data: pin.Data) -> dict[int, float]:
         pin.updateGeometryPlacements(self._model, data, self._geometry, self._data)
-        pin.computeDistances(self._geometry, self._data)
+        least = pin.computeDistances(self._geometry, self._data)
+        # Where not even the nearest pair is looked at, it alone has to be read.
+        if least < len(self._results) and self._results[least].min_distance >= self._parameters.attention:
+            return {}
         return {k: result.min_distance for k, result in enumerate(self._results)}
 
     def _due_distances(self, data: pin.Data, due: Sequence[int], known: Array) -> dict[int, float]:
@@ -135,16 +139,17 @@ class Separation:
 
     def _gradient(self, data: pin.Data, pair: int) -> Array:
         """Jacobian of a distance, shape (nv,)."""
-        result = self._results[pair]
+        result, (one, other) = self._results[pair], self._joints[pair]
         normal = -np.asarray(result.normal)
-        row = np.zeros(self._model.nv)
-        for sign, joint, point in zip(
-            (1.0, -1.0), self._joints[pair], (result.getNearestPoint1(), result.getNearestPoint2()), strict=True
-        ):
-            arm = point - data.oMi[joint].translation
-            jacobian = pin.getJointJacobian(self._model, data, joint, _WORLD_AXES)
-            row += sign * (normal @ jacobian[:3] + np.cross(arm, normal) @ jacobian[3:])
+        row = self._along(data, one, result.getNearestPoint1(), normal)
+        row -= self._along(data, other, result.getNearestPoint2(), normal)
         return row
+
+    def _along(self, data: pin.Data, joint: int, point: Array, normal: Array) -> Array:
+        """From v to the rate along a normal at a point that goes with a joint, shape (nv,)."""
+        arm = point - data.oMi[joint].translation
+        jacobian = pin.getJointJacobian(self._model, data, joint, _WORLD_AXES)
+        return np.asarray(normal.dot(jacobian[:3]) + cross(arm, normal).dot(jacobian[3:]))
 
 
 class DuePairs:

@@ -2,7 +2,8 @@
 
 import math
 from collections.abc import Callable
-from typing import Protocol
+from functools import cache
+from typing import Any, Protocol
 
 import daqp
 import numpy as np
@@ -196,22 +197,28 @@ def equalities_only(qp: QpData) -> QpSolution | None:
     By the Schur complement (Boyd and Vandenberghe, Convex Optimization, 2004, section 10.4.2): with H = L Lᵀ,
     Y = L⁻¹ Eᵀ and w = L⁻¹ g, the multipliers solve YᵀY λ = e + Yᵀ w, and x = L⁻ᵀ (Y λ - w).
     """
-    from scipy.linalg import lapack
-
-    n, eq = qp.g.shape[0], EQUALITY_ROWS
-    L, failed = lapack.dpotrf(qp.H.T, lower=1, clean=0)
+    n, eq, (dpotrf, dtrtrs, dposv) = qp.g.shape[0], EQUALITY_ROWS, _lapack()
+    L, failed = dpotrf(qp.H.T, lower=1, clean=0)
     if failed:
         return None
-    Y, _ = lapack.dtrtrs(L, np.vstack((qp.A[:eq], qp.g)).T, lower=1, overwrite_b=1)
+    Y, _ = dtrtrs(L, np.concatenate((qp.A[:eq], qp.g[None])).T, lower=1, overwrite_b=1)
     S = Y.T @ Y
-    _, multipliers, failed = lapack.dposv(S[:eq, :eq], qp.bounds_lower[n : n + eq] + S[:eq, eq])
+    _, multipliers, failed = dposv(S[:eq, :eq], qp.bounds_lower[n : n + eq] + S[:eq, eq])
     if failed:
         return None
     y = Y[:, :eq] @ multipliers
     y -= Y[:, eq]
-    x, _ = lapack.dtrtrs(L, y, lower=1, trans=1, overwrite_b=1)
+    x, _ = dtrtrs(L, y, lower=1, trans=1, overwrite_b=1)
     violation = qp.violation(x)
     return QpSolution(x, violation, 0) if math.isfinite(violation) else None
+
+
+@cache
+def _lapack() -> tuple[Any, Any, Any]:
+    """LAPACK's routines, which plain Python alone imports."""
+    from scipy.linalg import lapack
+
+    return lapack.dpotrf, lapack.dtrtrs, lapack.dposv
 
 
 class CompiledEqualities:

@@ -153,7 +153,7 @@ class LegChain:
         ways = np.stack((upper + centre * along, ahead * cross(along, left) + _OUTWARD * outward * left))
         bends = bend(ways, sample_time)
         thigh, shank = crossed(ways[..., 1:-1], bends[::-1]).swapaxes(0, 1)
-        return self.thigh.mass * (thigh[0] + thigh[1]) + self.shank.mass * (shank[0] + shank[1])
+        return np.asarray(self.thigh.mass * (thigh[0] + thigh[1]) + self.shank.mass * (shank[0] + shank[1]))
 
     def _rolled(self, frame: Array, pitch: Array | None, toe: float) -> tuple[Array, Array]:
         """Ankles from the level soles, and the feet's CoMs from the ankles, shape (2, 3, n) each."""
@@ -183,8 +183,9 @@ class LegChain:
             knees = self._knees(hips, ankles, ahead)
             error = fixed + trunk_mass * middle + at_hip * (hips[0] + hips[1]) + at_knee * (knees[0] + knees[1])
             if thigh.ahead or shank.ahead:
-                ways = ((thigh, knees - hips), (shank, ankles - knees))
-                beside = sum(link.mass * link.ahead * (way[0] + way[1]) for link, way in ways)
+                upper, lower = knees - hips, ankles - knees
+                beside = thigh.mass * thigh.ahead * (upper[0] + upper[1])
+                beside += shank.mass * shank.ahead * (lower[0] + lower[1])
                 error += cross(beside, frame[1])
             middle = middle - error / carried
         hips = self._hips(middle, ankles, frame)

@@ -103,7 +103,8 @@ class FootRoll:
         back = self.toe * rotation @ (1.0 - cosine, 0.0, sine)
         turning, _ = sole_rates(level[3:], rates[3:], np.zeros(3))
         rolling = self.toe * rate * rotation @ (sine, 0.0, cosine)
-        return level[:3] + back, rates[:3] + rolling + np.cross(turning, back)
+        (a, b, c), (x, y, z) = turning.tolist(), back.tolist()
+        return level[:3] + back, rates[:3] + rolling + np.array((b * z - c * y, c * x - a * z, a * y - b * x))
 
 
 def bump(s: float) -> tuple[float, float, float]:

@@ -141,14 +141,16 @@ class RowWriter:
         if self._gather is not None:
             self._gather(count)
         elif self._standing:
-            np.concatenate(tuple(map(np.ndarray.ravel, self._standing)), out=self._vectors[count])
+            np.concatenate(self._standing, out=self._vectors[count])
         times.append(time_ns)
         if time_ns >= self._clock.due or count + 1 == self._capacity:
             self._clock.look(time_ns, count + 1 == self._capacity)
 
     def _look(self, vectors: tuple[Array, ...]) -> None:
-        """Take arrays that are copied now, and by `again`."""
-        self._standing = vectors
+        """Take arrays that are copied now, and by `again`, as views with one axis."""
+        if not all(vector.flags.c_contiguous for vector in vectors):
+            raise ValueError("a vector of a row is no contiguous array")
+        self._standing = tuple(map(np.ndarray.ravel, vectors))
 
     def drop(self) -> None:
         """Forget the rows that wait."""

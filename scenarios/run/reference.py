@@ -9,9 +9,12 @@ from surefoot.planner.geometry import sole_rates, sole_rotation
 from surefoot.planner.plan import PlanSample, PlanSampler, WalkPlan
 from surefoot.planner.plan_kernel import PlanKernel
 from surefoot.planner.types import Footstep, PhaseKind
+from surefoot.values import maker
 from surefoot.wbc.types import WbcReference
 
 NO_ROLL = (0.0, 0.0, 0.0)
+
+_a_whole_reference = maker(WbcReference)
 
 
 def whole_body_reference(plan: WalkPlan, sample: PlanSample) -> WbcReference:
@@ -26,12 +29,13 @@ def whole_body_reference(plan: WalkPlan, sample: PlanSample) -> WbcReference:
     roll = plan.roll
     foot = -1 if sample.swing_foot is None else int(sample.swing_foot)
     yaw = [plan.footholds[0].yaw, plan.footholds[1].yaw]
-    normal = np.array([plan.footholds[0].normal, plan.footholds[1].normal])
+    normal = np.empty((2, 3))
+    normal[0], normal[1] = plan.footholds[0].normal, plan.footholds[1].normal
     if foot >= 0:
         yaw[foot] = float(swing[3])
         normal[foot] = plan.footsteps[0].normal
     turning, bending = sole_rates(swing[3:], rate[3:], bend[3:])
-    return WbcReference(
+    return _a_whole_reference(
         com=sample.com,
         com_velocity=sample.com_velocity,
         com_acceleration=sample.com_acceleration,

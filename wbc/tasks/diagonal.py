@@ -122,7 +122,7 @@ class Posture:
         angle, rate = arms.offset(terms)
         left, right = arms.back
         for joint, sign in zip(arms.joints, (left, -right), strict=True):
-            joints[joint] += sign * float(self._stiffness[joint] * angle + self._damping[joint] * rate)
+            joints[joint] += sign * (self._stiffness.item(joint) * angle + self._damping.item(joint) * rate)
 
 
 class ForceDistribution:

@@ -47,6 +47,7 @@ class AnkleStops:
     def __init__(self, model: pin.Model, frames: BodyFrames, limits: JointLimits) -> None:
         self.ankles, self.columns, self.rolling = _ankles(model, frames)
         self.lower, self.upper, self.ahead = limits.lower, limits.upper, 2.0 * limits.position_horizon
+        self._lower, self._upper = np.asarray(self.lower).tolist(), np.asarray(self.upper).tolist()
 
     def yielding(self, terms: RobotTerms, k: int, desired: Array) -> list[tuple[Array, float]]:
         """Axes in the frame of sole k about which it is not to turn any further, and the share of it [-].
@@ -58,10 +59,10 @@ class AnkleStops:
         """
         found = []
         for column in self.columns[k]:
-            position, velocity = float(terms.q[column + 1]), float(terms.v[column])
+            position, velocity = terms.q.item(column + 1), terms.v.item(column)
             coming = position + self.ahead * velocity
-            up, down = self.upper[column - 6] - max(position, coming), min(position, coming) - self.lower[column - 6]
-            near = float(min(up, down))
+            up, down = self._upper[column - 6] - max(position, coming), min(position, coming) - self._lower[column - 6]
+            near = min(up, down)
             if near >= YIELDING:
                 continue
             axis = terms.sole_jacobian[k, 3:, column]
@@ -143,9 +144,10 @@ class SwingFoot:
         if yielding:
             hangs = self._toe * abs(R[2, 0] - reference.swing_rotation[2, 0])
             wanted[2] += self._gains[0] * max(share for _, share in yielding) * min(hangs, self._lifted)
-        x, y, z = (wanted @ R).tolist()
-        turning = reference.swing_angular_acceleration + damping * reference.swing_angular_velocity
-        ahead = tuple((turning @ R).tolist())
+        x, y, z = wanted.dot(R).tolist()
+        turning = damping * reference.swing_angular_velocity
+        turning += reference.swing_angular_acceleration
+        ahead = tuple(turning.dot(R).tolist())
         ax, ay, az = angular_acceleration(self._gains, R, velocity[3:], reference.swing_rotation, ahead)
         pitching = damping * reference.roll[1] + reference.roll[2] if k == reference.rolling_foot else 0.0
         vx, vy, vz = velocity[:3].tolist()

@@ -112,7 +112,7 @@ def angular_acceleration(
         ahead: u, the acceleration to be fed forward [rad/s^2].
     """
     stiffness, damping = gains
-    ex, ey, ez = pin.log3(R.T @ desired).tolist()
+    ex, ey, ez = pin.log3(R.T.dot(desired)).tolist()
     wx, wy, wz = velocity.tolist()
     ux, uy, uz = ahead
     return (

@@ -96,10 +96,12 @@ class _Upright:
 
     def _wanted(self, reference: WbcReference, R: Array, velocity: Array) -> Vector:
         cosine, sine = math.cos(reference.heading), math.sin(reference.heading)
-        self._desired[:2, :2] = ((cosine, -sine), (sine, cosine))
+        desired = self._desired
+        desired[0, 0] = desired[1, 1] = cosine
+        desired[0, 1], desired[1, 0] = -sine, sine
         turn = self._gains[1] * reference.heading_rate
         x, y, z = R[2].tolist()
-        return angular_acceleration(self._gains, R, velocity, self._desired, (turn * x, turn * y, turn * z))
+        return angular_acceleration(self._gains, R, velocity, desired, (turn * x, turn * y, turn * z))
 
 
 class Pelvis(_Upright):

@@ -201,12 +201,16 @@ class RobotTerms:
         Args:
             toe: toe edge from the sole's centre [m].
         """
-        ahead, position = self.sole_rotation[:, :, 0], self.sole_position
+        position = self.sole_position
         if self.leaning is not None:
             position = np.array([line_centre(k, position[k], self.sole_rotation[k], self.leaning) for k in (0, 1)])
-        level = ahead * np.array([1.0, 1.0, 0.0])
-        level /= np.maximum(np.linalg.norm(level, axis=1, keepdims=True), 1e-9)
-        return np.asarray(position + toe * (ahead - level))
+        level = np.empty((2, 3))
+        for k, ((x, y, z), (at_x, at_y, at_z)) in enumerate(
+            zip(self.sole_rotation[:, :, 0].tolist(), position.tolist(), strict=True)
+        ):
+            long = max(math.sqrt(x * x + y * y), 1e-9)
+            level[k] = at_x + toe * (x - x / long), at_y + toe * (y - y / long), at_z + toe * z
+        return level
 
     def shift_foot(self, k: int, forward: float, pitch: float) -> Array:
         """See foot k from a frame at a point ahead of its sole's centre, turned back by a pitch, until it is unshifted.

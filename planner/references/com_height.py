@@ -11,7 +11,6 @@ from enum import Enum
 from typing import Protocol
 
 import numpy as np
-from numpy.typing import NDArray
 
 from surefoot.planner.steps.gait import GaitParameters
 from surefoot.planner.steps.phases import PhaseSamples
@@ -153,7 +152,7 @@ class PaperHeight:
         done = samples.first + samples.index + samples.fraction
         rise = _differences(done, t)
         rise[0] = done - (samples.first + index)
-        return _lifted(_differences(bump, t), index, rise, rise, support_height)
+        return _lifted(_differences(bump, t), rise, _changes(support_height)[index], support_height[index])
 
 
 def _differences(values: Array, sample_time: float) -> Array:
@@ -163,34 +162,41 @@ def _differences(values: Array, sample_time: float) -> Array:
     return np.stack((values, slope, (padded[2:] - 2.0 * values + padded[:-2]) / sample_time**2))
 
 
-def _lifted(bump: Array, index: NDArray[np.intp], rise: Array, fall: Array, levels: Array) -> Array:
+def _changes(levels: Array) -> Array:
+    """From each level to the next one, and none after the last, shape (m,) [m]."""
+    change = np.zeros_like(levels)
+    np.subtract(levels[1:], levels[:-1], out=change[:-1])
+    return change
+
+
+def _lifted(bump: Array, rise: Array, change: Array, level: Array) -> Array:
     """A height above base levels, shape (3, n).
 
     Args:
         bump: height above the base, and its first and second derivative, shape (3, n) [m, m/s, m/s^2].
-        index: base level that the CoM leaves, shape (n,).
         rise: share of the change to the next level done, and its derivatives, shape (3, n) [-, 1/s, 1/s^2].
-        fall: the same on the way down.
-        levels: base levels, shape (m,) [m].
+        change: of the base level from the one that the CoM leaves, shape (n,) [m].
+        level: that one, shape (n,) [m].
     """
-    step = np.append(np.diff(levels), 0.0)[index]
-    height = bump + np.where(step < 0.0, fall, rise) * step
-    height[0] += levels[index]
+    height = bump + rise * change
+    height[0] += level
     return np.asarray(height)
 
 
 def _on_levels(place: Rise, samples: PhaseSamples, bump: Array, support_height: Array) -> Array:
     """A height with quintic changes of level at a place; the bump is by the clock."""
     if place is Rise.DOUBLE:
-        rise = quintic_rise(samples.fraction, samples.fraction_rate)
-        return samples.in_time(_lifted(bump, samples.index, rise, rise, support_height))
+        rise, index = quintic_rise(samples.fraction, samples.fraction_rate), samples.index
+        return samples.in_time(_lifted(bump, rise, _changes(support_height)[index], support_height[index]))
     swinging = samples.kind == PhaseKind.SINGLE
     index = np.maximum(samples.index - (swinging | samples.last_stand), 0)
     length = np.where(swinging, samples.length, np.inf)
-    rise, fall = (_early_rise(samples, share * length) for share in (CLIMB_SHARE, DESCENT_SHARE))
     # The lower foot of each double support, and the last one again.
-    lower = np.append(np.minimum(support_height[:-1], support_height[1:]), support_height[-1])
-    return samples.in_time(_lifted(bump, index, rise, fall, lower))
+    lower = support_height.copy()
+    np.minimum(support_height[:-1], support_height[1:], out=lower[:-1])
+    change = _changes(lower)[index]
+    rise = _early_rise(samples, np.where(change < 0.0, DESCENT_SHARE, CLIMB_SHARE) * length)
+    return samples.in_time(_lifted(bump, rise, change, lower[index]))
 
 
 def _early_rise(samples: PhaseSamples, length: Array) -> Array:
@@ -210,11 +216,11 @@ def quintic_rise(fraction: Array, rate: Array) -> Array:
     Returns:
         Value and first and second time derivative, shape (3, K).
     """
-    s = fraction
-    value = s**3 * (10.0 - 15.0 * s + 6.0 * s**2)
-    slope = 30.0 * s**2 * (1.0 - s) ** 2
-    curvature = 60.0 * s * (1.0 - s) * (1.0 - 2.0 * s)
-    return np.stack((value, slope * rate, curvature * rate**2))
+    s, left, square, rise = fraction, 1.0 - fraction, fraction**2, np.empty((3, len(fraction)))
+    rise[0] = s**3 * (10.0 - 15.0 * s + 6.0 * square)
+    rise[1] = 30.0 * square * left**2 * rate
+    rise[2] = 60.0 * s * left * (1.0 - 2.0 * s) * rate**2
+    return rise
 
 
 def highest_apex(duration: float) -> float:
@@ -236,8 +242,11 @@ def shortest_support(apex: float) -> float:
 def _sine_cubed(samples: PhaseSamples, amplitude: Array) -> Array:
     w = np.pi / (samples.length * samples.sample_time)
     angle = np.pi * samples.elapsed / samples.length
-    s, c = np.sin(angle), np.cos(angle)
-    return np.asarray(amplitude * np.stack((s**3, 3.0 * w * s**2 * c, 3.0 * w**2 * s * (2.0 * c**2 - s**2))))
+    s, c, bump = np.sin(angle), np.cos(angle), np.empty((3, len(angle)))
+    square = s**2
+    bump[0], bump[1], bump[2] = s**3, 3.0 * w * square * c, 3.0 * w**2 * s * (2.0 * c**2 - square)
+    bump *= amplitude
+    return bump
 
 
 @dataclass(frozen=True, slots=True)

@@ -142,9 +142,10 @@ class Execution:
 
     def samples(self, count: int) -> PhaseSamples:
         """The phases at `count` samples from now on, with one more before them and one after."""
-        clock, rate, bend = self.clock.at(np.arange(-1.0, count + 1))
+        ahead = np.arange(-1.0, count + 1)
         if self.clock.steady:
-            return self.schedule.samples(np.maximum(clock, 0.0))
+            return self.schedule.samples(np.maximum(self.clock.now + ahead, 0.0))
+        clock, rate, bend = self.clock.at(ahead)
         return self.schedule.samples(clock, (rate, bend / self._parameters.sample_time))
 
     def advance(self, feet: FeetState, dcm: Callable[[], Dcm | None] = lambda: None) -> None:

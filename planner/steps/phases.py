@@ -166,8 +166,7 @@ class PhaseSamples:
         rate: tuple[Array, Array] | None = None,
     ) -> "PhaseSamples":
         """Phases where the clock shows some instants, shape (n,) [samples]; other arguments as of the attributes."""
-        which = np.searchsorted(table.start, clock + CLOCK_ROUNDING, side="right") - 1
-        which = np.maximum(which, 0)
+        which = np.maximum(table.start.searchsorted(clock + CLOCK_ROUNDING, side="right") - 1, 0)
         kind, support = table.kind[which], table.support[which]
         start, length, rest = (column[which] for column in (table.start, table.length, table.rest))
         elapsed = np.maximum(clock - start, 0.0)

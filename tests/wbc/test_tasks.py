@@ -128,7 +128,7 @@ def test_every_weight_matters(written):
 
 
 @pytest.mark.parametrize("kernels", ["1", "0"], ids=["compiled", "plain"])
-def test_height_momentum_and_posture_count_otherwise_while_a_step_catches_the_body_and_as_before_after_it(
+def test_height_momentum_heading_and_posture_count_otherwise_while_a_step_catches_the_body_and_as_before_after_it(
     robot, state, references, loaded, monkeypatch, kernels
 ):
     monkeypatch.setenv("SUREFOOT_NATIVE", kernels)
@@ -144,6 +144,7 @@ def test_height_momentum_and_posture_count_otherwise_while_a_step_catches_the_bo
     more = np.ones(len(target))
     more[2] = np.sqrt(weights.com_vertical_catching / weights.com_vertical)
     more[3:6] = np.sqrt(weights.angular_momentum_catching / weights.angular_momentum)
+    more[[8, 11]] = np.sqrt(weights.turning_catching / weights.orientation)
     np.testing.assert_allclose(caught, more[:, None] * rows, rtol=1e-12)
     np.testing.assert_allclose(aim, more * target, rtol=1e-12)
     np.testing.assert_allclose(same, residual, rtol=1e-9, atol=1e-9)

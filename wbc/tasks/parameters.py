@@ -27,6 +27,12 @@ class TaskWeights:
         0.2, "s^4/m^4", "the same while a step is adapted to catch the body, whose arms and trunk then bear its swing"
     )
     orientation: float = number(1.0, "s^4", "angular acceleration of pelvis and torso")
+    turning_catching: float = number(
+        0.05,
+        "s^4",
+        "the same about the vertical while a step is adapted to catch the body, which its stance foot then need not keep "
+        "from turning",
+    )
     swing: float = number(
         10.0, "s^4/m^2", "linear acceleration of the swing foot, and angular one times the robot's size"
     )

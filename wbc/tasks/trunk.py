@@ -85,12 +85,18 @@ def _beyond(excess: float) -> tuple[float, float]:
 
 
 class _Upright:
-    """Angular acceleration of a body towards upright at the heading of the reference."""
+    """Angular acceleration of a body towards upright at the heading of the reference.
+
+    While a step catches the body its heading counts for less. What a push beside the CoM and a leg that is swung hard
+    turn, one sole holds by friction alone, the better the harder it is pressed down. So it was cheap to jump, and to
+    tilt and miss the landing as well. The steps after it turn the body back.
+    """
 
     size = 3
 
     def __init__(self, weights: TaskWeights, gains: TaskGains) -> None:
         self.weight = weights.orientation
+        self.catching_weight = np.array([weights.orientation, weights.orientation, weights.turning_catching])
         self._gains = gains.orientation
         self._desired = np.eye(3)
 

@@ -28,7 +28,7 @@ class TaskWeights:
     )
     orientation: float = number(1.0, "s^4", "angular acceleration of pelvis and torso")
     turning_catching: float = number(
-        0.05,
+        0.01,
         "s^4",
         "the same about the vertical while a step is adapted to catch the body, which its stance foot then need not keep "
         "from turning",

@@ -1,0 +1,45 @@
+"""A walk whose limp arm is punched turns, in place of jumping off its stance foot."""
+
+from dataclasses import replace
+
+import numpy as np
+import pytest
+
+from surefoot.scenarios.study.tour import ride, rows, rules
+
+pytestmark = pytest.mark.physics
+
+SEED = 1084
+"""Of a tour whose first punch hits the right upper arm as the left foot swings."""
+
+
+def highest(monkeypatch, weight):
+    """Greatest height of the CoM over its plan until the foot that was swung has landed [m], and when that is [s]."""
+    monkeypatch.setattr(rules, "STRONGEST", 375.0)
+    monkeypatch.setattr(rules, "WEAKEST", 1.0)
+    arms = rows.ROWS["arms"]
+    keys = (*arms.keys, ("wbc.weights.turning_catching", weight))
+    monkeypatch.setitem(rows.ROWS, "arms", replace(arms, keys=keys))
+    rows._scenario.cache_clear()
+    tour = ride.Ride(rows.ROWS["arms"], SEED)
+    controller, most = tour.controller, -np.inf
+    while True:
+        tour.step()
+        plan, time = controller.planning.plan, tour._tick / tour.row.rate
+        if plan.phase.landed > 0 or time > 1.0:
+            return most, time
+        most = max(most, float(controller.terms.com[2] - plan.com[0, 2]))
+
+
+@pytest.fixture(autouse=True)
+def forget():
+    """Let no other test walk a scenario of this one."""
+    yield
+    rows._scenario.cache_clear()
+
+
+def test_a_punch_on_a_limp_arm_does_not_lift_it_off_its_stance_foot(monkeypatch):
+    """Held to its heading as in the walk it jumps by centimetres, and its foot comes too late."""
+    (turning, soon), (stiff, late) = (highest(monkeypatch, weight) for weight in (0.01, 1.0))
+    assert turning < 0.01 < 0.02 < stiff
+    assert soon < late - 0.04

@@ -30,8 +30,8 @@ class TaskWeights:
     turning_catching: float = number(
         0.01,
         "s^4",
-        "the same about the vertical while a step is adapted to catch the body, which its stance foot then need not keep "
-        "from turning",
+        "the same about the vertical while a step is adapted to catch the body, which its stance foot then need not "
+        "keep from turning",
     )
     swing: float = number(
         10.0, "s^4/m^2", "linear acceleration of the swing foot, and angular one times the robot's size"

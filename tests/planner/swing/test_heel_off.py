@@ -4,6 +4,7 @@ from scipy.spatial.transform import Rotation
 
 from surefoot.planner.geometry import sole_rotation
 from surefoot.planner.model.leg_chain import LegChain, Link
+from surefoot.planner.model.vectors import headings
 from surefoot.planner.plan import PlanSampler
 from surefoot.planner.planner import WalkingPlanner
 from surefoot.planner.plants import IdealFeet
@@ -102,11 +103,11 @@ def test_a_rolling_foot_turns_about_its_toe_edge_and_lifts_the_ankle():
         0.1, (0.0, 0.0, 0.3), Link(0.43, 0.1, 0.33, 1.7e-3), Link(0.43, 0.04, 0.4, 6e-4), 0.02, (0.0, 0.0, -0.04),
         (-0.022, 0.0, 0.08),
     )  # fmt: skip
-    frame = np.tile(np.eye(3), (2, 1, 1, 1))
-    level = chain._rolled(frame, None, 0.11)[0][0]
-    ankle, _ = chain._rolled(frame, np.array([[0.5], [0.0]]), 0.11)
+    frame = headings(np.zeros((2, 1)))
+    level = chain._rolled(frame, None, 0.11)[0][0, :, 0]
+    rolled, flat = chain._rolled(frame, np.array([[0.5], [0.0]]), 0.11)[0][..., 0]
     edge = np.array([0.11, 0.0, 0.0])
-    assert np.linalg.norm(ankle[0, 0] - edge) == pytest.approx(np.linalg.norm(level[0] - edge))
-    assert ankle[0, 0, 0] > level[0, 0] + 0.05
-    assert ankle[0, 0, 2] > level[0, 2] + 0.05
-    np.testing.assert_allclose(ankle[1, 0], level[0])
+    assert np.linalg.norm(rolled - edge) == pytest.approx(np.linalg.norm(level - edge))
+    assert rolled[0] > level[0] + 0.05
+    assert rolled[2] > level[2] + 0.05
+    np.testing.assert_allclose(flat, level)

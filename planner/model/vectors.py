@@ -14,7 +14,7 @@ def bend(ways: Array, sample_time: float) -> Array:
     """Accelerations of points at all samples but the first and the last, shape (..., 3, n - 2) [m/s^2].
 
     Second differences alone are a mean over two samples, which takes a tenth off what a leg swings in a double support.
-    What is left to fourth order is taken off them; at either end as beside it.
+    Their error to fourth order is subtracted. At either end it is that of the sample beside it.
     """
     bends = _second_differences(ways)
     if bends.shape[-1] > 2:

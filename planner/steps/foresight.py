@@ -29,10 +29,9 @@ class Foresight:
         return self._from is not None and self._from[0] is schedule and self._from[1] == now
 
     def next_of(self, execution: "Execution") -> "Execution | None":
-        """An execution at the next tick, where a foot then leaves the ground or the weight begins to move.
+        """The execution as it will be at the next tick, if a phase begins then that no touchdown begins.
 
-        It is None where the present phase goes on, and before a touchdown. Where that is will be felt, so that of the
-        schedule only its phases are known.
+        Else it is None. Of a schedule before a touchdown only the phases are known: its place will be felt.
         """
         if execution.left > 1.0 + CLOCK_ROUNDING:
             return None

@@ -80,8 +80,8 @@ def up_and_down(
 ) -> tuple[Array | None, Array]:
     """Height of a foot from a state up to an apex, unless that is over, and down to the ground.
 
-    The apex is no higher than an acceleration lifts the foot until then and lowers it from there; a foot that is too
-    high for that goes down at once. 4 h / t² at the apex keeps both monotone.
+    The apex is no higher than `lifting` lifts the foot until then and lowers it from there. A foot that is too high for
+    that goes down at once. 4 h / t² at the apex keeps both monotone.
 
     Args:
         state: height, its rate and the rate of that now [m, m/s, m/s^2].

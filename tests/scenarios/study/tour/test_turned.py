@@ -6,6 +6,7 @@ import numpy as np
 import pytest
 
 from surefoot.scenarios.study.tour import ride, rows, rules
+from surefoot.wbc.tasks.parameters import TaskWeights
 
 pytestmark = pytest.mark.physics
 
@@ -40,6 +41,6 @@ def forget():
 
 def test_a_punch_on_a_limp_arm_does_not_lift_it_off_its_stance_foot(monkeypatch):
     """Held to its heading as in the walk it jumps by centimetres, and its foot comes too late."""
-    (turning, soon), (stiff, late) = (highest(monkeypatch, weight) for weight in (0.01, 1.0))
+    (turning, soon), (stiff, late) = (highest(monkeypatch, weight) for weight in (TaskWeights().turning_catching, 1.0))
     assert turning < 0.01 < 0.02 < stiff
     assert soon < late - 0.04

@@ -2,7 +2,6 @@
 
 import math
 from dataclasses import replace
-from functools import partial
 
 import numpy as np
 
@@ -182,9 +181,9 @@ class WalkingPlanner:
         if not all(map(math.isfinite, measured)):
             raise ValueError(f"The measured CoM or feet are not finite at {state.time:g} s.")
         execution, time = self._execution, state.time
-        execution.advance(feet, partial(self._dcm, state))
+        execution.advance(feet)
         self._obey(time)
-        execution.fix_imminent(time)
+        execution.fix_imminent(time, feet)
         support, local, window = self._sight(state)
         if self._recovery.steps_out(local, window):
             support, local, window = self._sight(state)
@@ -222,13 +221,6 @@ class WalkingPlanner:
             if later is not None:
                 self._preview.foresee(later)
         return self._plan
-
-    def _dcm(self, state: CentroidalState) -> tuple[float, float] | None:
-        """DCM in the world frame by the ω of the last plan [m]; None without one."""
-        if self._plan is None:
-            return None
-        (x, y, _), (u, v, _), omega = state.com.tolist(), state.com_velocity.tolist(), self._plan.omega.item(0)
-        return x + u / omega, y + v / omega
 
     @staticmethod
     def _unsure(state: CentroidalState, window: Window) -> float:

@@ -5,14 +5,14 @@ from dataclasses import replace
 
 import numpy as np
 
-from surefoot.planner.geometry import frame_rotation
+from surefoot.planner.geometry import frame_rotation, wrap_angle
 from surefoot.planner.steps.schedule import Schedule
 from surefoot.planner.steps.step import Stop
 from surefoot.planner.swing.heel_off import roll_span, stretched
-from surefoot.planner.types import Array, Foot, PhaseKind, Twist
+from surefoot.planner.types import FeetState, Foot, PhaseKind, Twist
 
-Dcm = tuple[float, float]
-"""The DCM in the world frame [m]."""
+_SLID, _TURNED = 0.005, 0.05
+"""How far a stance foot is from where it landed for that to count, of the reference robot [m], and turned [rad]."""
 
 
 def with_step_in_place(schedule: Schedule, now: float, foot: Foot | None = None, at_once: bool = True) -> Schedule:
@@ -97,11 +97,17 @@ def with_heel_lifted(schedule: Schedule, number: int, radius: float) -> Schedule
     return replace(schedule, steps=(*schedule.steps[:at], step, *schedule.steps[at + 1 :]))
 
 
-def beyond(schedule: Schedule, number: int, foot: Foot, position: Array, dcm: Dcm) -> bool:
-    """Whether the DCM is beyond a foot that lands, on its own side of the step of a number, by half of its width.
+def as_standing(schedule: Schedule, number: int, feet: FeetState) -> Schedule:
+    """The schedule with the foot of the step that landed last as it is measured to stand, once it has slid or turned.
 
-    The other foot would have to cross that one to catch the body. Position and DCM are in the world frame [m].
+    Steps to come stay where they are. A foot slides as it lands, and turns under a body that turns.
     """
-    yaw, (u, v), (x, y, _) = schedule.step(number).place.yaw, dcm, position.tolist()
-    ahead = math.cos(yaw) * (v - y) - math.sin(yaw) * (u - x)
-    return bool(foot.side * ahead > schedule.ground.half_size[1])
+    at, step, length = schedule.index(number), schedule.step(number), schedule.ground.parameters.size.length
+    place, foot = step.place, step.place.foot
+    turn = wrap_angle(float(feet.yaw[foot]) - place.yaw)
+    (x, y, z), (u, v, _) = place.position.tolist(), feet.position[foot].tolist()
+    slid = math.hypot(u - x, v - y) > _SLID * length or abs(turn) > _TURNED
+    if not slid or not feet.contact[foot]:
+        return schedule
+    step = replace(step, place=replace(place, position=np.array([u, v, z]), yaw=place.yaw + turn))
+    return replace(schedule, steps=(*schedule.steps[:at], step, *schedule.steps[at + 1 :]))

@@ -1,7 +1,6 @@
 """The execution of a schedule: the clock, the touchdowns that are felt, and the swing that is flown."""
 
 import math
-from collections.abc import Callable
 from copy import copy
 from dataclasses import replace
 
@@ -9,7 +8,7 @@ import numpy as np
 
 from surefoot.planner.geometry import greatest, sole_pose, wrap_angle
 from surefoot.planner.model.time_scaling import CLOCK_ROUNDING, TimeScaling
-from surefoot.planner.steps.adaptation import Dcm, aligned, beyond, with_foot_again, with_heel_lifted
+from surefoot.planner.steps.adaptation import aligned, as_standing, with_foot_again, with_heel_lifted
 from surefoot.planner.steps.foresight import Foresight
 from surefoot.planner.steps.gait import GaitParameters
 from surefoot.planner.steps.phases import Phase, PhaseSamples
@@ -35,6 +34,9 @@ _SAME_TIME = 1e-3
 _SAME_TARGET = 1e-4
 """Difference of touchdown pose that is not worth a new swing trajectory, likewise [m, rad]."""
 
+_LIFTED = 0.01
+"""Height over its swing from which on a foot does not land as it was to, of the reference robot [m]."""
+
 _TOLD = 3
 """Footsteps to come that a plan tells [-]."""
 
@@ -44,8 +46,7 @@ class Execution:
 
     A touchdown that is late holds the clock at the end of single support; an early one fixes its footstep where it was
     felt and does not move the clock (moving it was measured to cost 17 to 28 mm of DCM error). A step that catches the
-    body ends its single support with its touchdown, early or not: by waiting the DCM error would grow by more. A foot
-    that lands short of the DCM on its own side goes on: its single support begins anew.
+    body ends its single support with its touchdown, early or not: by waiting the DCM error would grow by more.
 
     Args:
         schedule: the steps in sight.
@@ -148,23 +149,16 @@ class Execution:
         clock, rate, bend = self.clock.at(ahead)
         return self.schedule.samples(clock, (rate, bend / self._parameters.sample_time))
 
-    def advance(self, feet: FeetState, dcm: Callable[[], Dcm | None] = lambda: None) -> None:
-        """Go on by one tick.
-
-        Args:
-            feet: as measured.
-            dcm: tells it likewise, in the world frame [m]; None where it is not known yet.
-        """
+    def advance(self, feet: FeetState) -> None:
+        """Go on by one tick, with the feet as measured."""
+        if self._times and (stood := as_standing(self.schedule, self.landed, feet)) is not self.schedule:
+            self.follow(stood)
         clock = self.clock.advanced()
         phase, swing = self.phase, self.phase.swing_foot
         over = clock.now >= phase.end - CLOCK_ROUNDING
         if swing is not None and self.clock.now >= 0.0:
             contact = feet.contact[swing]
             felt = contact and not self.early and 2.0 * (clock.now - phase.start) > phase.samples
-            if (over or felt) and contact and self._lands_short(feet, dcm):
-                self.clock = clock.showing(phase.start)
-                self.swing, self.waited, self.early, self.fixed = None, 0, False, False
-                return
             if over:
                 if not contact and self.waited < self._patience:
                     self.waited += 1
@@ -184,13 +178,6 @@ class Execution:
             self.follow(self.schedule)
         if self.phase.swing_foot is None:
             self.swing = None
-
-    def _lands_short(self, feet: FeetState, tell_dcm: Callable[[], Dcm | None]) -> bool:
-        """Whether the DCM is beyond the swing foot on its own side as it lands; nothing is on it yet, so it goes on."""
-        foot = self.phase.swing_foot
-        if foot is None or not self._times or (dcm := tell_dcm()) is None:
-            return False
-        return beyond(self.schedule, self.landed, foot, feet.position[foot], dcm)
 
     def change(self, gait: GaitParameters, source: StepSource | None, time: float) -> None:
         """Walk on otherwise; what is left of the present phase changes in proportion to its duration.
@@ -242,10 +229,18 @@ class Execution:
         self.schedule = self.schedule.moved(self.landed + 1, position)
         self.fixed = True
 
-    def fix_imminent(self, time: float) -> None:
-        """Decide the next footstep where its foot now lands, shortly before it does."""
+    def fix_imminent(self, time: float, feet: FeetState) -> None:
+        """Decide the next footstep where its foot now lands, shortly before it does.
+
+        A foot that a push has lifted since then, with the body, does not land there: its footstep is decided anew.
+        """
         swing, frozen = self.swing, self._parameters.freeze_catching if self.catching else self._parameters.freeze_time
-        if swing is not None and not self.fixed and swing.touchdown_time - time <= frozen + CLOCK_ROUNDING:
+        if swing is None or swing.touchdown_time - time > frozen + CLOCK_ROUNDING:
+            return
+        height = float(feet.position[swing.foot, 2]) - float(swing.evaluate(time)[0, 2])
+        if self._times and not self.early and height > _LIFTED * self._size.length:
+            self.fixed = False
+        elif not self.fixed:
             self.fix(swing.footstep)
 
     def _land(self, position: Array, now: float) -> None:

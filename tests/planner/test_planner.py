@@ -218,32 +218,76 @@ def test_one_that_catches_nothing_does_not():
     assert after.phase.kind is PhaseKind.DOUBLE
 
 
-def again(plans):
-    """Plans in which a single support begins that has begun before."""
-    swung = [plan for plan in plans if plan.swing is not None]
-    return [b for a, b in pairwise(swung) if b.phase.elapsed < a.phase.elapsed]
+DECIDED = 48
+"""Plan before which the footstep of the first step has been decided."""
 
 
-def test_a_foot_that_lands_short_of_the_dcm_on_its_own_side_goes_on():
-    """Pushed to the left just before that the DCM is beyond the left foot; the right one would have to cross it."""
-    plans = landed_early(0.8, kicked=38)
-    [once] = again(plans)
-    before = plans[plans.index(once) - 1]
-    assert once.phase.kind is PhaseKind.SINGLE and once.phase.step == before.phase.step
-    dcm = once.com[0, 1] + once.com_velocity[0, 1] / once.omega[0]
-    short = before.swing.evaluate(once.time)[0, 1]
-    assert dcm > short + 0.5 * HUMAN[1]
-    assert plans[-1].footholds[Foot.LEFT].position[1] > short + 0.05
-    assert abs(once.com[0, 2] - before.com[1, 2]) < 1e-6
+def about_to_land(disturb, adaptation=StepAdaptation.CROSSING):
+    """Plans until 20 ms before a landing; CoM velocity and feet are disturbed in place 40 ms before it."""
+    gait = GaitParameters(initial_stand=0.0, single_support=0.6, double_support=0.2)
+    legs = LegReach(0.36, 0.2, 0.115, 0.12, 0.24, (60.0, 50.0))
+    feet = FeetState(np.array([[0.0, 0.1, 0.0], [0.0, -0.1, 0.0]]), np.zeros(2), (True, True))
+    parameters = PlannerParameters(step_adaptation=adaptation)
+    planner = WalkingPlanner(gait, feet, *HUMAN, legs=legs, parameters=parameters)
+    com, velocity, plans = np.array([0.0, 0.0, 1.0]), np.zeros(3), []
+    for tick in range(50):
+        if tick >= DECIDED:
+            disturb(velocity, feet.position, feet.yaw)
+        plan = planner.update(CentroidalState(0.02 * tick, com, velocity), feet)
+        plans.append(plan)
+        com, velocity = plan.com[1], plan.com_velocity[1].copy()
+        position, contact = feet.position.copy(), [True, True]
+        if plan.swing is not None:
+            position[plan.swing.foot] = plan.swing.evaluate(0.02 * (tick + 1))[0, :3]
+            contact[plan.swing.foot] = False
+        feet = FeetState(position, feet.yaw, (contact[0], contact[1]))
+    return plans
 
 
-@pytest.mark.parametrize(
-    ("kick", "adaptation"),
-    [(0.5, StepAdaptation.CROSSING), (-0.8, StepAdaptation.CROSSING), (0.8, StepAdaptation.LOCATION)],
-)
-def test_one_that_lands_beyond_it_or_may_not_take_another_time_stays(kick, adaptation):
+def moved(plans):
+    """How far the next footstep moves after it has been decided [m]."""
+    return float(np.hypot(*(plans[-1].footsteps[0].position - plans[DECIDED - 1].footsteps[0].position)[:2]))
+
+
+def pushed_and_lifted(height):
+    """A push to the left that lifts the swing foot with the body [m]."""
+
+    def disturb(velocity, position, yaw):
+        velocity[1] += 0.5
+        position[Foot.LEFT, 2] += height
+
+    return disturb
+
+
+def test_a_foot_that_a_push_lifts_before_it_lands_lands_where_it_catches_the_body():
+    assert moved(about_to_land(pushed_and_lifted(0.03))) > 0.02
+
+
+def test_one_that_is_not_lifted_or_may_not_take_another_time_lands_where_it_was_decided():
     """Negative control."""
-    assert not again(landed_early(kick, adaptation, kicked=38))
+    assert moved(about_to_land(pushed_and_lifted(0.005))) == 0.0
+    assert moved(about_to_land(pushed_and_lifted(0.03), StepAdaptation.LOCATION)) == 0.0
+
+
+@pytest.mark.parametrize(("turned", "counts"), [(0.1, True), (0.04, False)])
+def test_a_stance_foot_that_turns_is_planned_with_its_heading(turned, counts):
+    def disturb(_, position, yaw):
+        yaw[Foot.RIGHT] = turned
+
+    plan = about_to_land(disturb)[-1]
+    assert plan.footholds[Foot.RIGHT].yaw == pytest.approx(turned if counts else 0.0)
+
+
+@pytest.mark.parametrize(("slid", "counts"), [(0.02, True), (0.004, False)])
+def test_a_stance_foot_that_slides_is_planned_with_where_it_stands(slid, counts):
+    def disturb(_, position, yaw):
+        position[Foot.RIGHT, 0] = slid
+
+    plan = about_to_land(disturb)[-1]
+    foothold = slid if counts else 0.0
+    np.testing.assert_allclose(plan.footholds[Foot.RIGHT].position, [foothold, -0.1, 0.0], atol=1e-12)
+    assert plan.zmp_reference[0, 0] == pytest.approx(foothold, abs=1e-3)
+    assert plan.support_polygon[:, 0].max() == pytest.approx(foothold + 0.5 * HUMAN[0])
 
 
 def test_measured_foothold_replaces_the_planned_one_and_carries_the_next(stand):

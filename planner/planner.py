@@ -2,6 +2,7 @@
 
 import math
 from dataclasses import replace
+from functools import partial
 
 import numpy as np
 
@@ -19,6 +20,7 @@ from surefoot.planner.recovery.step_adjustment import StepBounds, StepProblem
 from surefoot.planner.references.com_height import HeightProfile, SmoothHeight
 from surefoot.planner.references.window import ReferencePreview, Window
 from surefoot.planner.references.zmp_reference import Support
+from surefoot.planner.steps.adaptation import Dcm
 from surefoot.planner.steps.commands import STANDING, Command
 from surefoot.planner.steps.execution import Execution
 from surefoot.planner.steps.gait import GaitParameters
@@ -181,7 +183,7 @@ class WalkingPlanner:
         if not all(map(math.isfinite, measured)):
             raise ValueError(f"The measured CoM or feet are not finite at {state.time:g} s.")
         execution, time = self._execution, state.time
-        execution.advance(feet)
+        execution.advance(feet, partial(self._dcm, state))
         self._obey(time)
         execution.fix_imminent(time, feet)
         support, local, window = self._sight(state)
@@ -221,6 +223,13 @@ class WalkingPlanner:
             if later is not None:
                 self._preview.foresee(later)
         return self._plan
+
+    def _dcm(self, state: CentroidalState) -> Dcm | None:
+        """DCM in the world frame by the ω of the last plan, and that [m, 1/s]; None without one."""
+        if self._plan is None:
+            return None
+        (x, y, _), (u, v, _), omega = state.com.tolist(), state.com_velocity.tolist(), self._plan.omega.item(0)
+        return x + u / omega, y + v / omega, omega
 
     @staticmethod
     def _unsure(state: CentroidalState, window: Window) -> float:

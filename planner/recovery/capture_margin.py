@@ -89,7 +89,7 @@ class CaptureMargin:
 
     def __init__(self, legs: LegReach, parameters: PlannerParameters, half_size: Array) -> None:
         numbers = parameters.recovery
-        near, far = np.array([-2.0 * legs.radius, legs.near]), legs.allowed(1.0, ANYWHERE, False)[0, 1]
+        near, far = np.array([-legs.stride, legs.near]), legs.allowed(1.0, ANYWHERE, False)[0, 1]
         swung = np.sqrt(PEAK * (far - near) / legs.acceleration * (0.5, 1.0)).max()
         self.cycle = numbers.least_double + max(numbers.least_single, parameters.touchdown_lead + float(swung))
         self._legs, self._timing, self._numbers = legs, parameters.step_adaptation.timing, numbers

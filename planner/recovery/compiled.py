@@ -31,6 +31,7 @@ class CompiledStep:
         self.legs = kernels.fill(
             "Legs",
             radius=legs.radius,
+            stride=legs.stride,
             hip_width=legs.hip_width,
             crosses=legs.across is not None,
             across=legs.across or 0.0,

@@ -9,7 +9,11 @@ from surefoot.planner.geometry import frame_rotation, wrap_angle
 from surefoot.planner.steps.schedule import Schedule
 from surefoot.planner.steps.step import Stop
 from surefoot.planner.swing.heel_off import roll_span, stretched
+from surefoot.planner.swing.leg_reach import LegReach
 from surefoot.planner.types import FeetState, Foot, PhaseKind, Twist
+
+Dcm = tuple[float, float, float]
+"""The DCM in the world frame, and its rate ω [m, 1/s]."""
 
 _SLID, _TURNED = 0.005, 0.05
 """How far a stance foot is from where it landed for that to count, of the reference robot [m], and turned [rad]."""
@@ -95,6 +99,22 @@ def with_heel_lifted(schedule: Schedule, number: int, radius: float) -> Schedule
         return schedule
     step = replace(step, roll=roll_span(stance.double, step.lift_off, step.single, angle))
     return replace(schedule, steps=(*schedule.steps[:at], step, *schedule.steps[at + 1 :]))
+
+
+def lands_short(schedule: Schedule, number: int, feet: FeetState, dcm: Dcm | None, legs: LegReach | None) -> bool:
+    """Whether the DCM is beyond the foot that lands after a step, on its own side, and the foot can still get there.
+
+    The other foot would have to cross it, and nothing is on it yet. The DCM is beyond it by half of its width, and no
+    farther from the stance foot than legs stride for as long as a swing takes at least.
+    """
+    if dcm is None or legs is None:
+        return False
+    place, (u, v, omega), ground = schedule.step(number).place, dcm, schedule.ground
+    foot, sine, cosine = place.foot.other, math.sin(place.yaw), math.cos(place.yaw)
+    aside = (foot.side * (cosine * (v - y) - sine * (u - x)) for x, y, _ in (feet.position[foot], place.position))
+    short, off = map(float, aside)
+    soonest = math.exp(omega * ground.parameters.recovery.least_single)
+    return short > float(ground.half_size[1]) and off * soonest < legs.stride + legs.hip_width
 
 
 def as_standing(schedule: Schedule, number: int, feet: FeetState) -> Schedule:

@@ -1,6 +1,7 @@
 """The execution of a schedule: the clock, the touchdowns that are felt, and the swing that is flown."""
 
 import math
+from collections.abc import Callable
 from copy import copy
 from dataclasses import replace
 
@@ -8,7 +9,7 @@ import numpy as np
 
 from surefoot.planner.geometry import greatest, sole_pose, wrap_angle
 from surefoot.planner.model.time_scaling import CLOCK_ROUNDING, TimeScaling
-from surefoot.planner.steps.adaptation import aligned, as_standing, with_foot_again, with_heel_lifted
+from surefoot.planner.steps.adaptation import Dcm, aligned, as_standing, lands_short, with_foot_again, with_heel_lifted
 from surefoot.planner.steps.foresight import Foresight
 from surefoot.planner.steps.gait import GaitParameters
 from surefoot.planner.steps.phases import Phase, PhaseSamples
@@ -46,7 +47,8 @@ class Execution:
 
     A touchdown that is late holds the clock at the end of single support; an early one fixes its footstep where it was
     felt and does not move the clock (moving it was measured to cost 17 to 28 mm of DCM error). A step that catches the
-    body ends its single support with its touchdown, early or not: by waiting the DCM error would grow by more.
+    body ends its single support with its touchdown, early or not: by waiting the DCM error would grow by more. A foot
+    that lands short of the DCM on its own side goes on, where it may get there: its single support begins anew.
 
     Args:
         schedule: the steps in sight.
@@ -149,8 +151,8 @@ class Execution:
         clock, rate, bend = self.clock.at(ahead)
         return self.schedule.samples(clock, (rate, bend / self._parameters.sample_time))
 
-    def advance(self, feet: FeetState) -> None:
-        """Go on by one tick, with the feet as measured."""
+    def advance(self, feet: FeetState, dcm: Callable[[], Dcm | None] = lambda: None) -> None:
+        """Go on by one tick, with feet as measured, and a DCM that is told if it is asked for, and known."""
         if self._times and (stood := as_standing(self.schedule, self.landed, feet)) is not self.schedule:
             self.follow(stood)
         clock = self.clock.advanced()
@@ -159,6 +161,11 @@ class Execution:
         if swing is not None and self.clock.now >= 0.0:
             contact = feet.contact[swing]
             felt = contact and not self.early and 2.0 * (clock.now - phase.start) > phase.samples
+            lands = self._times and contact and (over or felt)
+            if lands and lands_short(self.schedule, self.landed, feet, dcm(), self.legs):
+                self.clock = clock.showing(phase.start)
+                self.swing, self.waited, self.early, self.fixed = None, 0, False, False
+                return
             if over:
                 if not contact and self.waited < self._patience:
                     self.waited += 1
@@ -230,14 +237,12 @@ class Execution:
         self.fixed = True
 
     def fix_imminent(self, time: float, feet: FeetState) -> None:
-        """Decide the next footstep where its foot now lands, shortly before it does.
-
-        A foot that a push has lifted since then, with the body, does not land there: its footstep is decided anew.
-        """
-        swing, frozen = self.swing, self._parameters.freeze_catching if self.catching else self._parameters.freeze_time
-        if swing is None or swing.touchdown_time - time > frozen + CLOCK_ROUNDING:
+        """Decide the next footstep where its foot now lands, shortly before it does, and anew once a push lifts it."""
+        swing, p = self.swing, self._parameters
+        frozen = (p.freeze_catching if self.catching else p.freeze_time) + CLOCK_ROUNDING
+        if swing is None or swing.touchdown_time - time > frozen:
             return
-        height = float(feet.position[swing.foot, 2]) - float(swing.evaluate(time)[0, 2])
+        height = float(feet.position[swing.foot, 2] - swing.evaluate(time)[0, 2])
         if self._times and not self.early and height > _LIFTED * self._size.length:
             self.fixed = False
         elif not self.fixed:

@@ -46,6 +46,14 @@ class LegReach:
     length: float = math.inf
     parameters: PlannerParameters = field(default_factory=PlannerParameters)
 
+    @property
+    def stride(self) -> float:
+        """Greatest distance between the feet as one of them lands, less that of the hips [m].
+
+        The foot that lands is in reach from its hip; the other leg is stretched, and its foot rolls over its edge.
+        """
+        return STRIDE * self.radius
+
     def adapting(self, parameters: PlannerParameters) -> "LegReach | None":
         """What of it a planner makes use of by its step adaptation; None where it makes none."""
         if not parameters.step_adaptation.places:
@@ -81,7 +89,7 @@ class LegReach:
         Returns:
             Lower and upper corners, shape (boxes, 2, 2) [m].
         """
-        most = 2.0 * self.radius
+        most = self.stride
         boxes = [self._box(side, -most, most, self.near)]
         if crosses and self.across is not None:
             boxes.append(self._box(side, self.clear, most, -self.across))
@@ -91,7 +99,7 @@ class LegReach:
         return found
 
     def _box(self, side: float, back: float, ahead: float, near: float) -> tuple[tuple[float, float], ...]:
-        low, high = sorted((side * near, side * (2.0 * self.radius + self.hip_width)))
+        low, high = sorted((side * near, side * (self.stride + self.hip_width)))
         return (back, low), (ahead, high)
 
     def within(self, places: Array, hips: Array) -> Array:
@@ -195,6 +203,9 @@ class LegReach:
         lacking[which] = np.where(met, (1.0 - 1.0 / np.maximum(hardest, 1.0)) * np.hypot(*way[:, 0].T), 0.0)
         return lacking
 
+
+STRIDE = 2.6
+"""Greatest stride over the reach of a leg: at 2, where both legs span it flat, a body that runs is not caught [-]."""
 
 ANYWHERE = np.array([[-np.inf, -np.inf], [np.inf, np.inf]])
 """The face of a foot that may land on any ground: its lower and upper corner [m]."""

@@ -889,6 +889,7 @@ double outlook_margin(const Outlook *ahead, double x, double y, double foot_marg
 /* Counterpart of `planner.swing.leg_reach.LegReach`; its unit ways are rows of values at so many shares of a swing. */
 typedef struct {
     double radius;
+    double stride;
     double hip_width;
     int64_t crosses;
     double across;

@@ -18,7 +18,7 @@ typedef struct {
 
 /* Counterpart of `planner.swing.leg_reach.LegReach.allowed` of legs that are turned; says how many boxes there are. */
 static inline int64_t allowed(const Legs *legs, const Landing *step, Box *boxes) {
-    const double most = 2.0 * legs->radius, far = step->side * (most + legs->hip_width);
+    const double most = legs->stride, far = step->side * (most + legs->hip_width);
     const double back[BOXES] = {-most, step->clear, -most}, ahead[BOXES] = {most, most, -step->clear};
     const int64_t count = step->crosses != 0.0 && legs->crosses ? BOXES : 1;
     for (int64_t b = 0; b < count; b++) {

@@ -37,6 +37,7 @@ NOTICED = {
     "steps.execution._LIFTED": "tests/planner/test_planner.py",
     "steps.schedule._LAID_OUT": "tests/planner/steps/test_laid_out.py",
     "steps.schedule._STOP_AHEAD": "tests/planner/steps/test_schedule.py",
+    "swing.leg_reach.STRIDE": "tests/planner/recovery/test_step_adjustment.py",
     "swing.quintics.PEAK": "tests/planner/swing/test_swing_limits.py",
     "swing.quintics.BRAKING": "tests/planner/swing/test_swing_limits.py",
     "swing.quintics.GAINING": "tests/planner/swing/test_swing_limits.py",

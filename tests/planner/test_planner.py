@@ -218,6 +218,34 @@ def test_one_that_catches_nothing_does_not():
     assert after.phase.kind is PhaseKind.DOUBLE
 
 
+def again(plans):
+    """Plans in which a single support begins that has begun before."""
+    swung = [plan for plan in plans if plan.swing is not None]
+    return [b for a, b in pairwise(swung) if b.phase.elapsed < a.phase.elapsed]
+
+
+def test_a_foot_that_lands_short_of_the_dcm_on_its_own_side_goes_on():
+    """Pushed to the left just before that the DCM is beyond the left foot; the right one would have to cross it."""
+    plans = landed_early(0.8, kicked=38)
+    [once] = again(plans)
+    before = plans[plans.index(once) - 1]
+    assert once.phase.kind is PhaseKind.SINGLE and once.phase.step == before.phase.step
+    dcm = once.com[0, 1] + once.com_velocity[0, 1] / once.omega[0]
+    short = before.swing.evaluate(once.time)[0, 1]
+    assert dcm > short + 0.5 * HUMAN[1]
+    assert plans[-1].footholds[Foot.LEFT].position[1] > short + 0.05
+    assert abs(once.com[0, 2] - before.com[1, 2]) < 1e-6
+
+
+@pytest.mark.parametrize(
+    ("kick", "adaptation"),
+    [(0.5, StepAdaptation.CROSSING), (-0.8, StepAdaptation.CROSSING), (0.8, StepAdaptation.LOCATION)],
+)
+def test_one_that_lands_beyond_it_or_may_not_take_another_time_stays(kick, adaptation):
+    """Negative control."""
+    assert not again(landed_early(kick, adaptation, kicked=38))
+
+
 DECIDED = 48
 """Plan before which the footstep of the first step has been decided."""
 

@@ -185,7 +185,7 @@ class WalkingPlanner:
         execution, time = self._execution, state.time
         execution.advance(feet, partial(self._dcm, state))
         self._obey(time)
-        execution.fix_imminent(time, feet)
+        execution.fix_imminent(time, feet, 0.0 if self._plan is None else self._plan.balance.planned)
         support, local, window = self._sight(state)
         if self._recovery.steps_out(local, window):
             support, local, window = self._sight(state)

@@ -10,10 +10,14 @@ from surefoot.planner.steps.schedule import Schedule
 from surefoot.planner.steps.step import Stop
 from surefoot.planner.swing.heel_off import roll_span, stretched
 from surefoot.planner.swing.leg_reach import LegReach
+from surefoot.planner.swing.trajectory import SwingTrajectory
 from surefoot.planner.types import FeetState, Foot, PhaseKind, Twist
 
 Dcm = tuple[float, float, float]
 """The DCM in the world frame, and its rate ω [m, 1/s]."""
+
+_LIFTED = 0.01
+"""Height over its swing from which on a foot does not land as it was to, of the reference robot [m]."""
 
 _SLID, _TURNED = 0.005, 0.05
 """How far a stance foot is from where it landed for that to count, of the reference robot [m], and turned [rad]."""
@@ -115,6 +119,11 @@ def lands_short(schedule: Schedule, number: int, feet: FeetState, dcm: Dcm | Non
     short, off = map(float, aside)
     soonest = math.exp(omega * ground.parameters.recovery.least_single)
     return short > float(ground.half_size[1]) and off * soonest < legs.stride + legs.hip_width
+
+
+def lifted(swing: SwingTrajectory, feet: FeetState, time: float, length: float) -> bool:
+    """Whether a push has lifted the foot off its swing at a time [s]; `length` is the robot's size [-]."""
+    return float(feet.position[swing.foot, 2] - swing.evaluate(time)[0, 2]) > _LIFTED * length
 
 
 def as_standing(schedule: Schedule, number: int, feet: FeetState) -> Schedule:

@@ -9,7 +9,7 @@ import numpy as np
 
 from surefoot.planner.geometry import greatest, sole_pose, wrap_angle
 from surefoot.planner.model.time_scaling import CLOCK_ROUNDING, TimeScaling
-from surefoot.planner.steps.adaptation import Dcm, aligned, as_standing, lands_short, with_foot_again, with_heel_lifted
+from surefoot.planner.steps import adaptation
 from surefoot.planner.steps.foresight import Foresight
 from surefoot.planner.steps.gait import GaitParameters
 from surefoot.planner.steps.phases import Phase, PhaseSamples
@@ -34,9 +34,6 @@ _SAME_TIME = 1e-3
 
 _SAME_TARGET = 1e-4
 """Difference of touchdown pose that is not worth a new swing trajectory, likewise [m, rad]."""
-
-_LIFTED = 0.01
-"""Height over its swing from which on a foot does not land as it was to, of the reference robot [m]."""
 
 _TOLD = 3
 """Footsteps to come that a plan tells [-]."""
@@ -151,9 +148,9 @@ class Execution:
         clock, rate, bend = self.clock.at(ahead)
         return self.schedule.samples(clock, (rate, bend / self._parameters.sample_time))
 
-    def advance(self, feet: FeetState, dcm: Callable[[], Dcm | None] = lambda: None) -> None:
+    def advance(self, feet: FeetState, dcm: Callable[[], adaptation.Dcm | None] = lambda: None) -> None:
         """Go on by one tick, with feet as measured, and a DCM that is told if it is asked for, and known."""
-        if self._times and (stood := as_standing(self.schedule, self.landed, feet)) is not self.schedule:
+        if self._times and (stood := adaptation.as_standing(self.schedule, self.landed, feet)) is not self.schedule:
             self.follow(stood)
         clock = self.clock.advanced()
         phase, swing = self.phase, self.phase.swing_foot
@@ -162,9 +159,8 @@ class Execution:
             contact = feet.contact[swing]
             felt = contact and not self.early and 2.0 * (clock.now - phase.start) > phase.samples
             lands = self._times and contact and (over or felt)
-            if lands and lands_short(self.schedule, self.landed, feet, dcm(), self.legs):
-                self.clock = clock.showing(phase.start)
-                self.swing, self.waited, self.early, self.fixed = None, 0, False, False
+            if lands and adaptation.lands_short(self.schedule, self.landed, feet, dcm(), self.legs):
+                self._swing_anew(clock)
                 return
             if over:
                 if not contact and self.waited < self._patience:
@@ -236,25 +232,28 @@ class Execution:
         self.schedule = self.schedule.moved(self.landed + 1, position)
         self.fixed = True
 
-    def fix_imminent(self, time: float, feet: FeetState) -> None:
-        """Decide the next footstep where its foot now lands, shortly before it does, and anew once a push lifts it."""
+    def fix_imminent(self, time: float, feet: FeetState, margin: float) -> None:
+        """Decide the next footstep shortly before it lands; swing a lifted foot anew where no margin is left [m]."""
         swing, p = self.swing, self._parameters
         frozen = (p.freeze_catching if self.catching else p.freeze_time) + CLOCK_ROUNDING
         if swing is None or swing.touchdown_time - time > frozen:
             return
-        height = float(feet.position[swing.foot, 2] - swing.evaluate(time)[0, 2])
-        if self._times and not self.early and height > _LIFTED * self._size.length:
-            self.fixed = False
+        if margin < 0.0 and self._times and not self.early and adaptation.lifted(swing, feet, time, self._size.length):
+            self._swing_anew(self.clock)
         elif not self.fixed:
             self.fix(swing.footstep)
+
+    def _swing_anew(self, clock: TimeScaling) -> None:
+        self.clock, self.swing, self.waited = clock.showing(self.phase.start), None, 0
+        self.early = self.fixed = False
 
     def _land(self, position: Array, now: float) -> None:
         self.schedule = self.foresight.forgotten(self.schedule, now)
         self.fix(position)
         self.landed += 1
         if self.adapted and self.legs is not None:
-            schedule = with_heel_lifted(self.schedule, self.landed, self.legs.radius)
-            self.schedule = schedule if self._wide else aligned(schedule, self.landed)
+            schedule = adaptation.with_heel_lifted(self.schedule, self.landed, self.legs.radius)
+            self.schedule = schedule if self._wide else adaptation.aligned(schedule, self.landed)
         self.waited, self.early, self.fixed, self.adapted = 0, False, False, False
 
     @property
@@ -270,7 +269,7 @@ class Execution:
 
     def going_again(self) -> "Execution":
         """The execution in which the foot that landed last makes the next step as well, and the weight goes back."""
-        other, phase, schedule = copy(self), self.phase, with_foot_again(self.schedule, self.landed)
+        other, phase, schedule = copy(self), self.phase, adaptation.with_foot_again(self.schedule, self.landed)
         gone = 1.0 if phase.kind is PhaseKind.SINGLE else (self.clock.now - phase.start) / phase.samples
         step = schedule.step(self.landed)
         other.clock = self.clock.showing(step.touchdown + (1.0 - gone) * step.double)

@@ -10,6 +10,7 @@ from dotted import named
 
 from surefoot.planner.model.dcm import nominal_dcm
 from surefoot.planner.parameters import PlannerParameters, RecoveryParameters
+from surefoot.planner.swing.leg_reach import STRIDE
 from surefoot.planner.swing.quintics import PEAK
 from surefoot.scenarios.setup.load import load
 from surefoot.scenarios.setup.walk import resolve
@@ -46,7 +47,7 @@ def test_the_values_are_those_of_the_parameters():
 
 def test_the_numbers_of_the_legs_are_those_of_the_walk(legs):
     rows = re.findall(r"(?m)^\| `(\w+)` \| ([\d., ]+) m(?:/s²)? \| .* \| (?:`(\w+)`)? ?\|$", TEXT)
-    assert [name for name, *_ in rows] == ["radius", "hip_width", "near", "across", "clear", "acceleration"]
+    assert [name for name, *_ in rows] == ["radius", "stride", "hip_width", "near", "across", "clear", "acceleration"]
     for name, told, key in rows:
         value = np.ravel(getattr(legs, name))
         assert [float(part) for part in told.split(", ")] == pytest.approx(value, rel=2e-3), name
@@ -55,6 +56,7 @@ def test_the_numbers_of_the_legs_are_those_of_the_walk(legs):
     assert legs.near == pytest.approx(legs.sole[1] + 0.5 * numbers.sole_gap)
     assert legs.clear == pytest.approx(legs.sole[0] + numbers.clear)
     assert legs.radius == pytest.approx(0.9 * np.sqrt(0.94**2 - 0.891**2), abs=1e-3)
+    assert legs.stride == pytest.approx(STRIDE * legs.radius) and f"{STRIDE} `radius`" in TEXT
     assert PEAK == 5.77
 
 

@@ -139,7 +139,7 @@ def test_a_foot_that_has_just_landed_steps_again_where_the_other_one_would_cross
     gait = GaitParameters(steps=6, step_length=0.0, single_support=0.4, double_support=0.12, com_height=0.95)
     planner = WalkingPlanner(gait, stand(), 0.22, 0.11, parameters=slow, legs=LEGS)
     com = np.array([0.0, 0.0, gait.com_height])
-    push = Push(gait.lift_off(4) - 0.14, 0.1, 700.0 * np.array([math.cos(direction), math.sin(direction), 0.0]))
+    push = Push(gait.lift_off(4) - 0.14, 0.1, 660.0 * np.array([math.cos(direction), math.sin(direction), 0.0]))
     trace = walk_pendulum(planner, stand(), gait.duration + 2.0, com=com, pushes=(push,))
     assert trace.fall_time is None
     swung = {plan.phase.step: plan.phase.stance.other for plan in trace.plans if plan.phase.kind is PhaseKind.SINGLE}

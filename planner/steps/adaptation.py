@@ -5,7 +5,7 @@ from dataclasses import replace
 
 import numpy as np
 
-from surefoot.planner.geometry import frame_rotation, wrap_angle
+from surefoot.planner.geometry import frame_rotation
 from surefoot.planner.steps.schedule import Schedule
 from surefoot.planner.steps.step import Stop
 from surefoot.planner.swing.heel_off import roll_span, stretched
@@ -18,9 +18,6 @@ Dcm = tuple[float, float, float]
 
 _LIFTED = 0.01
 """Height over its swing from which on a foot does not land as it was to, of the reference robot [m]."""
-
-_SLID, _TURNED = 0.005, 0.05
-"""How far a stance foot is from where it landed for that to count, of the reference robot [m], and turned [rad]."""
 
 
 def with_step_in_place(schedule: Schedule, now: float, foot: Foot | None = None, at_once: bool = True) -> Schedule:
@@ -124,19 +121,3 @@ def lands_short(schedule: Schedule, number: int, feet: FeetState, dcm: Dcm | Non
 def lifted(swing: SwingTrajectory, feet: FeetState, time: float, length: float) -> bool:
     """Whether a push has lifted the foot off its swing at a time [s]; `length` is the robot's size [-]."""
     return float(feet.position[swing.foot, 2] - swing.evaluate(time)[0, 2]) > _LIFTED * length
-
-
-def as_standing(schedule: Schedule, number: int, feet: FeetState) -> Schedule:
-    """The schedule with the foot of the step that landed last as it is measured to stand, once it has slid or turned.
-
-    Steps to come stay where they are. A foot slides as it lands, and turns under a body that turns.
-    """
-    at, step, length = schedule.index(number), schedule.step(number), schedule.ground.parameters.size.length
-    place, foot = step.place, step.place.foot
-    turn = wrap_angle(float(feet.yaw[foot]) - place.yaw)
-    (x, y, z), (u, v, _) = place.position.tolist(), feet.position[foot].tolist()
-    slid = math.hypot(u - x, v - y) > _SLID * length or abs(turn) > _TURNED
-    if not slid or not feet.contact[foot]:
-        return schedule
-    step = replace(step, place=replace(place, position=np.array([u, v, z]), yaw=place.yaw + turn))
-    return replace(schedule, steps=(*schedule.steps[:at], step, *schedule.steps[at + 1 :]))

@@ -150,8 +150,6 @@ class Execution:
 
     def advance(self, feet: FeetState, dcm: Callable[[], adaptation.Dcm | None] = lambda: None) -> None:
         """Go on by one tick, with feet as measured, and a DCM that is told if it is asked for, and known."""
-        if self._times and (stood := adaptation.as_standing(self.schedule, self.landed, feet)) is not self.schedule:
-            self.follow(stood)
         clock = self.clock.advanced()
         phase, swing = self.phase, self.phase.swing_foot
         over = clock.now >= phase.end - CLOCK_ROUNDING

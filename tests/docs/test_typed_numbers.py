@@ -92,7 +92,6 @@ CODED = {
     },
     "docs/recovery.md": {
         "fixed": (100 * adaptation._LIFTED,),
-        "a stance foot that slides": (1e3 * adaptation._SLID, adaptation._TURNED),
         "a step stays": (100 * terrain._KEPT,),
         "the last three alone, up": (external.BOUND[0],),
         "the last three alone, above": (external.PUSH[1],),

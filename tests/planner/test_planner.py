@@ -239,9 +239,14 @@ def test_a_foot_that_lands_short_of_the_dcm_on_its_own_side_goes_on():
 
 @pytest.mark.parametrize(
     ("kick", "adaptation"),
-    [(0.5, StepAdaptation.CROSSING), (-0.8, StepAdaptation.CROSSING), (0.8, StepAdaptation.LOCATION)],
+    [
+        (0.5, StepAdaptation.CROSSING),
+        (-0.8, StepAdaptation.CROSSING),
+        (3.0, StepAdaptation.CROSSING),
+        (0.8, StepAdaptation.LOCATION),
+    ],
 )
-def test_one_that_lands_beyond_it_or_may_not_take_another_time_stays(kick, adaptation):
+def test_one_that_lands_beyond_it_or_cannot_get_there_or_may_not_take_another_time_stays(kick, adaptation):
     """Negative control."""
     assert not again(landed_early(kick, adaptation, kicked=38))
 
@@ -260,7 +265,7 @@ def about_to_land(disturb, adaptation=StepAdaptation.CROSSING):
     com, velocity, plans = np.array([0.0, 0.0, 1.0]), np.zeros(3), []
     for tick in range(50):
         if tick >= DECIDED:
-            disturb(velocity, feet.position, feet.yaw)
+            disturb(velocity, feet.position)
         plan = planner.update(CentroidalState(0.02 * tick, com, velocity), feet)
         plans.append(plan)
         com, velocity = plan.com[1], plan.com_velocity[1].copy()
@@ -280,7 +285,7 @@ def moved(plans):
 def pushed_and_lifted(height):
     """A push to the left that lifts the swing foot with the body [m]."""
 
-    def disturb(velocity, position, yaw):
+    def disturb(velocity, position):
         velocity[1] += 0.5
         position[Foot.LEFT, 2] += height
 
@@ -295,27 +300,6 @@ def test_one_that_is_not_lifted_or_may_not_take_another_time_lands_where_it_was_
     """Negative control."""
     assert moved(about_to_land(pushed_and_lifted(0.005))) == 0.0
     assert moved(about_to_land(pushed_and_lifted(0.03), StepAdaptation.LOCATION)) == 0.0
-
-
-@pytest.mark.parametrize(("turned", "counts"), [(0.1, True), (0.04, False)])
-def test_a_stance_foot_that_turns_is_planned_with_its_heading(turned, counts):
-    def disturb(_, position, yaw):
-        yaw[Foot.RIGHT] = turned
-
-    plan = about_to_land(disturb)[-1]
-    assert plan.footholds[Foot.RIGHT].yaw == pytest.approx(turned if counts else 0.0)
-
-
-@pytest.mark.parametrize(("slid", "counts"), [(0.02, True), (0.004, False)])
-def test_a_stance_foot_that_slides_is_planned_with_where_it_stands(slid, counts):
-    def disturb(_, position, yaw):
-        position[Foot.RIGHT, 0] = slid
-
-    plan = about_to_land(disturb)[-1]
-    foothold = slid if counts else 0.0
-    np.testing.assert_allclose(plan.footholds[Foot.RIGHT].position, [foothold, -0.1, 0.0], atol=1e-12)
-    assert plan.zmp_reference[0, 0] == pytest.approx(foothold, abs=1e-3)
-    assert plan.support_polygon[:, 0].max() == pytest.approx(foothold + 0.5 * HUMAN[0])
 
 
 def test_measured_foothold_replaces_the_planned_one_and_carries_the_next(stand):

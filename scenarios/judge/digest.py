@@ -66,7 +66,7 @@ class Columns:
         return iter(self._kinds)
 
     def add(self, key: Hashable, values: NDArray[Any]) -> None:
-        """Append a part, which is copied; a key whose parts cannot be joined is forgotten.
+        """Append a part, which nobody may change from then on; a key whose parts cannot be joined is forgotten.
 
         Raises:
             LogError: there is no room for the files.
@@ -79,7 +79,7 @@ class Columns:
         if self._spilled:
             self._write(key, values)
             return
-        self._parts.setdefault(key, []).append(np.array(values))
+        self._parts.setdefault(key, []).append(values)
         self._held += values.nbytes
         if self._held > HELD_BYTES:
             self._spill()
@@ -206,7 +206,7 @@ class Digest(Window):
                     if name in there:
                         kept.add((topic, name), channel.field(name))
             for key, values in reduce(Window(log, channels)).items():
-                self.reduced.add(key, values)
+                self.reduced.add(key, np.array(values))  # of which a view would keep all that it is of
         super().__init__(log, {topic: KeptChannel(log, topic, kept) for topic in topics})
 
 

@@ -73,7 +73,11 @@ def _composer() -> type[Composer]:
 def scenario_yaml(scenario: "Scenario") -> str:
     """The scenario as run: every key with its value, but for those left null."""
     groups = scenario.model_dump(mode="json", exclude_none=True)
-    return "".join(_group_yaml(name, json.dumps(group)) for name, group in groups.items())
+    return "".join(
+        # A whole number, such as the seed, which is another one in each run.
+        f"{name}: {group}\n" if type(group) is int else _group_yaml(name, json.dumps(group))
+        for name, group in groups.items()
+    )
 
 
 @lru_cache(maxsize=256)

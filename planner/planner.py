@@ -102,7 +102,7 @@ class WalkingPlanner:
         half_size = 0.5 * np.array([foot_length, foot_width])
         heights = height_profile or profile.height or SmoothHeight()
         self._preview = ReferencePreview(gait, heights, p, half_size)
-        schedule = begun(gait, feet, Ground(terrain, half_size, p))
+        schedule = begun(gait, feet, Ground(terrain, half_size, p), self._preview.reach + 1)
         legs = legs.adapting(p) if legs is not None and profile.catches else None
         self._execution = Execution(schedule, self._preview.reach + 1, legs)
         self._recovery = Recovery(self._execution, half_size)

@@ -70,7 +70,9 @@ class Separation:
             unbounded: value of an absent bound.
         """
         if self.due is None:
-            self._fill(self._near(data), data, v, rows, lower, unbounded)
+            near = self._near(data)
+            if near or not self.is_clear or self._written is not rows:
+                self._fill(near, data, v, rows, lower, unbounded)
         else:
             self.write_due(self.due.find(), data, v, rows, lower, unbounded)
 
@@ -96,8 +98,8 @@ class Separation:
         # Where not even the nearest pair is looked at, it alone has to be read.
         if least < len(self._results) and self._results[least].min_distance >= attention:
             return []
-        distances = ((result.min_distance, k) for k, result in enumerate(self._results))
-        return [(distance, k) for distance, k in distances if 0.0 < distance < attention]
+        distances = [result.min_distance for result in self._results]
+        return [(distance, k) for k, distance in enumerate(distances) if 0.0 < distance < attention]
 
     def _fill(
         self, near: list[tuple[float, int]], data: pin.Data, v: Array, rows: Array, lower: Array, unbounded: float

@@ -260,12 +260,18 @@ class RunView:
     def __init__(self, log: Source, constants: RunConstants | None = None) -> None:
         self.log = log
         self._made: dict[Callable[[RunView], Any], Any] = {}
+        self._there: dict[str, bool] = {}
         known = constants or (log.constants if isinstance(log, Digest) else None)
         self.constants = known or RunConstants.from_metadata(log.metadata, str(log.path))
 
     def has(self, *topics: str) -> bool:
         """Whether all of these topics have messages."""
-        return all(topic in self.log and len(self.log[topic]) > 0 for topic in topics)
+        return all(map(self._has, topics))
+
+    def _has(self, topic: str) -> bool:
+        if topic not in self._there:
+            self._there[topic] = topic in self.log and len(self.log[topic]) > 0
+        return self._there[topic]
 
     def field(self, topic: str, name: str) -> Array:
         """A field of a control-rate channel on the common ticks, shape (n, *field shape)."""

@@ -77,6 +77,14 @@ def _metadata(record: records.Metadata) -> bytes:
     return struct.pack("<BQ", Opcode.METADATA, len(name) + 4 + length) + name + _LENGTH.pack(length) + b"".join(pairs)
 
 
+def _attachment(record: records.Attachment) -> bytes:
+    """`encoded` of an attachment, whose bytes are copied once."""
+    names = (_LENGTH.pack(len(name)) + name for name in (record.name.encode(), record.media_type.encode()))
+    times, size = struct.pack("<QQ", record.log_time, record.create_time), struct.pack("<Q", len(record.data))
+    body = b"".join((times, *names, size, record.data))
+    return b"".join((struct.pack("<BQ", Opcode.ATTACHMENT, len(body) + 4), body, _LENGTH.pack(zlib.crc32(body))))
+
+
 def chunk_head(chunk: records.Chunk) -> bytes:
     """Encode a chunk's record up to its data, which follow as they are: they are not copied once more."""
     method, size = chunk.compression.encode(), len(chunk.data)
@@ -150,7 +158,7 @@ class Summary:
 
     def add_attachment(self, record: records.Attachment, position: int) -> bytes:
         """Note an attachment at a file position and encode it."""
-        data = encoded(record)
+        data = _attachment(record)
         size = len(record.data)
         stamps = (record.log_time, record.create_time)
         self._attachments.append(

@@ -104,7 +104,7 @@ def predict(sample_time: float, basis: Array) -> Prediction:
     return _predict(sample_time, basis.shape, basis.astype(np.float64).tobytes())
 
 
-@lru_cache(maxsize=8)
+@lru_cache(maxsize=4)
 def _predict(sample_time: float, shape: tuple[int, int], numbers: bytes) -> Prediction:
     basis = np.frombuffer(numbers).reshape(shape)
     n = shape[0]

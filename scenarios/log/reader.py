@@ -189,7 +189,10 @@ class Log:
         return min([*starts, *loose], default=0) * 1e-9, max([*ends, *loose], default=0) * 1e-9
 
     def verify(self) -> None:
-        """Compare every chunk that has not been compared yet with its checksum; `damage` tells what does not agree."""
+        """Compare every chunk that has not been compared yet with its checksum; `damage` tells what does not agree.
+
+        Of data that agree with their checksum as a whole it is only seen that each chunk can be unpacked.
+        """
         for chunk in self.contents.chunks:
             if chunk.position not in self._verified:
                 self._sound(chunk)

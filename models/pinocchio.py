@@ -1,6 +1,7 @@
 """The Pinocchio model of a robot, from the very text that MuJoCo compiles."""
 
 import tempfile
+import threading
 from collections.abc import Iterator
 from contextlib import contextmanager
 from functools import lru_cache
@@ -36,6 +37,20 @@ def pinocchio_model(description: RobotDescription) -> pin.Model:
     model.upperVelocityLimit = np.concatenate((free, description.velocity_limit))
     model.lowerVelocityLimit = -model.upperVelocityLimit
     return model
+
+
+class Scratch(threading.local):
+    """Pinocchio's memory for what is worked out and read at once: to make one takes longer than most of that.
+
+    Args:
+        model: the robot.
+
+    Attributes:
+        data: each thread's own.
+    """
+
+    def __init__(self, model: pin.Model) -> None:
+        self.data = model.createData()
 
 
 def limb_shapes(description: RobotDescription) -> pin.GeometryModel:

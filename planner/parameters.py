@@ -322,7 +322,7 @@ class PlannerParameters:
     def __post_init__(self) -> None:
         for entry in fields(self):
             value = getattr(self, entry.name)
-            if not isinstance(value, int | float):
+            if not isinstance(value, int | float) or 0 < value < math.inf:
                 continue
             key, what = ("parameters", entry.name), f"{entry.name} is {value:g}"
             if not (value > 0 or (entry.name in _ZERO_TOO and value == 0)):

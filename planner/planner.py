@@ -21,6 +21,7 @@ from surefoot.planner.references.com_height import HeightProfile, SmoothHeight
 from surefoot.planner.references.window import ReferencePreview, Window
 from surefoot.planner.references.zmp_reference import Support
 from surefoot.planner.steps.adaptation import Dcm
+from surefoot.planner.steps.beginning import begun
 from surefoot.planner.steps.commands import STANDING, Command
 from surefoot.planner.steps.execution import Execution
 from surefoot.planner.steps.gait import GaitParameters
@@ -102,7 +103,7 @@ class WalkingPlanner:
         half_size = 0.5 * np.array([foot_length, foot_width])
         heights = height_profile or profile.height or SmoothHeight()
         self._preview = ReferencePreview(gait, heights, p, half_size)
-        schedule = Schedule.start(gait, feet, Ground(terrain, half_size, p)).laid_out()
+        schedule = begun(gait, feet, Ground(terrain, half_size, p), self._preview.reach + 1)
         legs = legs.adapting(p) if legs is not None and profile.catches else None
         self._execution = Execution(schedule, self._preview.reach + 1, legs)
         self._recovery = Recovery(self._execution, half_size)

@@ -17,8 +17,9 @@ class ContactSense:
     def __init__(self, model: mujoco.MjModel, data: mujoco.MjData, feet: Sequence[int]) -> None:
         """Look at a model's contacts; ``feet`` are the ids of the two foot bodies."""
         self._contact = data.contact
-        code = np.where(np.isin(model.geom_bodyid, feet), _FOOT, _BODY)
-        self._code: NDArray[np.intp] = np.where(model.geom_bodyid == 0, _TERRAIN, code)
+        body, (left, right) = model.geom_bodyid, feet
+        code = np.where((body == left) | (body == right), _FOOT, _BODY)  # numpy.isin takes thirty times as long
+        self._code: NDArray[np.intp] = np.where(body == 0, _TERRAIN, code)
         self._geoms, self._touches = b"", (False, False)
 
     def read(self) -> tuple[bool, bool]:

@@ -28,13 +28,16 @@ class SensorReader:
 
     The IMU must sit in the frame of the floating base: then the gyro is the base's angular velocity and the
     accelerometer needs no kinematics.
+
+    Attributes:
+        model: MuJoCo's model, for which the world may put its own copy.
     """
 
     def __init__(
         self, model: mujoco.MjModel, data: mujoco.MjData, description: RobotDescription, pushes: PushSchedule
     ) -> None:
         """Look at a world; `pushes` are those of its latest steps."""
-        self._model, self._data, self._pushes = model, data, pushes
+        self.model, self._data, self._pushes = model, data, pushes
         base = model.body(description.pelvis_body).id
         _check_imu(model, description, base)
         soles = [model.site(name).id for name in description.sole_sites]
@@ -65,7 +68,7 @@ class SensorReader:
 
     def read(self, time: float) -> Measurement:
         """Everything at `time` [s], where a step of the world ended."""
-        mujoco.mj_rnePostConstraint(self._model, self._data)
+        mujoco.mj_rnePostConstraint(self.model, self._data)
         pushed = bool(self._pushes.active)
         if pushed:
             self._without_pushes()

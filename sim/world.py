@@ -3,6 +3,7 @@
 import copy
 import logging
 import math
+import threading
 from collections.abc import Callable, Sequence
 from functools import lru_cache, partial
 from typing import Any
@@ -16,6 +17,7 @@ from surefoot.models.convert import pinocchio_to_mujoco
 from surefoot.models.types import RobotDescription, nearest
 from surefoot.native.library import Library, library
 from surefoot.planner.ground.terrain import Terrain
+from surefoot.sim.bodies import BodyPoses
 from surefoot.sim.drives import Drives
 from surefoot.sim.errors import SimulationDiverged, WorldError
 from surefoot.sim.measurement import Array, Measurement
@@ -48,7 +50,6 @@ class World:
         description: the robot.
         physics_rate: physics steps per second [Hz].
         tick: physics steps since the reset.
-        model: MuJoCo's model, without the geoms that are only drawn.
         data: MuJoCo's state; for renderers and tests to look at.
     """
 
@@ -68,15 +69,15 @@ class World:
         self.tick = 0
         _log_warnings()
         self._mjcf = world_mjcf(description, terrain, 1.0 / physics_rate, size)
-        self.model = copy.copy(_compiled(self._mjcf))
-        self.data = mujoco.MjData(self.model)
+        self._model, self._is_shared = _compiled(self._mjcf), True
+        self.data = mujoco.MjData(self._model)
         self._drives = drives
-        self._pushes = PushSchedule(pushes, [self.model.body(push.body).id for push in pushes], physics_rate)
-        self._sensors = SensorReader(self.model, self.data, description, self._pushes)
+        self._pushes = PushSchedule(pushes, [self._model.body(push.body).id for push in pushes], physics_rate)
+        self._sensors = SensorReader(self._model, self.data, description, self._pushes)
         self._ctrl, self._qpos, self._qvel = self.data.ctrl, self.data.qpos, self.data.qvel
         self._qacc, self._xfrc = self.data.qacc, self.data.xfrc_applied
         self._last_qpos, self._last_qvel = self._qpos.copy(), self._qvel.copy()
-        self._torque = self._ctrl if drives is None else np.zeros(self.model.nu)
+        self._torque = self._ctrl if drives is None else np.zeros(self._model.nu)
         self._begin, self._is_sound = self._around(library())
 
     def _around(self, kernels: Library | None) -> tuple[Callable[[], Any], Callable[[float], Any]]:
@@ -86,9 +87,9 @@ class World:
             return partial(_begun, self._torque, now, last, pushed), partial(_sound, self._qacc)
         step = kernels.fill(
             "WorldStep",
-            nq=self.model.nq,
-            nv=self.model.nv,
-            nu=self.model.nu,
+            nq=self._model.nq,
+            nv=self._model.nv,
+            nu=self._model.nu,
             qpos=now[0],
             qvel=now[1],
             qacc=self._qacc,
@@ -100,6 +101,17 @@ class World:
         return kernels.bind("world_begun", step), kernels.bind("world_sound", step)
 
     @property
+    def model(self) -> mujoco.MjModel:
+        """MuJoCo's model, without the geoms that are only drawn, for whoever wants to look at it or to change it.
+
+        Worlds of equal text have the same one until they are asked for it: a copy takes as long as all else of a world.
+        """
+        if self._is_shared:
+            self._model, self._is_shared = copy.copy(self._model), False
+            self._sensors.model = self._model
+        return self._model
+
+    @property
     def time(self) -> float:
         """Simulated time since the reset [s]."""
         return self.tick / self.physics_rate
@@ -107,6 +119,13 @@ class World:
     def mjcf(self) -> str:
         """The whole world as one MJCF text, exactly what is simulated."""
         return self._mjcf
+
+    def poses(self) -> BodyPoses:
+        """Of its bodies as it was made, whatever its model has become; all worlds of a text and a thread have the same.
+
+        So they are to be read before anybody else updates them.
+        """
+        return _poses(self._mjcf, threading.get_ident())
 
     def reset(self, q: Array, v: Array | None = None, torque: Array | None = None) -> None:
         """Start at tick 0 from a state in Pinocchio's convention, without the pushes that were added since.
@@ -116,15 +135,15 @@ class World:
             v: velocity, shape (6 + nj,) [m/s, rad/s]; rest if None.
             torque: joint torques that the first measured contact forces belong to, shape (nj,) [N m]; none if None.
         """
-        mujoco.mj_resetData(self.model, self.data)
-        pinocchio_to_mujoco(q, np.zeros(self.model.nv) if v is None else v, self._qpos, self._qvel)
+        mujoco.mj_resetData(self._model, self.data)
+        pinocchio_to_mujoco(q, np.zeros(self._model.nv) if v is None else v, self._qpos, self._qvel)
         self._pushes.rewind(self._xfrc)
         self.tick = 0
         if torque is not None:
             self._ctrl[:] = torque
         if self._drives is not None:
             self._drives.rewind(self._ctrl)
-        mujoco.mj_forward(self.model, self.data)
+        mujoco.mj_forward(self._model, self.data)
 
     def measure(self) -> Measurement:
         """What the sensors say now."""
@@ -143,7 +162,7 @@ class World:
         if physics_window(push.time, push.duration, self.physics_rate)[0] < self.tick:
             what = f"push on '{push.body}' at {push.time} s, which is in the past"
             raise WorldError(("push", "time"), what, f"it must start at {self.time} s or later")
-        self._pushes.add(push, self.model.body(push.body).id, self.tick)
+        self._pushes.add(push, self._model.body(push.body).id, self.tick)
 
     def advance(self, torque: Array, steps: int) -> None:
         """Simulate with constant commanded torques.
@@ -167,7 +186,7 @@ class World:
             stop = min(end, pushes.next_change)
             if self._drives is not None:
                 self._ctrl[:], stop = self._drives.torque(tick, self._qvel[6:]), tick + 1
-            mujoco.mj_step(self.model, self.data, stop - tick)
+            mujoco.mj_step(self._model, self.data, stop - tick)
             if pushes.active:
                 pushes.mean += (stop - tick) / steps * pushes.total
             tick = stop
@@ -187,7 +206,7 @@ class World:
             return
         pushed, h = np.zeros(3), 1.0 / self.physics_rate
         s, q, v = command.servo, self._qpos[7:], self._qvel[6:]
-        share = 1.0 / (1.0 + h * (s.damping + h * s.stiffness) / self.model.dof_M0[6:])
+        share = 1.0 / (1.0 + h * (s.damping + h * s.stiffness) / self._model.dof_M0[6:])
         for _ in range(steps):
             pull = s.stiffness * (s.position - q - h * v) + s.damping * (s.velocity - v)
             self.advance(command.torque + share * pull, 1)
@@ -198,7 +217,7 @@ class World:
         self._qpos[:] = self._last_qpos
         self._qvel[:] = self._last_qvel
         self.data.qacc_warmstart[:] = 0.0
-        mujoco.mj_forward(self.model, self.data)
+        mujoco.mj_forward(self._model, self.data)
         raise SimulationDiverged(self.time, "the acceleration is not finite")
 
 
@@ -223,6 +242,12 @@ def _compiled(mjcf: str) -> mujoco.MjModel:
     spec = mujoco.MjSpec.from_string(mjcf)
     spec.compiler.discardvisual = True
     return spec.compile()
+
+
+@lru_cache(maxsize=4)
+def _poses(mjcf: str, _thread: int) -> BodyPoses:
+    """Run after run of a campaign draws the same bodies: to make the engine's state takes longer than all that."""
+    return BodyPoses(_compiled(mjcf))
 
 
 def _log_warnings() -> None:

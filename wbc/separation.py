@@ -52,10 +52,11 @@ class Separation:
             tuple(geometry.geometryObjects[shape].parentJoint for shape in (pair.first, pair.second))
             for pair in geometry.collisionPairs
         ]
-        self._points, self._row = np.zeros((2, 3)), np.zeros(model.nv)
+        self._points = np.zeros((2, 3))
         self._written: Array | None = None
+        self._filled = 0
         self.is_clear = False
-        self._compiled, self._rates = compiled, dict[int, Callable[[], float]]()
+        self._compiled, self._rates = compiled, dict[tuple[int, int], Callable[[], float]]()
         self.due = DuePairs(compiled, geometry, self._joints, parameters.attention) if compiled else None
 
     def write(self, data: pin.Data, v: Array, rows: Array, lower: Array, unbounded: float) -> None:
@@ -69,62 +70,66 @@ class Separation:
             unbounded: value of an absent bound.
         """
         if self.due is None:
-            self._write(data, v, rows, lower, unbounded, self._all_distances(data))
+            near = self._near(data)
+            if near or not self.is_clear or self._written is not rows:
+                self._fill(near, data, v, rows, lower, unbounded)
         else:
             self.write_due(self.due.find(), data, v, rows, lower, unbounded)
 
     def write_due(self, count: int, data: pin.Data, v: Array, rows: Array, lower: Array, unbounded: float) -> None:
         """The same where so many pairs are known to be due."""
         assert self.due is not None
-        due = self.due.numbers[:count].tolist()
-        self._write(data, v, rows, lower, unbounded, self._due_distances(data, due, self.due.distances))
+        known, results, attention = self.due.distances, self._results, self._parameters.attention
+        geometry, measured, near = self._geometry, self._data, []
+        if count:
+            pin.updateGeometryPlacements(self._model, data, geometry, measured)
+            for k in self.due.numbers[:count].tolist():
+                pin.computeDistance(geometry, measured, k)
+                known[k] = distance = results[k].min_distance
+                if 0.0 < distance < attention:
+                    near.append((distance, k))
+        self._fill(near, data, v, rows, lower, unbounded)
 
-    def _write(
-        self, data: pin.Data, v: Array, rows: Array, lower: Array, unbounded: float, distances: dict[int, float]
-    ) -> None:
-        p = self._parameters
-        near = [k for k, distance in distances.items() if 0.0 < distance < p.attention]
-        if not near and self.is_clear and self._written is rows:
-            return
-        self._written, self.is_clear = rows, not near
-        near.sort(key=distances.__getitem__)
-        for slot in range(p.slots):
-            if slot >= len(near):
-                rows[slot:], lower[slot:] = 0.0, -unbounded
-                return
-            gap = max(distances[near[slot]] - p.clearance, 0.0)
-            if self._compiled is None:
-                row = self._gradient(data, near[slot])
-                rate = float(row @ v)
-            else:
-                result, row, points = self._results[near[slot]], self._row, self._points
-                points[0], points[1] = result.getNearestPoint1(), result.getNearestPoint2()
-                rate = (self._rates.get(near[slot]) or self._bound(self._compiled, near[slot]))()
-            rows[slot] = row
-            lower[slot] = -2.0 / p.horizon * rate - gap / p.horizon**2
-
-    def _all_distances(self, data: pin.Data) -> dict[int, float]:
+    def _near(self, data: pin.Data) -> list[tuple[float, int]]:
+        """Distance and number of each pair within the attention, all of which are measured."""
+        attention = self._parameters.attention
         pin.updateGeometryPlacements(self._model, data, self._geometry, self._data)
         least = pin.computeDistances(self._geometry, self._data)
         # Where not even the nearest pair is looked at, it alone has to be read.
-        if least < len(self._results) and self._results[least].min_distance >= self._parameters.attention:
-            return {}
-        return {k: result.min_distance for k, result in enumerate(self._results)}
+        if least < len(self._results) and self._results[least].min_distance >= attention:
+            return []
+        distances = [result.min_distance for result in self._results]
+        return [(distance, k) for k, distance in enumerate(distances) if 0.0 < distance < attention]
 
-    def _due_distances(self, data: pin.Data, due: Sequence[int], known: Array) -> dict[int, float]:
-        """Those that may be within the attention, which are known from here on."""
-        distances: dict[int, float] = {}
-        if due:
-            pin.updateGeometryPlacements(self._model, data, self._geometry, self._data)
-        for k in due:
-            pin.computeDistance(self._geometry, self._data, k)
-            distances[k] = known[k] = self._results[k].min_distance
-        return distances
+    def _fill(
+        self, near: list[tuple[float, int]], data: pin.Data, v: Array, rows: Array, lower: Array, unbounded: float
+    ) -> None:
+        """Write the rows of pairs that are near, by distance and number."""
+        p, compiled = self._parameters, self._compiled
+        if self._written is not rows:
+            self._written, self._filled = rows, p.slots
+            self._rates.clear()
+        filled, self._filled = self._filled, min(len(near), p.slots)
+        self.is_clear = not near
+        near.sort()
+        for slot, (distance, pair) in enumerate(near[: p.slots]):
+            if compiled is None:
+                rows[slot] = self._gradient(data, pair)
+                rate = float(rows[slot] @ v)
+            else:
+                result, points = self._results[pair], self._points
+                points[0], points[1] = result.getNearestPoint1(), result.getNearestPoint2()
+                rate = (self._rates.get((pair, slot)) or self._bound(compiled, pair, slot))()
+            gap = max(distance - p.clearance, 0.0)
+            lower[slot] = -2.0 / p.horizon * rate - gap / p.horizon**2
+        if filled > self._filled:
+            rows[self._filled :], lower[self._filled :] = 0.0, -unbounded
 
-    def _bound(self, terms: CompiledTerms, pair: int) -> Callable[[], float]:
-        """The kernel that does what `_gradient` does for a pair, bound once it is near: few pairs ever are."""
+    def _bound(self, terms: CompiledTerms, pair: int, slot: int) -> Callable[[], float]:
+        """The kernel that does what `_gradient` does for a pair in a slot, bound once it is near."""
+        assert self._written is not None
         columns = [np.array(moving_columns(self._model, joint), dtype=np.int64) for joint in self._joints[pair]]
-        self._rates[pair] = rate = terms.kernels.bind(
+        self._rates[pair, slot] = rate = terms.kernels.bind(
             "distance_rate",
             terms=terms.bound,
             first_count=len(columns[0]),
@@ -133,7 +138,7 @@ class Separation:
             second_columns=columns[1],
             direction=self._results[pair].normal,  # where Coal keeps it
             points=self._points,
-            gradient=self._row,
+            gradient=self._written[slot],
         )
         return rate
 

@@ -12,7 +12,12 @@ LEVER = 0.1
 
 
 def standing_torque(
-    model: pin.Model, frames: BodyFrames, q: Array, lever: float = LEVER, foot: int | None = None
+    model: pin.Model,
+    frames: BodyFrames,
+    q: Array,
+    lever: float = LEVER,
+    foot: int | None = None,
+    data: pin.Data | None = None,
 ) -> Array:
     """Joint torques, shape (nj,) [N·m], of static equilibrium at configuration q, shape (nq,).
 
@@ -27,8 +32,9 @@ def standing_torque(
         q: configuration.
         lever: at which moments count as forces [m].
         foot: the one that bears all, 0 the left one; None for both.
+        data: memory to work in; None makes some.
     """
-    data = model.createData()
+    data = data or model.createData()
     gravity = pin.computeGeneralizedGravity(model, data, q)
     pin.computeJointJacobians(model, data, q)
     pin.updateFramePlacements(model, data)

@@ -10,6 +10,7 @@ The Δu form Y = S_x x(0) + S_u1 u(-1) + S_u ΔU is eq. (10) and eq. (11) of the
   which the input may change are kept, "the last controller output is kept".
 """
 
+from functools import lru_cache
 from typing import Any
 
 import numpy as np
@@ -96,8 +97,17 @@ def predict(sample_time: float, basis: Array) -> Prediction:
     Args:
         sample_time: T [s].
         basis: move parametrisation, shape (N, m).
+
+    Returns:
+        matrices that cannot be written to: equal arguments give the same ones, in run after run of a campaign.
     """
-    n = basis.shape[0]
+    return _predict(sample_time, basis.shape, basis.astype(np.float64).tobytes())
+
+
+@lru_cache(maxsize=4)
+def _predict(sample_time: float, shape: tuple[int, int], numbers: bytes) -> Prediction:
+    basis = np.frombuffer(numbers).reshape(shape)
+    n = shape[0]
     time = sample_time * np.arange(n + 1)
     one, zero = np.ones_like(time), np.zeros_like(time)
     state = np.stack(
@@ -117,7 +127,10 @@ def predict(sample_time: float, basis: Array) -> Prediction:
             np.where(past, t, 0.0),
         ]
     )
-    return Prediction(state, np.ascontiguousarray(samples @ basis), samples, basis)
+    moves = np.ascontiguousarray(samples @ basis)
+    for array in (state, moves, samples):
+        array.flags.writeable = False
+    return Prediction(state, moves, samples, basis)
 
 
 def trajectory(prediction: Prediction, state: Array, stiffness: Array, jerk: Array) -> tuple[Array, Array]:

@@ -10,6 +10,7 @@ import numpy as np
 from surefoot.planner.geometry import greatest, sole_pose, wrap_angle
 from surefoot.planner.model.time_scaling import CLOCK_ROUNDING, TimeScaling
 from surefoot.planner.steps import adaptation
+from surefoot.planner.steps.beginning import in_sight
 from surefoot.planner.steps.foresight import Foresight
 from surefoot.planner.steps.gait import GaitParameters
 from surefoot.planner.steps.phases import Phase, PhaseSamples
@@ -91,9 +92,7 @@ class Execution:
     def follow(self, schedule: Schedule) -> None:
         """Go on with another schedule, and see as far along it as any plan of the present phase looks."""
         now = max(self.clock.now, 0.0)
-        schedule = schedule.extended(now + self._window, now)
-        end = schedule.phase(now).end
-        self.schedule = schedule.extended(end + self._window, now) if end < math.inf else schedule
+        self.schedule = in_sight(schedule, now, self._window)
         self.phase, self.stops = self.schedule.phase(now), self.schedule.stops(now)
 
     @property

@@ -98,7 +98,7 @@ class GaitParameters:
     def __post_init__(self) -> None:
         for field in fields(self):
             value = getattr(self, field.name)
-            if field.name == "bouts":
+            if field.name == "bouts" or 0 < value < math.inf:
                 continue
             key, what = ("gait", field.name), f"{field.name} is {value:g}"
             if not math.isfinite(value):

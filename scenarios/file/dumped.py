@@ -2,6 +2,7 @@
 
 import json
 import re
+from dataclasses import field
 from functools import cache, lru_cache
 from typing import TYPE_CHECKING, Any
 
@@ -9,6 +10,7 @@ import yaml
 
 from surefoot.scenarios.errors import ScenarioError
 from surefoot.scenarios.file.source import MAX_VALUES, Composer, Reader, Source, parse
+from surefoot.values import dataclass
 
 if TYPE_CHECKING:
     from surefoot.scenarios.file.schema import Scenario
@@ -72,8 +74,27 @@ def _composer() -> type[Composer]:
 
 def scenario_yaml(scenario: "Scenario") -> str:
     """The scenario as run: every key with its value, but for those left null."""
-    groups = scenario.model_dump(mode="json", exclude_none=True)
-    return "".join(_group_yaml(name, json.dumps(group)) for name, group in groups.items())
+    told = scenario.model_dump_json(exclude={"seed"}, exclude_none=True)
+    # In JSON a number that is not finite is null, whichever it is.
+    before, after = (_around_seed.__wrapped__ if "null" in told else _around_seed)(_Told(told, scenario))
+    return f"{before}seed: {scenario.seed}\n{after}"
+
+
+@dataclass(frozen=True, slots=True)
+class _Told:
+    """A scenario, equal to those that tell the same but for their seed."""
+
+    text: str
+    scenario: "Scenario" = field(compare=False)
+
+
+@lru_cache(maxsize=32)
+def _around_seed(told: _Told) -> tuple[str, str]:
+    """YAML of the keys before the seed and after it, the same in run after run of a campaign."""
+    groups = told.scenario.model_dump(mode="json", exclude_none=True)
+    lines = {name: _group_yaml(name, json.dumps(group)) for name, group in groups.items()}
+    at = [*lines].index("seed")
+    return "".join([*lines.values()][:at]), "".join([*lines.values()][at + 1 :])
 
 
 @lru_cache(maxsize=256)

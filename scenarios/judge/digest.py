@@ -66,7 +66,7 @@ class Columns:
         return iter(self._kinds)
 
     def add(self, key: Hashable, values: NDArray[Any]) -> None:
-        """Append a part, which is copied; a key whose parts cannot be joined is forgotten.
+        """Append a part, which nobody may change from then on; a key whose parts cannot be joined is forgotten.
 
         Raises:
             LogError: there is no room for the files.
@@ -79,7 +79,7 @@ class Columns:
         if self._spilled:
             self._write(key, values)
             return
-        self._parts.setdefault(key, []).append(np.array(values))
+        self._parts.setdefault(key, []).append(values)
         self._held += values.nbytes
         if self._held > HELD_BYTES:
             self._spill()
@@ -206,7 +206,7 @@ class Digest(Window):
                     if name in there:
                         kept.add((topic, name), channel.field(name))
             for key, values in reduce(Window(log, channels)).items():
-                self.reduced.add(key, values)
+                self.reduced.add(key, np.array(values))  # of which a view would keep all that it is of
         super().__init__(log, {topic: KeptChannel(log, topic, kept) for topic in topics})
 
 
@@ -260,12 +260,18 @@ class RunView:
     def __init__(self, log: Source, constants: RunConstants | None = None) -> None:
         self.log = log
         self._made: dict[Callable[[RunView], Any], Any] = {}
+        self._there: dict[str, bool] = {}
         known = constants or (log.constants if isinstance(log, Digest) else None)
         self.constants = known or RunConstants.from_metadata(log.metadata, str(log.path))
 
     def has(self, *topics: str) -> bool:
         """Whether all of these topics have messages."""
-        return all(topic in self.log and len(self.log[topic]) > 0 for topic in topics)
+        return all(map(self._has, topics))
+
+    def _has(self, topic: str) -> bool:
+        if topic not in self._there:
+            self._there[topic] = topic in self.log and len(self.log[topic]) > 0
+        return self._there[topic]
 
     def field(self, topic: str, name: str) -> Array:
         """A field of a control-rate channel on the common ticks, shape (n, *field shape)."""

@@ -164,8 +164,8 @@ def stance_slips(run: RunView, until: int | None = None) -> list[Slip]:
     It is of those corners of the sole that are on the ground, each from where it came to it. So yaw counts, and a foot
     that rolls over one of its edges does not; a sole with no corner on the ground, as on an edge, counts by its centre.
     """
-    slips, terrain = [], terrain_of(run)
-    for stance in stances(run, until):
+    slips, terrain = [], run.once(terrain_of)
+    for stance in run.once(stances) if until is None else stances(run, until):
         poses = run.sole(stance.foot)[stance.ticks]
         points = corners(poses, run.constants.foot_length, run.constants.foot_width)
         height = points[..., 2] - terrain.heights(points[..., :2].reshape(-1, 2)).reshape(-1, 4)
@@ -173,7 +173,8 @@ def stance_slips(run: RunView, until: int | None = None) -> list[Slip]:
         touching = np.column_stack((touching, ~touching.any(axis=1)))
         points = np.concatenate((points, poses[:, None, :3]), axis=1)[..., :2]
         begin = points[np.argmax(touching, axis=0), np.arange(5)]
-        way = np.where(touching, np.linalg.norm(points - begin, axis=2), 0.0).max(axis=1)
+        moved = points - begin
+        way = np.where(touching, np.sqrt(np.add.reduce(moved * moved, axis=2)), 0.0).max(axis=1)
         slips.append(Slip(stance.foot, stance.ticks, way))
     return slips
 
@@ -191,7 +192,7 @@ def foot_slip_max(run: RunView) -> float | None:
 def stance_twist_max(run: RunView) -> float | None:
     """Largest yaw of a loaded stance foot away from its yaw at first load, over all stances [rad]."""
     yaw = run.sole_yaw
-    yaws = (np.unwrap(yaw[stance.ticks, stance.foot]) for stance in stances(run))
+    yaws = (np.unwrap(yaw[stance.ticks, stance.foot]) for stance in run.once(stances))
     return max((float(np.abs(yaw - yaw[0]).max()) for yaw in yaws), default=None)
 
 
@@ -202,9 +203,9 @@ def stance_tilt_max(run: RunView) -> float | None:
     Only sideways while it is planned to roll; only ahead of a foot that no joint rolls, which leans as its leg does.
     """
     leaning = feet_lean(run.constants.roles)
-    rolling, terrain = run.field("/reference", "roll") != 0.0, terrain_of(run)
+    rolling, terrain = run.field("/reference", "roll") != 0.0, run.once(terrain_of)
     largest = []
-    for stance in stances(run):
+    for stance in run.once(stances):
         poses = run.sole(stance.foot)[stance.ticks]
         axes = np.einsum("nij,ni->nj", rotations(poses[:, 3:]), terrain.normals(poses[:, :2]))
         axes[rolling[stance.ticks, stance.foot], 0] = 0.0

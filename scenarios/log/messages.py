@@ -1,5 +1,6 @@
 """Messages of one channel: out of a block of bytes, and as numpy arrays by field name."""
 
+import struct
 from typing import Any
 
 import numpy as np
@@ -12,6 +13,9 @@ from surefoot.scenarios.log.spec import PREFIX_BYTES, FieldSpec
 
 MESSAGE_BYTES = PREFIX_BYTES + 22
 """A message record without its content."""
+
+_HEAD = struct.Struct("<BQH")
+"""Opcode, length and channel, with which it begins."""
 
 
 def content_at(data: Buffer, offset: int) -> bytes:
@@ -48,12 +52,9 @@ def gathered(data: memoryview, index: NDArray[np.void], size: int) -> bytes:
 def sound_records(block: NDArray[np.uint8], channel_id: int, dtype: np.dtype[Any]) -> NDArray[np.void]:
     """Message records of one channel out of whole records one after the other; others are left out."""
     records = block.view(dtype)
-    sound = (
-        (records["_opcode"] == Opcode.MESSAGE)
-        & (records["_length"] == dtype.itemsize - PREFIX_BYTES)
-        & (records["_channel"] == channel_id)
-    )
-    return records if sound.all() else records[sound]
+    head = np.frombuffer(_HEAD.pack(Opcode.MESSAGE, dtype.itemsize - PREFIX_BYTES, channel_id), np.uint8)
+    sound = block.reshape(-1, dtype.itemsize)[:, : _HEAD.size] == head
+    return records if sound.all() else records[sound.all(axis=1)]
 
 
 class ChannelData:
@@ -89,7 +90,9 @@ class ChannelData:
 
     def between(self, start_ns: int, end_ns: int) -> "ChannelData":
         """The messages from a time on and up to another one [ns]."""
-        first, last = np.searchsorted(self.time_ns, (start_ns, end_ns + 1))
+        first, last = np.searchsorted(self.time_ns, (start_ns, end_ns + 1)).tolist()
+        if first == 0 and last == len(self):
+            return self
         return ChannelData(self.topic, self.fields, self._records[first:last], self.joints)
 
     def joined(self, following: "ChannelData") -> "ChannelData":

@@ -60,7 +60,6 @@ class Log:
         self.truncated = contents.truncated
         self.damage = contents.damage
         self._verified: set[int] = set()
-        self._unproven: str | None = None
         self._index_rest()
         self.metadata = {record.name: record.metadata for record in contents.metadata}
         self.attachments = {record.name: record.data for record in contents.attachments}
@@ -190,7 +189,10 @@ class Log:
         return min([*starts, *loose], default=0) * 1e-9, max([*ends, *loose], default=0) * 1e-9
 
     def verify(self) -> None:
-        """Compare every chunk that has not been compared yet with its checksum; `damage` tells what does not agree."""
+        """Compare every chunk that has not been compared yet with its checksum; `damage` tells what does not agree.
+
+        Of data that agree with their checksum as a whole it is only seen that each chunk can be unpacked.
+        """
         for chunk in self.contents.chunks:
             if chunk.position not in self._verified:
                 self._sound(chunk)
@@ -201,11 +203,10 @@ class Log:
         A log without its index may be whole: the record that ends its data has the checksum of everything before it.
         """
         self.verify()
-        if self._unproven is None:
-            self._unproven = self._data_fault()
         before = self.metadata.get(RECOVERED, {}).get("lost", "")
-        return tuple(dict.fromkeys(loss for loss in (before, self._unproven, *self.damage) if loss))
+        return tuple(dict.fromkeys(loss for loss in (before, self._data_fault, *self.damage) if loss))
 
+    @cached_property
     def _data_fault(self) -> str:
         """Why the data as a whole are not those that were written; empty if they are."""
         end, crc, step = self.contents.data_end, 0, 1 << 22
@@ -213,8 +214,9 @@ class Log:
             return f"its end is missing, it can be read up to {self.time_range()[1]:.3f} s"
         if not self.contents.data_crc:
             return "it has no checksum of its data, by which it could be shown to be whole"
+        data = memoryview(self.data)  # of a memory map, whose slices would be copies
         for start in range(0, end, step):
-            crc = zlib.crc32(self.data[start : min(start + step, end)], crc)
+            crc = zlib.crc32(data[start : min(start + step, end)], crc)
             release(self.data, start, start + step)
         return "" if crc == self.contents.data_crc else "its data do not agree with their checksum"
 
@@ -287,10 +289,10 @@ class Log:
         return ChannelData(topic, fields, records, self.joints)
 
     def _sound(self, chunk: ChunkPlace) -> bytes | None:
-        """Decompressed bytes of a chunk if they agree with its checksum."""
+        """Decompressed bytes of a chunk if they agree with its checksum, as all do of data that agree with theirs."""
         data, known = self._decompressed(chunk), chunk.position in self._verified
         self._verified.add(chunk.position)
-        if data is None or not chunk.crc or zlib.crc32(data) == chunk.crc:
+        if data is None or not chunk.crc or not self._data_fault or zlib.crc32(data) == chunk.crc:
             return data
         if not known:
             self.damage.append(f"the chunk at byte {chunk.position} does not agree with its checksum")
@@ -298,7 +300,7 @@ class Log:
 
     def _decompressed(self, chunk: ChunkPlace) -> bytes | None:
         try:
-            return decompress(self.data[chunk.data], chunk.compression, chunk.size)
+            return decompress(memoryview(self.data)[chunk.data], chunk.compression, chunk.size)
         except LogError as error:
             note = f"at byte {chunk.position} {error}"
             if note not in self.damage:

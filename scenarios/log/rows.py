@@ -9,7 +9,7 @@ from operator import is_
 import numpy as np
 from numpy.typing import NDArray
 
-from surefoot.native.library import Bound, Library
+from surefoot.native.library import Bound, Library, place_of
 from surefoot.scenarios.log.channel import ChannelWriter, Clock
 from surefoot.values import dataclass
 
@@ -254,12 +254,9 @@ class CompiledRows(RowWriter):
         self, kernels: Library, row: Array, places: Mapping[Place, slice], before: Bound
     ) -> Callable[[int, int], None]:
         records = [writer.records for writer in self._writers]
-        views = [
-            (writer.spec.topic, field.name, writer.view(field.name))
-            for writer in self._writers
-            for field in writer.spec.fields
-        ]
-        at = [places[topic, name] for topic, name, _ in views]
+        specs, begins = [writer.spec for writer in self._writers], [place_of(record) for record in records]
+        fields = [(spec, begin, field) for spec, begin in zip(specs, begins, strict=True) for field in spec.fields]
+        at = [places[spec.topic, field.name] for spec, _, field in fields]
 
         def integers(values: Iterable[int]) -> NDArray[np.int64]:
             return np.array(list(values), dtype=np.int64)
@@ -273,16 +270,16 @@ class CompiledRows(RowWriter):
             times=self._stamps,
             before=before,
             values=row,
-            fields=len(views),
+            fields=len(fields),
             first=integers(place.start for place in at),
             sizes=integers(place.stop - place.start for place in at),
-            whole=integers(view.dtype == np.int32 for *_, view in views),
-            places=integers(view.ctypes.data for *_, view in views),
-            strides=integers(view.strides[0] for *_, view in views),
+            whole=integers(field.kind == "int" for *_, field in fields),
+            places=integers(begin + spec.places[field.name] for spec, begin, field in fields),
+            strides=integers(spec.dtype.itemsize for spec, *_ in fields),
             channels=len(records),
-            records=integers(record.ctypes.data for record in records),
-            lengths=integers(record.dtype.itemsize for record in records),
-            header=integers(records[0][name].ctypes.data - records[0].ctypes.data for name in _HEADER),
+            records=integers(begins),
+            lengths=integers(spec.dtype.itemsize for spec in specs),
+            header=integers(specs[0].places[name] for name in _HEADER),
         )
 
     def _look(self, vectors: tuple[Array, ...]) -> None:

@@ -124,9 +124,19 @@ class ChannelSpec:
         return _file_descriptor_set(self)
 
     @cached_property
+    def dtype(self) -> np.dtype[Any]:
+        """Numpy type of a whole message record."""
+        return record_dtype(self.fields)
+
+    @cached_property
+    def places(self) -> Mapping[str, int]:
+        """Where each part of a message record begins in it [bytes]."""
+        return {name: part[1] for name, part in (self.dtype.fields or {}).items()}
+
+    @cached_property
     def blank(self) -> bytes:
         """A message record with every constant byte in place: opcode, length and field tags."""
-        record = np.zeros((), record_dtype(self.fields))
+        record = np.zeros((), self.dtype)
         record["_opcode"] = Opcode.MESSAGE
         record["_length"] = record.dtype.itemsize - PREFIX_BYTES
         record["_stamp_tag"] = 1 << 3 | _FIXED64
@@ -202,7 +212,7 @@ def record_dtype(fields: tuple[FieldSpec, ...]) -> np.dtype[Any]:
 
 def blank_records(spec: ChannelSpec, channel_id: int, count: int) -> NDArray[np.void]:
     """Message records of a channel with every constant byte in place."""
-    records: NDArray[np.void] = np.frombuffer(bytearray(spec.blank) * count, record_dtype(spec.fields))
+    records: NDArray[np.void] = np.frombuffer(bytearray(spec.blank) * count, spec.dtype)
     records["_channel"] = channel_id
     return records
 
@@ -328,9 +338,7 @@ def _stamp(seconds: int, nanos: int) -> bytes:
 
 def _long_varint(value: int) -> bytes:
     """A varint of five bytes; the value is below 2^35."""
-    return bytes(
-        (value & 127 | 128, value >> 7 & 127 | 128, value >> 14 & 127 | 128, value >> 21 & 127 | 128, value >> 28)
-    )
+    return bytes((*(value >> shift & 127 | 128 for shift in (0, 7, 14, 21)), value >> 28))
 
 
 def _all(data: bytes, part: bytes) -> list[int]:

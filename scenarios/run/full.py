@@ -64,7 +64,7 @@ def full_loop(walk: Walk, writer: LogWriter, parts: Parts | None = None) -> Clos
     q = pressed(disturbed(controller.posture, walk, body), walk.size.length)
     world = simulated(walk)
     plant = _plant(walk, world, parts or Parts(), controller.senses.reads)
-    torque = standing_torque(body.model, body.frames, q, LEVER * walk.size.length)
+    torque = standing_torque(body.model, body.frames, q, LEVER * walk.size.length, data=body.scratch.data)
     world.reset(q, torque=torque)
     if not isinstance(plant, World):
         plant.reset(q, torque=torque)

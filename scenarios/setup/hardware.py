@@ -2,6 +2,7 @@
 
 from collections.abc import Iterator
 from dataclasses import fields, replace
+from functools import lru_cache
 from typing import Any
 
 from surefoot.errors import ParameterError
@@ -50,7 +51,7 @@ def sensor_errors(sensing: Sensing, size: Similarity) -> SensorErrors:
         sensing: keys, which are meant as they are.
         size: of the robot, with which forces and moments of a preset go.
     """
-    preset = size.scaled(PRESETS[sensing.preset or "perfect"])
+    preset = _preset(sensing.preset or "perfect", size)
     named = {entry.name for entry in fields(SensorErrors)}
     given = {name: getattr(sensing, name) for name in SENSOR_KEYS if name in named}
     changed: dict[str, Any] = {name: value for name, value in given.items() if value is not None}
@@ -59,6 +60,11 @@ def sensor_errors(sensing: Sensing, size: Similarity) -> SensorErrors:
     for group, name in _GROUPS.items():
         changed[group] = _delivery(sensing, name, getattr(preset, group))
     return replace(preset, **changed)
+
+
+@lru_cache(maxsize=32)
+def _preset(name: str, size: Similarity) -> SensorErrors:
+    return size.scaled(PRESETS[name])
 
 
 def refuse_unread(sensing: Sensing) -> None:

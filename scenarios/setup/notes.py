@@ -2,6 +2,8 @@
 
 from collections.abc import Iterable, Iterator
 
+from pydantic import BaseModel
+
 from surefoot.plugins import PluginError
 from surefoot.scenarios.file.registries import DEFAULTS
 from surefoot.scenarios.file.schema import PendulumSettings, Rates, Scenario, TerrainSettings
@@ -66,7 +68,8 @@ def _without_effect(walk: Walk) -> Iterator[str]:
 
 def _given(walk: Walk, group: str, names: Iterable[str]) -> Iterator[str]:
     """Those of a group's keys, dotted, that are not the defaults of a robot of this size."""
-    settings, model = getattr(walk.keys, group), type(Scenario.model_fields[group].default)
+    settings = getattr(walk.keys, group)
+    model: type[BaseModel] = type(Scenario.model_fields[group].default)
     return (f"{group}.{name}" for name in names if getattr(settings, name) != default_of(model, name, walk.size))
 
 

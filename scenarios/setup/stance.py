@@ -11,7 +11,7 @@ from numpy.typing import NDArray
 from surefoot.errors import ParameterError
 from surefoot.models.facts import safe_range
 from surefoot.models.legs import leg_masses, point_mass
-from surefoot.models.pinocchio import pinocchio_model
+from surefoot.models.pinocchio import Scratch, pinocchio_model
 from surefoot.models.types import RobotDescription
 from surefoot.planner.geometry import wrap_angle
 from surefoot.planner.model.leg_chain import LegChain, Link
@@ -42,6 +42,7 @@ class Body:
         frames: the frames that the controller steers.
         limits: of its joints.
         leg_joints: which joints are leg joints, bool, shape (nj,).
+        scratch: memory for what is worked out at once.
     """
 
     robot: RobotDescription
@@ -49,6 +50,7 @@ class Body:
     frames: BodyFrames
     limits: JointLimits
     leg_joints: NDArray[np.bool_]
+    scratch: Scratch
 
     def ik(self, posture: Array) -> PostureIk:
         """Inverse kinematics near joint positions, shape (nj,) [rad]."""
@@ -58,12 +60,14 @@ class Body:
 @lru_cache(maxsize=8)
 def body_of(robot: RobotDescription) -> Body:
     """The body of a described robot, made once for each; nobody may change its model."""
+    model = pinocchio_model(robot)
     return Body(
         robot=robot,
-        model=pinocchio_model(robot),
+        model=model,
         frames=frames_of(robot),
         limits=JointLimits(robot.torque_limit, robot.velocity_limit, *safe_range(robot)),
         leg_joints=np.isin(robot.joint_names, robot.roles.legs),
+        scratch=Scratch(model),
     )
 
 
@@ -167,7 +171,7 @@ def feet_at(body: Body, q: Array) -> FeetState:
 
 
 def _sole_placements(body: Body, q: Array) -> tuple[Array, Array]:
-    data = body.model.createData()
+    data = body.scratch.data
     pin.framesForwardKinematics(body.model, data, q)
     placements = [data.oMf[body.model.getFrameId(name)] for name in body.frames.soles]
     return np.array([p.translation for p in placements]), np.array([p.rotation for p in placements])

@@ -240,13 +240,13 @@ def _address(struct: str, name: str, field: Field, value: Any) -> int:
         address = ctypes.addressof(value.struct)
     else:
         right = value.dtype == _TYPES.get(field.type) and value.flags.forc
-        address = _begin(value)
+        address = place_of(value)
     if not right:
         raise TypeError(f"{struct}.{name} points to {field.type}, which this is not: {value!r}")
     return int(address)
 
 
-def _begin(array: NDArray[Any]) -> int:
+def place_of(array: NDArray[Any]) -> int:
     """Where the memory of an array begins, in a third of the time that its ``ctypes.data`` takes."""
     flags = array.flags
     if not (flags.writeable and flags.forc and array.size):

@@ -1,3 +1,5 @@
+from concurrent.futures import ThreadPoolExecutor
+
 import mujoco
 import numpy as np
 import pinocchio as pin
@@ -255,3 +257,40 @@ def test_the_world_text_is_the_world() -> None:
     np.testing.assert_array_equal(again.body_mass, world.model.body_mass)
     assert again.opt.timestep == world.model.opt.timestep == 0.001
     assert again.ngeom > world.model.ngeom
+
+
+def test_a_model_that_is_changed_is_that_of_one_world(standing_configuration) -> None:
+    """Before its first step or after some; those around it fall and weigh as ever, to the bit."""
+    one, other = _world(), _world()
+    q = standing_configuration(one)
+    q[2] += 0.5
+    fallen = []
+    for world in (one, other):
+        world.reset(q)
+        world.advance(np.zeros(25), 50)
+        fallen.append(world.measure().q.copy())
+    np.testing.assert_array_equal(*fallen)
+    one.reset(q)
+    one.model.opt.gravity[:], one.model.body_mass[:] = 0.0, 2.0 * one.model.body_mass
+    assert one.model is one.model is not other.model
+    third = _world()
+    heights = []
+    for world in (one, other, third):
+        world.reset(q)
+        world.advance(np.zeros(25), 50)
+        heights.append(world.measure().q[2])
+    assert heights[0] == pytest.approx(q[2])
+    assert heights[1] == heights[2] == fallen[0][2] < q[2] - 0.01
+
+
+def test_bodies_are_drawn_as_they_were_made(standing_configuration) -> None:
+    one, other = _world(), _world()
+    one.model.body_pos[2:] += 1.0
+    q = standing_configuration(one)
+    poses = one.poses()
+    assert other.poses() is poses
+    poses.update(q)
+    other.reset(q)
+    np.testing.assert_allclose(poses.position, other.data.xpos[1:], atol=1e-12)
+    with ThreadPoolExecutor(1) as pool:
+        assert pool.submit(other.poses).result() is not poses

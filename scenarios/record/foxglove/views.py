@@ -23,7 +23,6 @@ from surefoot.scenarios.log import LogWriter
 from surefoot.scenarios.log.spec import Template
 from surefoot.scenarios.record.foxglove import drawing as templates
 from surefoot.scenarios.record.foxglove.drawing import NOWHERE, Outlines, force_arrow, published, scene_data
-from surefoot.sim.bodies import BodyPoses
 from surefoot.sim.measurement import Measurement
 from surefoot.sim.world import World
 from surefoot.wbc.model import RobotTerms
@@ -207,7 +206,7 @@ class BodyView:
 
     def __init__(self, writer: LogWriter, world: World, robot: RobotDescription, control_rate: int) -> None:
         self.every = max(control_rate // RATE, 1)
-        self._poses = BodyPoses(world.model)
+        self._poses = world.poses()
         self._torso = self._poses.names.index(robot.torso_body)
         poses, joints = templates.transforms(self._poses.names), templates.joint_states(robot.joint_names)
         self._tf = Drawn(writer, "/tf", FrameTransforms, poses, "all bodies in the world")

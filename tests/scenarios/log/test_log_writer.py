@@ -11,13 +11,13 @@ from types import SimpleNamespace
 import numpy as np
 import pytest
 from mcap.reader import make_reader
-from mcap.records import Chunk, ChunkIndex
+from mcap.records import Attachment, Chunk, ChunkIndex, Metadata
 from mcap_protobuf.decoder import DecoderFactory
 
 import surefoot.scenarios.log.writer as log_writer
 from surefoot.scenarios.errors import LogError
 from surefoot.scenarios.log import AttachedFile, ChannelSpec, FieldSpec, LogWriter, read
-from surefoot.scenarios.log.encoding import Packed, _chunk_index, encoded
+from surefoot.scenarios.log.encoding import Packed, _attachment, _chunk_index, _metadata, encoded
 from surefoot.scenarios.record import channels
 
 pytestmark = pytest.mark.unit
@@ -63,6 +63,15 @@ def test_the_index_of_a_chunk_is_that_of_the_mcap_library(places):
     chunk = Chunk("lz4", b"packed", 2**50, 5, 0, 12345)
     wanted = ChunkIndex(77, 99, "lz4", 6, 2**50, 321, places, 5, 12345)
     assert _chunk_index(chunk, 99, 77, places, 321) == encoded(wanted)
+
+
+@pytest.mark.parametrize("values", [{}, {"a": "1"}, {"größe": "π", "": "", "long": "x" * 70000}])
+def test_metadata_and_attachments_are_those_of_the_mcap_library(values):
+    record = Metadata("run", values)
+    assert _metadata(record) == encoded(record)
+    data = "".join(values.values()).encode()
+    file = Attachment(3, 2**40, "räder.xml", "application/xml", data)
+    assert _attachment(file) == encoded(file)
 
 
 @pytest.mark.parametrize("compression", ["lz4", "zstd", ""])

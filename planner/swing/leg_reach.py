@@ -90,17 +90,14 @@ class LegReach:
             Lower and upper corners, shape (boxes, 2, 2) [m].
         """
         most = self.stride
-        boxes = [self._box(side, -most, most, self.near)]
+        far = side * (most + self.hip_width)
+        boxes = [_box(-most, most, side * self.near, far)]
         if crosses and self.across is not None:
-            boxes.append(self._box(side, self.clear, most, -self.across))
-            boxes.append(self._box(side, -most, -self.clear, -self.across))
+            boxes.append(_box(self.clear, most, -side * self.across, far))
+            boxes.append(_box(-most, -self.clear, -side * self.across, far))
         found = np.array(boxes)
         found[:, 0], found[:, 1] = np.maximum(found[:, 0], face[0]), np.minimum(found[:, 1], face[1])
         return found
-
-    def _box(self, side: float, back: float, ahead: float, near: float) -> tuple[tuple[float, float], ...]:
-        low, high = sorted((side * near, side * (self.stride + self.hip_width)))
-        return (back, low), (ahead, high)
 
     def within(self, places: Array, hips: Array) -> Array:
         """The places nearest to these that legs reach from hips, shape (..., 2) [m]."""
@@ -202,6 +199,10 @@ class LegReach:
         hardest = (np.abs(bend) / (time**2 * self.acceleration)).max(axis=(1, 2))
         lacking[which] = np.where(met, (1.0 - 1.0 / np.maximum(hardest, 1.0)) * np.hypot(*way[:, 0].T), 0.0)
         return lacking
+
+
+def _box(back: float, ahead: float, near: float, far: float) -> tuple[tuple[float, float], ...]:
+    return (back, min(near, far)), (ahead, max(near, far))
 
 
 STRIDE = 2.6

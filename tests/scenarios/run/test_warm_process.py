@@ -2,6 +2,9 @@
 
 import importlib
 import math
+import os
+import subprocess
+import sys
 from pathlib import Path
 
 import numpy as np
@@ -166,3 +169,25 @@ def test_one_thread_is_taken_back():
     with one_thread():
         assert set(threads().values()) <= {1}
     assert threads() == before
+
+
+LOOP = """
+from threadpoolctl import threadpool_info
+from surefoot.scenarios.log import NoLog
+from surefoot.scenarios.run.run import closed_loop, one_thread
+from surefoot.scenarios.setup.load import load
+from surefoot.scenarios.setup.walk import resolve
+walk = resolve(load("diagonal-walk", []))
+with one_thread():
+    closed_loop(walk, NoLog())
+    print(sorted({pool["num_threads"] for pool in threadpool_info()}), len(threadpool_info()))
+"""
+
+
+@pytest.mark.parametrize("native", ["0", "1"])
+def test_libraries_that_come_with_the_loop_have_one_thread_too(native):
+    """That of SciPy, which plain Python alone needs, comes late; with two threads a loaded machine takes four times."""
+    given = {**os.environ, "SUREFOOT_NATIVE": native, "OPENBLAS_NUM_THREADS": "2", "OMP_NUM_THREADS": "2"}
+    done = subprocess.run([sys.executable, "-c", LOOP], env=given, capture_output=True, text=True, check=True)
+    threads, _, libraries = done.stdout.strip().rpartition(" ")
+    assert threads == "[1]" and int(libraries) >= 1

@@ -16,7 +16,7 @@ from surefoot.sim.world import World
 def positions(seconds):
     """Positions and velocities of a walk, tick by tick."""
     found = []
-    with surefoot.Simulation("walk") as simulation:
+    with surefoot.Simulation(surefoot.load("walk", {"sensing.source": "truth"})) as simulation:
         while simulation.time < seconds:
             simulation.advance()
             state = simulation.look().state

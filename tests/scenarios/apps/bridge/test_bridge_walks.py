@@ -149,8 +149,9 @@ LINES = {
     [name if name in ("g1", "targets, and pauses") else pytest.param(name, marks=pytest.mark.long) for name in LINES],
 )
 def test_it_walks_over_a_line_that_is_late_and_loses_some(bridge, name, tmp_path):
+    """With the true state: what readings of the IMU that get lost have said is told by no later one."""
     keys, how = LINES[name]
-    plant = bridge.serve("walk", "--set", "gait.steps=4", *keys, *how)
+    plant = bridge.serve("walk", "--set", "gait.steps=4", "--set", "sensing.source=truth", *keys, *how)
     _, verdict, said = bridge.result(bridge.walk())
     assert bridge.end(plant)[0] == 0
     assert (verdict["fell"], verdict["steps_taken"]) == (False, 4), said

@@ -173,7 +173,8 @@ def test_a_line_that_is_broken_for_longer_damps_the_joints_and_both_say_so(bridg
 
 
 def test_a_plant_in_real_time_waits_for_nobody(bridge, tmp_path):
-    plant = bridge.serve("walk", "--set", "gait.steps=0", "--set", "duration=2", "--real-time", "--watchdog", "30")
+    keys = ("--set", "gait.steps=0", "--set", "duration=2", "--set", "sensing.source=truth")
+    plant = bridge.serve("walk", *keys, "--real-time", "--watchdog", "30")
     _, verdict, said = bridge.result(bridge.walk())
     code, _, told = bridge.end(plant)
     assert (code, verdict["fell"]) == (0, False), told + said

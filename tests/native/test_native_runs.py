@@ -14,12 +14,9 @@ from surefoot.sim.world import World
 
 
 def positions(seconds):
-    """Positions and velocities of a walk, tick by tick.
-
-    Encoders do not round: a difference below a bit is not seen, and so grows as a body falls, by 3.3 times in 0.1 s.
-    """
+    """Positions and velocities of a walk, tick by tick."""
     found = []
-    with surefoot.Simulation(surefoot.load("walk", {"sensing.encoder_bits": 0})) as simulation:
+    with surefoot.Simulation("walk") as simulation:
         while simulation.time < seconds:
             simulation.advance()
             state = simulation.look().state

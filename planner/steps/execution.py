@@ -148,7 +148,7 @@ class Execution:
         return self.schedule.samples(clock, (rate, bend / self._parameters.sample_time))
 
     def advance(self, feet: FeetState, dcm: Callable[[], adaptation.Dcm | None] = lambda: None) -> None:
-        """Go on by one tick, with feet as measured, and a DCM that is told if it is asked for, and known."""
+        """Go on by one tick, with the feet as measured; `dcm` tells the DCM, and is asked where a foot lands."""
         clock = self.clock.advanced()
         phase, swing = self.phase, self.phase.swing_foot
         over = clock.now >= phase.end - CLOCK_ROUNDING

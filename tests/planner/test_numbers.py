@@ -35,7 +35,7 @@ NOTICED = {
     "steps.adaptation._LIFTED": "tests/planner/test_planner.py",
     "steps.schedule._LAID_OUT": "tests/planner/steps/test_laid_out.py",
     "steps.schedule._STOP_AHEAD": "tests/planner/steps/test_schedule.py",
-    "swing.leg_reach.STRIDE": "tests/planner/recovery/test_step_adjustment.py",
+    "swing.leg_reach.STRIDE": "tests/scenarios/study/tour/test_turned.py",
     "swing.quintics.PEAK": "tests/planner/swing/test_swing_limits.py",
     "swing.quintics.BRAKING": "tests/planner/swing/test_swing_limits.py",
     "swing.quintics.GAINING": "tests/planner/swing/test_swing_limits.py",

@@ -1,10 +1,11 @@
-"""A walk whose limp arm is punched turns, in place of jumping off its stance foot."""
+"""A walk whose limp arm is punched turns, in place of jumping off its stance foot, and steps as far as it must."""
 
 from dataclasses import replace
 
 import numpy as np
 import pytest
 
+from surefoot.planner.swing import leg_reach
 from surefoot.scenarios.study.tour import ride, rows, rules
 from surefoot.wbc.tasks.parameters import TaskWeights
 
@@ -44,3 +45,19 @@ def test_a_punch_on_a_limp_arm_does_not_lift_it_off_its_stance_foot(monkeypatch)
     (turning, soon), (stiff, late) = (highest(monkeypatch, weight) for weight in (TaskWeights().turning_catching, 1.0))
     assert turning < 0.01 < 0.02 < stiff
     assert soon < late - 0.04
+
+
+def fallen(monkeypatch, stride):
+    """Of three punches backward on a shoulder, of 355 to 395 N at most, those after which it falls within 3.5 s."""
+    monkeypatch.setattr(rules, "WEAKEST", 1.0)
+    monkeypatch.setattr(leg_reach, "STRIDE", stride)
+    falls = 0
+    for force in (355.0, 375.0, 395.0):
+        monkeypatch.setattr(rules, "STRONGEST", force)
+        falls += not ride.Ride(rows.ROWS["arms"], 8).run(8.6).completed
+    return falls
+
+
+def test_a_body_that_runs_backward_is_caught_by_steps_as_far_as_its_own_leg_reaches(monkeypatch):
+    """With steps no farther than both legs span flat, each lands short of the DCM by as much as the one before."""
+    assert fallen(monkeypatch, leg_reach.STRIDE) <= 1 < 2 <= fallen(monkeypatch, 2.0)

@@ -53,13 +53,16 @@ def sensed_state(walk: Walk, **options: Any) -> SensedState:
         sensor_noise(walk.hardware.sensors, period), size.scaled(GroundNoise()), size.scaled(ContactDetection())
     )
 
-    def at(x: float, y: float) -> tuple[float, Array]:
-        return float(ground.terrain.height(x, y)), np.asarray(ground.terrain.normal(x, y))
+    def height(x: float, y: float) -> float:
+        return float(ground.terrain.height(x, y))
+
+    def normal(x: float, y: float) -> Array:
+        return np.asarray(ground.terrain.normal(x, y))
 
     # On a line the CoP is where the line is.
     leaning = 0.5 * robot.sole_width if robot.roles.feet_lean else None
     half_size = 0.5 * robot.sole_length, math.inf if leaning is not None else 0.5 * robot.sole_width
-    footing = Footing(stance.position.copy(), np.array(stance.yaw), half_size, at, leaning)
+    footing = Footing(stance.position.copy(), np.array(stance.yaw), half_size, height, normal, leaning)
     parameters = _with(usual, options, _OPTIONS)
     return SensedState(pinocchio_model(robot), robot.sole_sites, imu_mount(robot), footing, period, parameters)
 

@@ -49,6 +49,24 @@ static inline void see_motion(const double *R, const double *p, const double *mo
     rotate_back(R, motion + 3, out + 3);
 }
 
+/* Rotation by a rotation vector, as pinocchio.exp3 has it. */
+static inline void rotation_of(const double *x, double *R) {
+    const double square = x[0] * x[0] + x[1] * x[1] + x[2] * x[2], angle = sqrt(square);
+    const int small = angle < 1e-4;
+    const double first = small ? 1.0 - square / 6.0 : sin(angle) / angle;
+    const double half = sin(0.5 * angle);
+    const double second = small ? 0.5 - square / 24.0 : 2.0 * half * half / square;
+    const double cosine = 1.0 - second * square;
+    for (int i = 0; i < 3; i++)
+        for (int j = 0; j < 3; j++) R[3 * i + j] = second * x[i] * x[j] + (i == j ? cosine : 0.0);
+    R[1] -= first * x[2];
+    R[2] += first * x[1];
+    R[3] += first * x[2];
+    R[5] -= first * x[0];
+    R[6] -= first * x[1];
+    R[7] += first * x[0];
+}
+
 /* Rotation vector of a rotation, as pinocchio.log3 has it for angles below pi. */
 static inline void rotation_vector(const double *R, double *out) {
     const double axis[3] = {R[7] - R[5], R[2] - R[6], R[3] - R[1]};

@@ -4,30 +4,12 @@
 
 enum { POSE = 6, BIASES = 21, FIXED = 27 };
 
-/* Rotation by a rotation vector, as pinocchio.exp3 has it. */
-static void turned(const double *x, double *R) {
-    const double square = x[0] * x[0] + x[1] * x[1] + x[2] * x[2], angle = sqrt(square);
-    const int small = angle < 1e-4;
-    const double first = small ? 1.0 - square / 6.0 : sin(angle) / angle;
-    const double half = sin(0.5 * angle);
-    const double second = small ? 0.5 - square / 24.0 : 2.0 * half * half / square;
-    const double cosine = 1.0 - second * square;
-    for (int i = 0; i < 3; i++)
-        for (int j = 0; j < 3; j++) R[3 * i + j] = second * x[i] * x[j] + (i == j ? cosine : 0.0);
-    R[1] -= first * x[2];
-    R[2] += first * x[1];
-    R[3] += first * x[2];
-    R[5] -= first * x[0];
-    R[6] -= first * x[1];
-    R[7] += first * x[0];
-}
-
 /* Counterpart of `InvariantFilter.propagate`. */
 void filter_propagate(const Filter *filter, double time) {
     double x[3], half[9], middle[9], specific[3], *v = filter->columns, *p = filter->columns + 3;
     for (int i = 0; i < 3; i++) x[i] = 0.5 * time * (filter->rate[i] - filter->gyro_bias[i]);
     for (int i = 0; i < 3; i++) specific[i] = filter->force[i] - filter->force_bias[i];
-    turned(x, half);
+    rotation_of(x, half);
     compose(filter->R, half, middle);
     rotate(middle, specific, filter->acceleration);
     filter->acceleration[2] -= filter->gravity;
@@ -41,7 +23,7 @@ void filter_propagate(const Filter *filter, double time) {
 /* Counterpart of `Stand.move`. */
 static void move(const Filter *filter, const double *x) {
     double E[9], seen[9];
-    turned(x, E);
+    rotation_of(x, E);
     compose(E, filter->R, seen);
     memcpy(filter->R, seen, sizeof seen);
     for (int column = 0; column < 4; column++) {
@@ -51,7 +33,7 @@ static void move(const Filter *filter, const double *x) {
     }
     for (int k = 0; k < 2; k++) {
         double *Z = filter->Z + 9 * k;
-        turned(x + 15 + 3 * k, E);
+        rotation_of(x + 15 + 3 * k, E);
         compose(E, Z, seen);
         memcpy(Z, seen, sizeof seen);
     }
@@ -86,8 +68,10 @@ int64_t filter_correct(const Filter *filter, double gate) {
     return 0;
 }
 
-void sensed_base_now(const SensedBase *sensed, double late) {
-    double base[9], half[9], turn[9], seen[3], way[6], *p = sensed->pose, *v = sensed->velocity;
+/* Counterpart of `SensedState._now`; returns whether it is less than what has diverged. */
+int64_t sensed_base_now(const SensedBase *sensed, double late) {
+    double base[9], half[9], turn[9], seen[3], way[6], *p = sensed->q, *v = sensed->v;
+    const int64_t joints = sensed->joints;
     for (int i = 0; i < 3; i++)
         for (int j = 0; j < 3; j++) base[3 * i + j] = dot(sensed->R + 3 * i, sensed->mount + 3 * j, 3);
     for (int i = 0; i < 3; i++) seen[i] = sensed->rate[i] - sensed->gyro_bias[i];
@@ -100,7 +84,7 @@ void sensed_base_now(const SensedBase *sensed, double late) {
     if (late > 0.0) {
         for (int i = 0; i < 6; i++) way[i] = late * (v[i] + 0.5 * sensed->gained[i]);
         for (int i = 0; i < 3; i++) seen[i] = 0.5 * way[3 + i];
-        turned(seen, turn);
+        rotation_of(seen, turn);
         compose(base, turn, half);
         rotate(half, way, seen);
         compose(half, turn, base);
@@ -108,4 +92,9 @@ void sensed_base_now(const SensedBase *sensed, double late) {
         for (int i = 0; i < 6; i++) v[i] += sensed->gained[i];
     }
     quaternion(base, p + 3);
+    memcpy(p + 7, sensed->position, joints * sizeof(double));
+    memcpy(v + 6, sensed->velocity, joints * sizeof(double));
+    for (int64_t i = 0; i < sensed->chain_count; i++) p[7 + sensed->chain[i]] -= sensed->offsets[i];
+    return dot(p, p, 7) < sensed->farthest * sensed->farthest &&
+           dot(v, v, 6 + joints) < sensed->fastest * sensed->fastest;
 }

@@ -1001,24 +1001,186 @@ typedef struct {
 void filter_propagate(const Filter *filter, double time);
 int64_t filter_correct(const Filter *filter, double gate);
 
+/* A sole as `SensedBody` sees it: the placement of its joint in Pinocchio's data, and its own in that. */
+typedef struct {
+    const double *joint_rotation_columns;
+    const double *joint_position;
+    const double *placement_rotation;
+    const double *placement_position;
+} SensedSole;
+
+/*
+ * Counterpart of `wbc.estimation.kinematics.SensedBody`: Pinocchio's data in the axes of the base, where the IMU is in
+ * its joint, which joints carry left sole, right sole and IMU (1 or 0), and what follows.
+ */
+typedef struct {
+    int64_t joints;
+    int64_t chain_count;
+    const int64_t *chain;
+    const double *supporting;
+    const double *imu_joint_rotation_columns;
+    const double *imu_joint_position;
+    const double *mount_rotation;
+    const double *mount_position;
+    const SensedSole *left;
+    const SensedSole *right;
+    const double *joint_jacobian_columns;
+    const double *com;
+    const double *com_jacobian_columns;
+    double *imu_rotation;
+    double *imu_position;
+    double *position;
+    double *rotation;
+    double *jacobian;
+} SensedBody;
+
+void sensed_body_update(const SensedBody *body);
+void sensed_body_jacobians(const SensedBody *body);
+
+/*
+ * Counterpart of `InvariantFilter` at a new gain: P, noise by names of `wbc.estimation.parameters`, shares of the weight
+ * on the soles, their ways on springs, which stand, their Jacobians, and memory for what lies between.
+ */
+typedef struct {
+    const Filter *filter;
+    double gyro_density;
+    double speed_density;
+    double gyro_walk;
+    double force_walk;
+    double creep;
+    double sinking;
+    double rocking;
+    double light;
+    double leaning;
+    double unsure;
+    double kinematics;
+    double turning;
+    double encoder;
+    int64_t on_springs;
+    const double *loads;
+    const double *sprung;
+    const int64_t *standing;
+    const double *jacobian;
+    double *P;
+    double *gain;
+    double *weights;
+    double *turned;
+    double *PH;
+    double *HP;
+} Covariance;
+
+void covariance_spread(const Covariance *covariance, double time);
+int64_t covariance_weigh(const Covariance *covariance, double ticks);
+
+/*
+ * Counterpart of `wbc.estimation.doubt.Doubt`: lever of the CoM from the stance sole in axes of the IMU, and variances
+ * of CoM, soles' heights, one height over the other, and CoM velocity, shape (9,).
+ */
+typedef struct {
+    const SensedBody *body;
+    const Covariance *covariance;
+    double encoder_offset;
+    double rate_noise;
+    double *rows;
+    double *lever;
+    double *variance;
+} Doubt;
+
+void doubt_tell(const Doubt *doubt, int64_t stance, double gyro);
+
+/* Counterpart of `wbc.estimation.joints.JointObserver`; clock: tick, tick of the state, accelerations told so far. */
+typedef struct {
+    int64_t joints;
+    int64_t kept;
+    double period;
+    double moved;
+    double sped;
+    int64_t *clock;
+    const double *told;
+    const double *reading;
+    const double *speed;
+    double *position;
+    double *velocity;
+    double *now_position;
+    double *now_velocity;
+} JointObserver;
+
+void joint_observer_update(const JointObserver *observer, int64_t late, int64_t fresh, int64_t says_velocity);
+
+/* Counterpart of `wbc.estimation.rates.RateFilter`. */
+typedef struct {
+    double noise;
+    double more;
+    double impact;
+    const double *seen;
+    const double *gained;
+    double *rate;
+    double *variance;
+} RateFilter;
+
+void rate_filter_update(const RateFilter *filter, int64_t ticks, int64_t is_planned);
+
+/* Counterpart of `wbc.estimation.contact.SoleContact`; forces that a share of the weight tells are forces here. */
+typedef struct {
+    int64_t ticks;
+    double slow_share;
+    double threshold;
+    double lasting;
+    double released;
+    double bias;
+    double tared_after;
+    double anchored;
+    double edge;
+    double firm_edge;
+    double half_length;
+    double half_width;
+    double carries;
+    double unlikely;
+    double period;
+    double tare_time;
+    double tare_share;
+    double tare_height;
+    const double *reading;
+    const double *above;
+    double *filtered;
+    double *tare;
+    double *wrench;
+    double *slow;
+    double *tared;
+    int64_t *count;
+    int64_t *felt;
+    int64_t *firm;
+} SoleContact;
+
+int64_t sole_contact_update(const SoleContact *contact, double share, int64_t still);
+
 /*
  * Counterpart of `wbc.estimation.estimator.SensedState._now`, and of `SensedBody.base` of an IMU that no joint moves.
  *
  * The arrays of the filter's state, mount and lever of the IMU in the base, its angular velocity with its bias, what
- * the base was planned to gain since, and where pose (place, quaternion x y z w) and velocity of the base go.
+ * the base was planned to gain since, angles and velocities of the joints by their encoders, what has diverged, and
+ * where configuration and velocity of the robot go.
  */
 typedef struct {
+    int64_t joints;
+    int64_t chain_count;
+    const int64_t *chain;
+    double farthest;
+    double fastest;
     const double *R;
     const double *columns;
     const double *gyro_bias;
+    const double *offsets;
     const double *mount;
     const double *lever;
     const double *rate;
     const double *gained;
-    double *pose;
-    double *velocity;
+    const double *position;
+    const double *velocity;
+    double *q;
+    double *v;
 } SensedBase;
 
-void sensed_base_now(const SensedBase *sensed, double late);
+int64_t sensed_base_now(const SensedBase *sensed, double late);
 
 #endif

@@ -25,7 +25,13 @@ def numbers(estimate):
 
 @pytest.mark.parametrize(
     ("changes", "near"),
-    [({}, NEAR), ({"sensing.wrench": "none"}, BY_TORQUES), ({"sensing.preset": "cheap"}, NEAR)],
+    [
+        ({}, NEAR),
+        ({"sensing.wrench": "none"}, BY_TORQUES),
+        ({"sensing.preset": "cheap"}, NEAR),
+        ({"sensing.preset": "cheap", "sensing.jitter": 0.006, "sensing.dropout": 0.2}, NEAR),
+        ({"sensing.preset": "perfect"}, NEAR),
+    ],
 )
 def test_kernels_estimate_what_plain_python_does(monkeypatch, changes, near):
     if library() is None:

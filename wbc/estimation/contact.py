@@ -1,10 +1,11 @@
 """Which soles the ground carries, by their wrenches, and the wrenches freed of what the sensors add."""
 
 import math
-from collections.abc import Sequence
+from collections.abc import Callable, Sequence
 
 import numpy as np
 
+from surefoot.native.library import Library, library
 from surefoot.readings import Reading
 from surefoot.wbc.estimation.parameters import ContactDetection, SensorNoise
 from surefoot.wbc.external import SPAN
@@ -21,6 +22,12 @@ CARRIES = 0.4
 
 UNLIKELY = 4.0
 """Deviations of a sensor's bias up to which the force on a swinging foot is taken for one [-]."""
+
+FIRM_EDGE = 1.05
+"""Share of the half sole within which its CoP is where it stands still on [-]."""
+
+_FEET = tuple(tuple([bool(bits >> (k + more) & 1) for k in (0, 1)] for more in (0, 2)) for bits in range(16))
+"""Which feet are felt, and which are firm, by the bits that the kernel returns; nobody writes to these lists."""
 
 
 class SoleContact:
@@ -63,42 +70,84 @@ class SoleContact:
         cut = math.inf if deviation else cut
         self._share, left = _low_pass(cut, period)
         self.age = self._late = period * (1.0 - self._share) / self._share
-        self._slow_share, slowly = _low_pass(SLOW_CUT, period)
+        slow_share, slowly = _low_pass(SLOW_CUT, period)
+        self._tare_share = 1.0 - math.exp(-period / parameters.tare_time)
         # What is filtered already is no white noise, of which a mean has less.
         mean = math.sqrt(2.0) if deviation else math.sqrt(2.0 * min(period / SPAN, 1.0))
         self.deviation = noise * mean, turning * mean
         self._settled = noise * math.sqrt(0.5 * period / parameters.tare_time)
         self.threshold, self._lasting = (parameters.force + parameters.certain * noise * x for x in (left, slowly))
-        self._slow = np.full(2, 0.5 * weight)
-        self._bias = sensors.wrench_bias
-        self._filtered: Array | None = None
-        self._tare = np.zeros((2, 6))
-        self._count = [0, 0]
-        self.felt, self.firm, self.tared = [True, True], [True, True], [0.0, 0.0]
-        self.wrench = np.zeros((2, 6))
+        self._slow, self._slow_share = np.full(2, 0.5 * weight), slow_share
+        self._bias, self._begun = sensors.wrench_bias, False
+        self._filtered, self._tare, self.wrench = (np.zeros((2, 6)) for _ in range(3))
+        self._count, self.tared = np.zeros(2, dtype=np.int64), np.zeros(2)
+        self.felt, self.firm = [True, True], [True, True]
+        kernels = library()
+        self._update = self._compiled(kernels) if kernels else None
+
+    def _compiled(self, kernels: Library) -> Callable[[float, int], int]:
+        p, force = self._parameters, self.weight
+        self._reading, self._above, self._seen = np.zeros((2, 6)), np.zeros(2), np.zeros((2, 6))
+        update: Callable[[float, int], int] = kernels.bind(
+            "sole_contact_update",
+            ticks=math.ceil(p.ticks),
+            slow_share=self._slow_share,
+            threshold=self.threshold,
+            lasting=self._lasting,
+            released=p.released,
+            bias=self._bias,
+            tared_after=p.tared_after,
+            anchored=p.anchor * force,
+            edge=p.edge,
+            firm_edge=FIRM_EDGE,
+            half_length=self._half[0],
+            half_width=self._half[1],
+            carries=CARRIES * force,
+            unlikely=UNLIKELY,
+            period=self._period,
+            tare_time=p.tare_time,
+            tare_share=self._tare_share,
+            tare_height=p.tare_height,
+            reading=self._reading,
+            above=self._above,
+            filtered=self._filtered,
+            tare=self._tare,
+            wrench=self._seen,
+            slow=self._slow,
+            tared=self.tared,
+            count=self._count,
+            felt=np.ones(2, dtype=np.int64),
+            firm=np.ones(2, dtype=np.int64),
+        )
+        return update
 
     @property
     def bias(self) -> float:
         """Deviation of what a force is off for long: a sensor's bias until it was tared, then that of the tare [N]."""
         if self._bias == 0.0:
             return 0.0
-        return math.hypot(self._bias * math.exp(-min(self.tared) / self._parameters.tare_time), self._settled)
+        return math.hypot(self._bias * math.exp(-float(self.tared.min()) / self._parameters.tare_time), self._settled)
 
-    def update(self, reading: Reading, still: Sequence[bool], above: Sequence[float]) -> None:
+    def update(self, reading: Reading, still: Sequence[bool], above: Array | Sequence[float]) -> None:
         """Take the wrenches of a tick.
 
         Args:
             reading: of the sensors in the feet.
             still: soles that the controller means to stand still.
-            above: how far each sole is over the ground [m].
+            above: how far each sole is over the ground, shape (2,) [m].
         """
-        if self._filtered is None:
-            self._filtered = reading.values.copy()
-        elif reading.fresh:
-            self._filtered = self._filtered + self._share * (reading.values - self._filtered)
-        self.wrench = wrench = self._filtered - self._tare
+        share = self._share if reading.fresh else 0.0
+        if not self._begun:
+            share, self._begun = 1.0, True
         self.age = reading.age + self._late
-        self._slow = self._slow + self._slow_share * (wrench[:, 2] - self._slow)
+        if self._update is not None:
+            self._reading[:], self._above[:] = reading.values, above
+            bits = self._update(share, still[0] + 2 * still[1])
+            self.wrench, (self.felt, self.firm) = self._seen.copy(), _FEET[bits]
+            return
+        self._filtered += share * (reading.values - self._filtered)
+        self.wrench = wrench = self._filtered - self._tare
+        self._slow += self._slow_share * (wrench[:, 2] - self._slow)
         force = wrench[:, 2].tolist()
         for k in (0, 1):
             self._feel(k, force)
@@ -129,7 +178,7 @@ class SoleContact:
         if not anchored or force[1 - k] < self.threshold:
             return anchored or force[1 - k] < self.threshold
         moment = self.wrench[k, 3:5].tolist()
-        reach = p.edge if not self.firm[k] else 1.05
+        reach = FIRM_EDGE if self.firm[k] else p.edge
         return bool(abs(moment[1]) < reach * self._half[0] * load and abs(moment[0]) < reach * self._half[1] * load)
 
     def _tare_foot(self, k: int, force: list[float], above: float) -> None:
@@ -141,7 +190,7 @@ class SoleContact:
         left = UNLIKELY * self._bias * math.exp(-self.tared[k] / p.tare_time)
         if math.hypot(x.item(0), x.item(1), force[k]) < self.threshold + left:
             self.tared[k] += self._period
-            self._tare[k] += (1.0 - math.exp(-self._period / p.tare_time)) * self.wrench[k]
+            self._tare[k] += self._tare_share * self.wrench[k]
 
 
 def sprung(changed: Array, half_size: tuple[float, float], give: float) -> Array:

@@ -1,10 +1,12 @@
 """How sure an estimate is: standard deviations of what planner and controller use, by the covariance of the filter."""
 
 import math
+from collections.abc import Callable
 
 import numpy as np
 import pinocchio as pin
 
+from surefoot.native.library import library
 from surefoot.wbc.estimation.contact import SoleContact
 from surefoot.wbc.estimation.estimate import Deviation
 from surefoot.wbc.estimation.invariant_filter import InvariantFilter
@@ -31,6 +33,9 @@ class Doubt:
         self._body, self._sensors, self._rate_noise = body, sensors, rate_noise
         self._weight = GRAVITY * body.mass
         self._turning: tuple[float, float] | None = None
+        self._lever, self._variance = np.zeros(3), np.zeros(9)
+        self._tell: Callable[[int, float], None] | None = None
+        self._of: InvariantFilter | None = None
 
     def deviation(self, filter_: InvariantFilter, contact: SoleContact, gyro: float, J: Array) -> Deviation:
         """Deviations now.
@@ -41,9 +46,44 @@ class Doubt:
             gyro: standard deviation of the angular velocity [rad/s].
             J: Jacobians of the soles, as of `SensedBody.offset_jacobians`.
         """
-        body, sensors, s, P = self._body, self._sensors, filter_.stand, filter_.P
         force = contact.wrench[:, 2]
         stance = int(force[1] > force[0])
+        if filter_ is not self._of:
+            self._of, self._tell = filter_, self._compiled(filter_)
+        if self._tell is None:
+            lever, variance = self._plain(filter_, stance, gyro, J)
+        else:
+            self._body.place_com()
+            self._tell(stance, gyro)
+            lever, variance = self._lever, self._variance
+        deviation = np.sqrt(variance)
+        com, heights, apart, speed = deviation[:3], deviation[3:5], deviation.item(5), deviation[6:]
+        tilt, up = np.sqrt(np.diagonal(filter_.P)[:2]), float(lever @ filter_.stand.R[2])
+        load = self._of_load(float(speed[:2].max()), float(com[:2].max()), float(tilt.max()), up, gyro, contact)
+        return Deviation(com, speed, tilt, heights, apart, *load)
+
+    def _compiled(self, filter_: InvariantFilter) -> Callable[[int, float], None] | None:
+        kernels, body, covariance = library(), self._body.compiled, filter_.compiled
+        if kernels is None or body is None or covariance is None:
+            return None
+        tell: Callable[[int, float], None] = kernels.bind(
+            "doubt_tell",
+            body=body,
+            covariance=covariance,
+            encoder_offset=self._sensors.encoder_offset,
+            rate_noise=self._rate_noise,
+            rows=np.zeros((6, len(filter_.P))),
+            lever=self._lever,
+            variance=self._variance,
+        )
+        return tell
+
+    def _plain(self, filter_: InvariantFilter, stance: int, gyro: float, J: Array) -> tuple[Array, Array]:
+        """Lever of the CoM from the stance sole in axes of the IMU, and variances of what `deviation` says.
+
+        Of the CoM, of the soles' heights, of one over the other, and of the CoM velocity, shape (9,).
+        """
+        body, sensors, s, P = self._body, self._sensors, filter_.stand, filter_.P
         lever, by_joints, moving = body.com_jacobians(stance)
         by_joints = s.R @ by_joints
         rows = np.zeros((6, len(P)))
@@ -56,18 +96,15 @@ class Doubt:
         rows[5] = rows[3] - rows[4]
         place = np.maximum(np.einsum("ij,jk,ik->i", rows, P, rows), 0.0)
         by_joints[:, body.chain] = 0.0
-        com = place[:3] + (by_joints**2).sum(axis=1) * sensors.encoder_offset**2
-        spread = np.diagonal(P)
+        place[:3] += (by_joints**2).sum(axis=1) * sensors.encoder_offset**2
         arm = s.R @ (body.position[stance] + lever)
         # A turn about an axis moves the CoM as far as it is beside that.
         turned = (float(arm @ arm) - arm**2) * gyro**2
-        speed = spread[VELOCITY] + ((s.R @ moving) ** 2).sum(axis=1) * self._rate_noise**2 + turned
-        com, speed, tilt = np.sqrt(com), np.sqrt(speed), np.sqrt(spread[:2])
-        load = self._of_load(speed, com, float(tilt.max()), float(lever @ s.R[2]), gyro, contact)
-        return Deviation(com, speed, tilt, np.sqrt(place[3:5]), math.sqrt(place[5]), *load)
+        moved = ((s.R @ moving) ** 2).sum(axis=1) * self._rate_noise**2
+        return lever, np.concatenate((place, np.diagonal(P)[VELOCITY] + moved + turned))
 
     def _of_load(
-        self, speed: Array, com: Array, tilt: float, height: float, gyro: float, contact: SoleContact
+        self, speed: float, com: float, tilt: float, height: float, gyro: float, contact: SoleContact
     ) -> tuple[float, float]:
         """Deviations of the force and the moment that the load observer sees within its span."""
         if self._turning is None:
@@ -77,10 +114,10 @@ class Doubt:
         bias = LASTS * math.sqrt(2.0) * contact.bias
         # Momentum and moment of momentum are held at both ends of a span.
         twice = math.sqrt(2.0) / SPAN
-        shaken = self._body.mass * twice * float(speed[:2].max())
+        shaken = self._body.mass * twice * speed
         spun = twice * math.hypot(whole * gyro, joints * self._rate_noise)
         leaning = LASTS * self._weight * tilt
-        wrong = LASTS * self._weight * float(com[:2].max())
+        wrong = LASTS * self._weight * com
         return (
             math.hypot(shaken, force, leaning, bias),
             math.hypot(spun, moment, force * height, wrong, leaning * height, bias * height),

@@ -10,7 +10,7 @@ import pinocchio as pin
 from surefoot.native.library import library
 from surefoot.readings import Reading, Readings
 from surefoot.values import dataclass
-from surefoot.wbc.estimation.compiled import BaseKernel
+from surefoot.wbc.estimation.compiled import StateKernel
 from surefoot.wbc.estimation.contact import SoleContact, sprung
 from surefoot.wbc.estimation.doubt import Doubt
 from surefoot.wbc.estimation.estimate import Deviation, Estimate, Planned
@@ -23,8 +23,11 @@ from surefoot.wbc.estimation.stand import Stand
 from surefoot.wbc.estimation.torques import TorqueWrench
 from surefoot.wbc.types import GRAVITY, Array, RobotState
 
-Ground = Callable[[float, float], tuple[float, Array]]
-"""Height of the ground at x and y, and its unit normal there, shape (3,) [m, -]."""
+Height = Callable[[float, float], float]
+"""How high the ground is at x and y [m]."""
+
+Normal = Callable[[float, float], Array]
+"""Unit normal of the ground at x and y [m], shape (3,) [-]."""
 
 FASTEST, FARTHEST = 300.0, 1e5
 """Speed, of base and joints together, and place beyond which an estimate has diverged [m/s, rad/s, m]."""
@@ -44,7 +47,8 @@ class Footing:
         position: sole centres in the world, left first, shape (2, 3) [m].
         yaw: headings of the soles, shape (2,) [rad].
         half_size: half of a sole's length and width [m].
-        ground: height and normal of the ground by place.
+        height: of the ground by place.
+        normal: of the ground by place.
         leaning: half width of soles that lean with their shanks, of which position has the lines on which they stand;
             None for others [m].
     """
@@ -52,7 +56,8 @@ class Footing:
     position: Array
     yaw: Array
     half_size: tuple[float, float]
-    ground: Ground
+    height: Height
+    normal: Normal
     leaning: float | None = None
 
 
@@ -88,7 +93,7 @@ class SensedState:
         self._torques: TorqueWrench | None = None
         self._torques_at, self._encoders = 0, np.zeros(0)
         self._filter: InvariantFilter | None = None
-        self._base: BaseKernel | None = None
+        self._compiled: StateKernel | None = None
         self._tick, self._imu_at, self._from = -1, 0, 0.0
         self._base_told: deque[Array] = deque(maxlen=KEPT)
         self._still, self._lost = [True, True], False
@@ -96,7 +101,7 @@ class SensedState:
         self._deviation: Deviation | None = None
         self._doubt = Doubt(self._body, sensors, self._joints.rate_noise)
         self._rate: RateFilter
-        self._above = [0.0, 0.0]
+        self._above = np.zeros(2)
         self._load = np.zeros((2, 6))
 
     @property
@@ -110,7 +115,7 @@ class SensedState:
         # What is planned for a state that is lost is no motion of the robot.
         bend = planned.acceleration[6:]
         self._joints.told(np.zeros_like(bend) if self._lost else bend)
-        self._base_told.append(planned.acceleration[:6].copy())
+        self._base_told.append(planned.acceleration[:6])
         self._still = [planned.contact[k] and k != planned.rolling_foot for k in (0, 1)]
 
     def sense(self, readings: Readings) -> Estimate:
@@ -127,15 +132,17 @@ class SensedState:
             self._contact = self._feeling(readings)
             self._contact.update(self._wrench(readings), self._still, self._above)
             self._load = self._contact.wrench
+            self._compiled = self._kernel(len(q))
             self._state = self._now(q, qd)
             self._deviation = self._unsure(self._body.offset_jacobians())
         elif not self._lost:
-            kept = self._state
             with np.errstate(all="ignore"):
                 self._step(readings)
-                self._state = self._now(q, qd)
-            if not self._sound(self._state):
-                self._lost, self._state = True, kept
+                now = self._now(q, qd)
+            if now is None or not (self._tick % self._every or self.filter.finite):
+                self._lost = True
+            else:
+                self._state = now
         state = self._state
         assert state is not None
         if self._lost:
@@ -144,6 +151,12 @@ class SensedState:
         self._state = state
         contact, felt = self._contact, self._contact.felt
         return Estimate(state, contact.wrench, (felt[0], felt[1]), self._deviation, self._channels(), contact.age)
+
+    def _kernel(self, joints: int) -> StateKernel | None:
+        kernels, body, stand = library(), self._body, self.filter.stand
+        if not kernels or body.mount is None:
+            return None
+        return StateKernel(kernels, stand, body.mount, body.chain, joints, self._rate.rate, (FARTHEST, FASTEST))
 
     def _channels(self) -> dict[str, Array]:
         s = self.filter.stand
@@ -196,7 +209,7 @@ class SensedState:
     def _start(self, joints: Array) -> InvariantFilter:
         body, footing = self._body, self._footing
         body.update(joints, np.eye(3))
-        normals = np.stack([footing.ground(*footing.position[k, :2].tolist())[1] for k in (0, 1)])
+        normals = np.stack([footing.normal(*footing.position[k, :2].tolist()) for k in (0, 1)])
         level = [_sole(float(footing.yaw[k]), normals[k]) for k in (0, 1)]
         turned = [level[k] @ body.rotation[k].T for k in (0, 1)]
         R = turned[0] @ pin.exp3(0.5 * pin.log3(turned[0].T @ turned[1]))
@@ -212,8 +225,6 @@ class SensedState:
         filter_.begin(body.position, body.rotation, J, normals, ATTITUDE)
         body.update(self._known(joints, filter_.stand.offsets), filter_.stand.R)
         filter_.weigh(J)
-        kernels, mount = library(), body.mount
-        self._base = BaseKernel(kernels, stand, *mount) if kernels and mount else None
         return filter_
 
     def _leaning(self, joints: Array, R: Array, level: list[Array]) -> Array:
@@ -269,7 +280,7 @@ class SensedState:
                 filter_.weigh(J)
         if due:
             self._deviation = self._unsure(J)
-            self._above = [self._over_ground(k) for k in (0, 1)]
+            self._above = self._over_ground()
 
     def _sprung(self) -> Array | None:
         """How each sole moved on the springs of the ground since this was asked last, as of `sprung`.
@@ -308,38 +319,36 @@ class SensedState:
         filter_, body, noise = self.filter, self._body, self._parameters.ground
         s = filter_.stand
         foot = s.p + s.R @ body.position[k]
-        height, _ = self._footing.ground(float(foot[0]), float(foot[1]))
+        height = self._footing.height(float(foot[0]), float(foot[1]))
         known = (height, noise.height) if noise.height > 0.0 else None
         filter_.land(k, body.position[k], body.rotation[k], J[k], known, noise.landing, noise.landing_turn)
 
-    def _over_ground(self, k: int) -> float:
-        """How far a sole is over the ground [m]."""
-        s = self.filter.stand
-        x, y, z = (s.p + s.R @ self._body.position[k]).tolist()
-        return float(z - self._footing.ground(x, y)[0])
+    def _over_ground(self) -> Array:
+        """How far the soles are over the ground, shape (2,) [m]."""
+        s, height = self.filter.stand, self._footing.height
+        soles = (s.p + self._body.position @ s.R.T).tolist()
+        return np.array([z - height(x, y) for x, y, z in soles])
 
-    def _now(self, q: Array, qd: Array) -> RobotState:
-        """The state now, which is older by the age of the IMU's readings."""
+    def _now(self, q: Array, qd: Array) -> RobotState | None:
+        """The state now, which is older by the age of the IMU's readings; None of one that has diverged."""
         s, told, late, gained = self.filter.stand, self._base_told, self._tick - self._imu_at, None
-        q, time = self._known(q, s.offsets), late * self._period
+        time = late * self._period
         if late and told:
             # What the controller has planned since; its velocity is that of the base in its own axes.
             gained = self._period * (told[-1] if late == 1 else np.sum(list(told)[-late:], axis=0))
-        if self._base is not None:
-            pose, velocity = self._base(self._rate.rate, gained, time)
-            return RobotState(np.concatenate((pose, q)), np.concatenate((velocity, qd)))
+        if self._compiled is not None:
+            return self._compiled(q, qd, gained, time)
+        q = self._known(q, s.offsets)
         base, p, velocity = self._body.base(s.R, s.p, s.v, self._rate.rate - s.gyro_bias, q, qd)
         if gained is not None:
             way = time * (velocity + 0.5 * gained)
             turn = pin.exp3(0.5 * way[3:])
             half = base @ turn
             p, base, velocity = p + half @ way[:3], half @ turn, velocity + gained
-        return RobotState(np.concatenate((p, pin.Quaternion(base).coeffs(), q)), np.concatenate((velocity, qd)))
-
-    def _sound(self, state: RobotState) -> bool:
-        far, fast = float(state.q[:7] @ state.q[:7]), float(state.v @ state.v)
+        place = np.concatenate((p, pin.Quaternion(base).coeffs()))
+        state = RobotState(np.concatenate((place, q)), np.concatenate((velocity, qd)))
         # Nothing that is not finite is less than a number.
-        return far < FARTHEST**2 and fast < FASTEST**2 and (self._tick % self._every != 0 or self.filter.finite)
+        return state if place @ place < FARTHEST**2 and state.v @ state.v < FASTEST**2 else None
 
 
 def _sole(yaw: float, up: Array) -> Array:

@@ -20,7 +20,7 @@ encoders less their offsets, gives for a foot that stands (eq. 33, with J the Ja
 import numpy as np
 import pinocchio as pin
 
-from surefoot.native.library import library
+from surefoot.native.library import Bound, library
 from surefoot.similarity import GRAVITY
 from surefoot.wbc.estimation.compiled import FilterKernels
 from surefoot.wbc.estimation.parameters import GroundNoise, SensorNoise
@@ -65,7 +65,7 @@ class InvariantFilter:
 
     Attributes:
         stand: the state.
-        P: covariance of its error, shape (27 + m, 27 + m).
+        P: covariance of its error, shape (27 + m, 27 + m), in an array that stays where it is.
         acceleration: of the IMU in the world, last, shape (3,) [m/s^2].
         standing: feet that stand, left first.
     """
@@ -83,7 +83,10 @@ class InvariantFilter:
         self._gain: Array | None = None
         self._feet: list[int] = []
         kernels = library()
-        self._kernels = FilterKernels(kernels, stand, n) if kernels else None
+        # Springs under one edge give twice as much.
+        self._sinking, self._turns = ((2.0 if leaning else 1.0) * ground.sinking, LEANING if leaning else 0.0)
+        ways = self._sinking, self._turns, UNSURE
+        self._kernels = FilterKernels(kernels, stand, self.P, sensors, ground, *ways) if kernels else None
         spread = np.zeros(n)
         spread[VELOCITY], spread[GYRO], spread[FORCE] = 1e-3, sensors.gyro_bias, sensors.accelerometer_bias
         spread[OFFSETS] = sensors.encoder_offset
@@ -104,7 +107,7 @@ class InvariantFilter:
         P[8, 8] = tilt**2
         lever = np.eye(n)
         lever[POSITION, TURN] = pin.skew(s.p)
-        self.P = lever @ P @ lever.T
+        P[:] = lever @ P @ lever.T
         rows, wanted = np.zeros((6, n)), np.zeros(6)
         for k in (0, 1):
             # Sole normals R̂ Y e_z turn by ξ_R - R̂ J_Y o, sole heights move by ξ_p + hat-terms of ξ_R - R̂ J_y o.
@@ -137,8 +140,8 @@ class InvariantFilter:
         PH = self.P @ rows.T
         S = rows @ PH + np.diag(noise)
         K = np.linalg.solve(S, PH.T).T
-        self.P = self.P - K @ PH.T
-        self.P = 0.5 * (self.P + self.P.T)
+        self.P -= K @ PH.T
+        self.P[:] = 0.5 * (self.P + self.P.T)
         self.stand.move(K @ wanted)
 
     def propagate(self, rate: Array, force: Array, time: float) -> None:
@@ -188,11 +191,13 @@ class InvariantFilter:
         dt, self._since = self._since, 0.0
         if dt <= 0.0:
             return
+        if self._kernels is not None:
+            self._kernels.spread(dt, loads, sprung, self.standing)
+            return
         sensors, ground = self._sensors, self._ground
-        # Springs under one edge give twice as much.
-        sinking = (2.0 if self._leaning else 1.0) * ground.sinking
         F, B = self.transition(dt)
-        P = F @ self.P @ F.T
+        P = self.P
+        P[:] = F @ P @ F.T
         P[:15, :15] += (sensors.gyro_density**2 * dt) * (B @ B.T)
         D = np.einsum("ii->i", P)
         D[VELOCITY] += (sensors.accelerometer_density**2 + ground.model**2) * dt
@@ -201,7 +206,7 @@ class InvariantFilter:
         for k in (0, 1):
             more = 1.0 + (ground.light - 1.0) * (1.0 - min(2.0 * loads[k], 1.0))
             if self.standing[k]:
-                D[FOOT[k]] += np.square(more * np.array([ground.creep, ground.creep, sinking])) * dt
+                D[FOOT[k]] += np.square(more * np.array([ground.creep, ground.creep, self._sinking])) * dt
                 D[SOLE[k]] += (more * ground.rocking) ** 2 * dt
                 if sprung is not None:
                     turned, risen = self.stand.Z[k, :, :2] @ sprung[k, :2], float(sprung[k, 2])
@@ -209,10 +214,8 @@ class InvariantFilter:
                     D[SOLE[k]] += (UNSURE * turned) ** 2
                     self.stand.columns[2 + k, 2] += risen
                     self.stand.Z[k] = pin.exp3(turned) @ self.stand.Z[k]
-                if self._leaning:
-                    line = self.stand.Z[k, :, 0]
-                    P[SOLE[k], SOLE[k]] += (LEANING**2 * dt) * np.outer(line, line)
-        self.P = P
+                line = self.stand.Z[k, :, 0]
+                P[SOLE[k], SOLE[k]] += (self._turns**2 * dt) * np.outer(line, line)
 
     def land(
         self, k: int, y: Array, Y: Array, J: Array, height: tuple[float, float] | None, place: float, turn: float
@@ -236,7 +239,8 @@ class InvariantFilter:
         T[i], T[j] = 0.0, 0.0
         T[i, POSITION], T[j, TURN] = _UNIT, _UNIT
         T[i, OFFSETS], T[j, OFFSETS] = -s.R @ J[:3], -s.R @ J[3:]
-        self.P = P = T @ self.P @ T.T
+        P = self.P
+        P[:] = T @ P @ T.T
         D = np.einsum("ii->i", P)
         D[i] += place**2
         D[j] += turn**2
@@ -259,6 +263,10 @@ class InvariantFilter:
         if not feet:
             self._gain = None
             return
+        kernels = self._kernels
+        if kernels is not None and kernels.weigh(feet, J, ticks):
+            self._gain, self._weights = kernels.gain, kernels.weights
+            return
         rows = np.concatenate([_SIX[k] for k in feet])
         columns = np.tile(_BODY, len(feet))
         R = self.stand.R
@@ -271,12 +279,12 @@ class InvariantFilter:
         many = S.copy()
         many[np.diag_indices_from(S)] += noise / ticks
         S[np.diag_indices_from(S)] += noise
-        self.P = self.P - PH @ np.linalg.solve(many, PH.T)
-        self.P = 0.5 * (self.P + self.P.T)
+        self.P -= PH @ np.linalg.solve(many, PH.T)
+        self.P[:] = 0.5 * (self.P + self.P.T)
         inverse = np.linalg.inv(S)
         self._gain, self._weights = PH @ inverse, inverse
-        if self._kernels is not None:
-            self._kernels.take(feet, self._gain, inverse)
+        if kernels is not None:
+            kernels.gain[:], kernels.weights[:] = self._gain, inverse
 
     def residual(self, y: Array, Y: Array) -> Array:
         """How far the standing feet are from where the kinematics say, shape (6 feet,) [m, rad]."""
@@ -313,6 +321,11 @@ class InvariantFilter:
         blocks = [self._weights[6 * i : 6 * i + 6, 6 * i : 6 * i + 6] for i in range(len(self._feet))]
         likely = [float(r[6 * i : 6 * i + 6] @ block @ r[6 * i : 6 * i + 6]) for i, block in enumerate(blocks)]
         return self._feet[int(np.argmax(likely))]
+
+    @property
+    def compiled(self) -> Bound | None:
+        """It as kernels take it; None for plain Python."""
+        return None if self._kernels is None else self._kernels.covariance
 
     @property
     def finite(self) -> bool:

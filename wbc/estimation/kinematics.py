@@ -7,6 +7,7 @@ while they turn about it.
 import numpy as np
 import pinocchio as pin
 
+from surefoot.native.library import Bound, Library, library
 from surefoot.values import dataclass
 from surefoot.wbc.leaning import line_centre
 from surefoot.wbc.model import cross
@@ -41,6 +42,7 @@ class SensedBody:
 
     Attributes:
         leaning: as given.
+        compiled: it as kernels take it; None for plain Python.
         chain: indices of the joints between the IMU and the soles, shape (m,).
         position: of the soles in the frame of the IMU, shape (2, 3) [m].
         rotation: of the soles to the frame of the IMU, shape (2, 3, 3).
@@ -65,10 +67,53 @@ class SensedBody:
         self._at_base = not self._behind and self._placement.isIdentity(1e-12)
         self.chain = _between(model, parent, self._soles)
         self._q, self._v = pin.neutral(model), np.zeros(model.nv)
-        self._imu = self._placement
+        self._imu_rotation, self._imu_position = self._placement.rotation.copy(), self._placement.translation.copy()
         self.position, self.rotation = np.zeros((2, 3)), np.zeros((2, 3, 3))
+        self._jacobian = np.zeros((2, 6, len(self.chain)))
+        self._supporting = _supporting(model, (*(model.frames[sole].parentJoint for sole in self._soles), parent))
         self.leaning, self._beside = leaning, np.zeros((2, 3))
         self.mass = float(sum(inertia.mass for inertia in model.inertias))
+        # Which of its edges a leaning sole is on, only Python knows.
+        kernels = library() if leaning is None else None
+        self.compiled = self._bound(kernels) if kernels else None
+        if kernels and self.compiled:
+            self._place = kernels.bind("sensed_body_update", self.compiled)
+            self._move = kernels.bind("sensed_body_jacobians", self.compiled)
+
+    def _bound(self, kernels: Library) -> Bound:
+        model, data, imu = self.model, self._data, self._data.oMi[self._parent]
+        soles = []
+        for frame in (model.frames[sole] for sole in self._soles):
+            joint = data.oMi[frame.parentJoint]
+            sole = kernels.fill(
+                "SensedSole",
+                joint_rotation_columns=joint.rotation.T,
+                joint_position=joint.translation,
+                placement_rotation=np.ascontiguousarray(frame.placement.rotation),
+                placement_position=np.array(frame.placement.translation),
+            )
+            soles.append(sole)
+        return kernels.fill(
+            "SensedBody",
+            joints=model.nv - 6,
+            chain_count=len(self.chain),
+            chain=self.chain,
+            supporting=self._supporting,
+            imu_joint_rotation_columns=imu.rotation.T,
+            imu_joint_position=imu.translation,
+            mount_rotation=np.ascontiguousarray(self._placement.rotation),
+            mount_position=np.array(self._placement.translation),
+            left=soles[0],
+            right=soles[1],
+            joint_jacobian_columns=data.J.T,
+            com=data.com[0],
+            com_jacobian_columns=data.Jcom.T,
+            imu_rotation=self._imu_rotation,
+            imu_position=self._imu_position,
+            position=self.position,
+            rotation=self.rotation,
+            jacobian=self._jacobian,
+        )
 
     @property
     def mount(self) -> tuple[Array, Array] | None:
@@ -84,12 +129,17 @@ class SensedBody:
         """
         self._q[7:] = joints
         pin.forwardKinematics(self.model, self._data, self._q)
+        if self.compiled is not None:
+            self._place()
+            return
+        imu = self._placement
         if self._behind:
-            self._imu = self._data.oMi[self._parent] * self._placement
+            imu = self._data.oMi[self._parent] * self._placement
+            self._imu_rotation[:], self._imu_position[:] = imu.rotation, imu.translation
         for k, frame in enumerate(self._soles):
             placed = pin.updateFramePlacement(self.model, self._data, frame)
             if not self._at_base:
-                placed = self._imu.actInv(placed)
+                placed = imu.actInv(placed)
             self.position[k], self.rotation[k] = placed.translation, placed.rotation
             if self.leaning is not None:
                 self._beside[k] = line_centre(k, np.zeros(3), attitude @ placed.rotation, self.leaning) @ attitude
@@ -98,25 +148,29 @@ class SensedBody:
     def offset_jacobians(self) -> Array:
         """From small turns of the joints of the chain to those of the soles, shape (2, 6, m) [m/rad, -].
 
-        Both rows of the position and of the rotation vector are in the axes of the IMU. At the angles last taken.
+        Both rows of the position and of the rotation vector are in the axes of the IMU. At the angles last taken; the
+        next call writes over them.
         """
-        model, data = self.model, self._data
-        pin.computeJointJacobians(model, data)
-        columns = 6 + self.chain
-        base = np.zeros((6, len(columns)))
-        if self._behind:
-            carrier = pin.getJointJacobian(model, data, self._parent, _LOCAL)[:, columns]
-            base = self._placement.toActionMatrixInverse() @ carrier
-        found = np.empty((2, 6, len(columns)))
-        for k, frame in enumerate(self._soles):
-            R, p = self.rotation[k], self.position[k]
-            sole = pin.getFrameJacobian(model, data, frame, _LOCAL)[:, columns]
-            # What turns the IMU turns the sole the other way about it.
-            turned = R @ sole[3:]
-            found[k, :3] = R @ sole[:3] - base[:3] + pin.skew(p) @ base[3:]
-            found[k, 3:] = turned - base[3:]
-            if self.leaning is not None:
-                found[k, :3] -= pin.skew(self._beside[k]) @ turned
+        pin.computeJointJacobians(self.model, self._data)
+        if self.compiled is not None:
+            self._move()
+            return self._jacobian
+        carries, R = self._supporting[:2] - self._supporting[2], self._imu_rotation
+        for k in (0, 1):
+            # What carries both moves neither against the other, and what carries the IMU turns the sole the other way.
+            moved = (carries[k] * self._motion(self._in_base(k)))[:, self.chain]
+            self._jacobian[k, :3], self._jacobian[k, 3:] = R.T @ moved[:3], R.T @ moved[3:]
+        return self._jacobian
+
+    def _in_base(self, k: int) -> Array:
+        """A sole's centre in the base's frame, shape (3,) [m]."""
+        at: Array = self._imu_position + self._imu_rotation @ self.position[k]
+        return at
+
+    def _motion(self, at: Array) -> Array:
+        """How joints move a point of the base's frame, shape (3,) [m], fixed to what they carry, shape (6, nj)."""
+        J = self._data.J[:, 6:]
+        found: Array = np.vstack((J[:3] - pin.skew(at) @ J[3:], J[3:]))
         return found
 
     def com_jacobians(self, k: int) -> tuple[Array, Array, Array]:
@@ -126,16 +180,15 @@ class SensedBody:
             its place from the sole's centre, shape (3,) [m]; that by the joints, shape (3, nj) [m/rad]; the same of the
             CoM from the floating base, shape (3, nj) [m/rad].
         """
-        model, data = self.model, self._data
-        J = pin.jacobianCenterOfMass(model, data, self._q, False)[:, 6:]
-        placed = self._data.oMf[self._soles[k]]
-        moved = pin.getFrameJacobian(model, data, self._soles[k], _LOCAL)[:, 6:]
-        sole, to_imu = placed.rotation @ moved[:3], self._imu.rotation.T
-        at = placed.translation
-        if self.leaning is not None:
-            beside = self._imu.rotation @ self._beside[k]
-            at, sole = at + beside, sole - pin.skew(beside) @ placed.rotation @ moved[3:]
-        return to_imu @ (data.com[0] - at), to_imu @ (J - sole), to_imu @ J
+        self.place_com()
+        com, J, to_imu = self._data.com[0], self._data.Jcom[:, 6:], self._imu_rotation.T
+        at = self._in_base(k)
+        sole = self._supporting[k] * self._motion(at)[:3]
+        return to_imu @ (com - at), to_imu @ (J - sole), to_imu @ J
+
+    def place_com(self) -> None:
+        """Let Pinocchio compute the CoM and its Jacobian, after `offset_jacobians`."""
+        pin.jacobianCenterOfMass(self.model, self._data, False)
 
     def turning_inertia(self) -> tuple[float, float]:
         """What angular velocities make of moment of momentum about the CoM, at the angles last taken.
@@ -186,6 +239,14 @@ def _between(model: pin.Model, carrier: int, soles: tuple[int, ...]) -> Array:
     for sole in soles:
         found |= up ^ set(_ancestors(model, model.frames[sole].parentJoint))
     return np.array(sorted(model.idx_vs[joint] - 6 for joint in found), dtype=np.intp)
+
+
+def _supporting(model: pin.Model, carriers: tuple[int, ...]) -> Array:
+    """Which joints carry what is on some joints: 1 or 0, shape (carriers, nj)."""
+    found = np.zeros((len(carriers), model.nv - 6))
+    for row, carrier in zip(found, carriers, strict=True):
+        row[[model.idx_vs[joint] - 6 for joint in _ancestors(model, carrier)]] = 1.0
+    return found
 
 
 def _ancestors(model: pin.Model, joint: int) -> list[int]:

@@ -4,6 +4,7 @@ import math
 
 import numpy as np
 
+from surefoot.native.library import library
 from surefoot.wbc.types import Array
 
 IMPACT = 9.0
@@ -29,23 +30,34 @@ class RateFilter:
         unplanned: s, of what the plan lacks, with the root of the time [rad/s/√s].
 
     Attributes:
-        rate: now, bias included, shape (3,) [rad/s].
+        rate: now, bias included, in an array that stays where it is, shape (3,) [rad/s].
         deviation: standard deviation of it, the largest of the three axes [rad/s].
     """
 
     def __init__(self, rate: Array, period: float, density: float, unplanned: float) -> None:
-        self._period, self._noise, self._more = period, density**2 / period, unplanned**2 * period
-        self._rate, self._variance = rate.tolist(), [self._noise] * 3
-
-    @property
-    def rate(self) -> Array:
-        """See the attributes."""
-        return np.array(self._rate)
+        self._noise, self._more = density**2 / period, unplanned**2 * period
+        self.rate, self._seen, self._gained, self._variance = (np.array(rate) for _ in range(4))
+        self._variance[:] = self._noise
+        kernels = library()
+        self._update = (
+            None
+            if kernels is None
+            else kernels.bind(
+                "rate_filter_update",
+                noise=self._noise,
+                more=self._more,
+                impact=IMPACT,
+                seen=self._seen,
+                gained=self._gained,
+                rate=self.rate,
+                variance=self._variance,
+            )
+        )
 
     @property
     def deviation(self) -> float:
         """See the attributes."""
-        return math.sqrt(max(self._variance))
+        return math.sqrt(max(self._variance.tolist()))
 
     def update(self, reading: Array, gained: Array | None, ticks: int) -> None:
         """Take a reading.
@@ -56,15 +68,16 @@ class RateFilter:
                 nobody has told [rad/s].
             ticks: since the reading before.
         """
-        if gained is None or self._noise == 0.0:
-            self._rate, self._variance = reading.tolist(), [self._noise] * 3
-            return
-        noise, grown = self._noise, ticks * self._more
-        for axis, (seen, more) in enumerate(zip(reading.tolist(), gained.tolist(), strict=True)):
-            expected, variance = self._rate[axis] + more, self._variance[axis] + grown
-            innovation = seen - expected
-            square = innovation * innovation
-            if square > IMPACT * (variance + noise):
-                variance = square - noise
-            gain = variance / (variance + noise)
-            self._rate[axis], self._variance[axis] = expected + gain * innovation, gain * noise
+        if self._update is not None:
+            self._seen[:] = reading
+            if gained is not None:
+                self._gained[:] = gained
+            self._update(ticks, gained is not None)
+        elif gained is None or self._noise == 0.0:
+            self.rate[:], self._variance[:] = reading, self._noise
+        else:
+            expected, variance = self.rate + gained, self._variance + ticks * self._more
+            square = (reading - expected) ** 2
+            variance = np.where(square > IMPACT * (variance + self._noise), square - self._noise, variance)
+            gain = variance / (variance + self._noise)
+            self.rate[:], self._variance[:] = expected + gain * (reading - expected), gain * self._noise

@@ -73,7 +73,7 @@ def test_no_reading_tells_the_heading_or_the_place():
     def weighed(direction):
         filter_ = InvariantFilter(somewhere(np.random.default_rng(3)), NOISE, GROUND, PERIOD)
         base = np.diag(np.full(FIXED + JOINTS, 1e-6))
-        filter_.P = base + np.outer(direction, direction)
+        filter_.P[:] = base + np.outer(direction, direction)
         filter_.weigh(J)
         return filter_.P, filter_._gain
 

@@ -5,7 +5,7 @@ import pinocchio as pin
 import pytest
 
 from surefoot.native.library import library
-from surefoot.wbc.estimation.compiled import BaseKernel
+from surefoot.wbc.estimation.compiled import StateKernel
 from surefoot.wbc.estimation.kinematics import ImuMount, SensedBody
 from surefoot.wbc.estimation.stand import Stand
 
@@ -161,14 +161,23 @@ def test_the_compiled_base_is_where_it_has_come_to(robot, mount, turned):
     q[3:7] = pin.Quaternion(pin.exp3(turned * np.array([0.6, 0.0, 0.8]))).coeffs()
     pose, motion = imu(robot, mount, q, v)
     bias, gained, late = 0.1 * rng.normal(size=3), rng.normal(size=6), 0.006
+    offsets = 1e-3 * rng.normal(size=len(body.chain))
     columns = np.vstack((pose.rotation @ motion.linear, pose.translation, np.zeros((2, 3))))
-    stand = Stand(pose.rotation.copy(), columns, np.zeros((2, 3, 3)), bias, np.zeros(3), np.zeros(1))
-    now = BaseKernel(kernels, stand, *body.mount)
+    stand = Stand(pose.rotation.copy(), columns, np.zeros((2, 3, 3)), bias, np.zeros(3), offsets)
+    joints, speeds = q[7:].copy(), v[6:]
+    joints[body.chain] += offsets
+    limits = 2.0 * float(np.linalg.norm(q[:7])), 2.0 * float(np.linalg.norm(v))
+    now = StateKernel(kernels, stand, body.mount, body.chain, len(joints), motion.angular + bias, limits)
     for given, way in ((None, np.zeros(6)), (gained, late * (v[:6] + 0.5 * gained))):
-        place, velocity = now(motion.angular + bias, given, late)
+        state = now(joints, speeds, given, late)
         base = pin.XYZQUATToSE3(q[:7])
         half = base.rotation @ pin.exp3(0.5 * way[3:])
-        found = pin.XYZQUATToSE3(place)
+        found = pin.XYZQUATToSE3(state.q[:7])
         np.testing.assert_allclose(found.translation, base.translation + half @ way[:3], atol=1e-12)
         np.testing.assert_allclose(found.rotation, base.rotation @ pin.exp3(way[3:]), atol=1e-12)
-        np.testing.assert_allclose(velocity, v[:6] + (0.0 if given is None else gained), atol=1e-12)
+        np.testing.assert_allclose(state.v[:6], v[:6] + (0.0 if given is None else gained), atol=1e-12)
+        np.testing.assert_allclose(state.q[7:], q[7:], atol=1e-15)
+        np.testing.assert_array_equal(state.v[6:], speeds)
+    assert now(joints, 3.0 * speeds, None, late) is None
+    columns[1, 0] = np.nan
+    assert now(joints, speeds, None, late) is None

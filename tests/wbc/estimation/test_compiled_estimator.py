@@ -1,0 +1,68 @@
+"""The estimator's kernels against plain Python, apart from any walk."""
+
+import numpy as np
+import pinocchio as pin
+import pytest
+
+from surefoot.native.library import VARIABLE, library
+from surefoot.readings import Reading
+from surefoot.wbc.estimation.contact import SoleContact
+from surefoot.wbc.estimation.doubt import Doubt
+from surefoot.wbc.estimation.invariant_filter import InvariantFilter
+from surefoot.wbc.estimation.kinematics import ImuMount, SensedBody
+from surefoot.wbc.estimation.parameters import ContactDetection, GroundNoise, SensorNoise
+from surefoot.wbc.estimation.stand import Stand
+
+pytestmark = pytest.mark.unit
+
+TURNED = tuple(map(tuple, pin.exp3(np.array([0.3, -0.2, 0.9])).tolist()))
+MOUNTS = [ImuMount(), ImuMount(None, (0.05, 0.01, -0.08), TURNED), ImuMount("torso", (0.02, 0.03, 0.2), TURNED)]
+
+
+@pytest.mark.parametrize("stance", [0, 1])
+@pytest.mark.parametrize("mount", MOUNTS)
+def test_kernels_see_soles_and_doubt_as_plain_python_does(robot, monkeypatch, mount, stance):
+    """Of an IMU wherever it is, with all joints away from where they stand, and any covariance."""
+    if library() is None:
+        pytest.skip("there are no compiled kernels")
+    rng, found = np.random.default_rng(stance), []
+    q = pin.integrate(robot.model, robot.standing, 0.3 * rng.normal(size=robot.nv))
+    spread = rng.normal(size=(27 + robot.nv, 27 + robot.nv))
+    rotations = [pin.exp3(rng.normal(size=3)) for _ in range(3)]
+    columns, contact = rng.normal(size=(4, 3)), SoleContact(ContactDetection(), SensorNoise(), 981.0, (0.1, 0.05), 2e-3)
+    load = np.zeros((2, 6))
+    load[stance, 2] = 900.0
+    contact.update(Reading(load, 0.0, True), (True, True), np.zeros(2))
+    for variable in ("", "0"):
+        monkeypatch.setenv(VARIABLE, variable)
+        body = SensedBody(robot.model, robot.frames.soles, mount)
+        m, still = len(body.chain), np.zeros(3)
+        stand = Stand(rotations[0].copy(), columns.copy(), np.stack(rotations[1:]), still, still, np.zeros(m))
+        filter_ = InvariantFilter(stand, SensorNoise(), GroundNoise(), 2e-3)
+        some = 1e-3 * spread[: len(filter_.P)]
+        filter_.P[:] = some @ some.T
+        body.update(q[7:], np.eye(3))
+        J = body.offset_jacobians()
+        doubt = Doubt(body, SensorNoise(), 0.01).deviation(filter_, contact, 0.02, J)
+        assert (body.compiled is None) == (filter_.compiled is None) == (variable == "0")
+        numbers = doubt.com, doubt.com_velocity, doubt.tilt, doubt.sole_height, (doubt.step_height, doubt.force)
+        found.append((body.position, body.rotation, J, np.concatenate((*numbers, (doubt.moment,)))))
+    for compiled, plain in zip(*found, strict=True):
+        np.testing.assert_allclose(compiled, plain, rtol=1e-10, atol=1e-13)
+
+
+def test_a_covariance_that_is_not_positive_is_weighed_by_plain_python(monkeypatch):
+    """What neither can factor, numpy weighs; the kernel then corrects with that gain."""
+    if library() is None:
+        pytest.skip("there are no compiled kernels")
+    found = []
+    for variable in ("", "0"):
+        monkeypatch.setenv(VARIABLE, variable)
+        rng = np.random.default_rng(1)
+        stand = Stand(np.eye(3), rng.normal(size=(4, 3)), np.stack((np.eye(3),) * 2), *np.zeros((3, 3)))
+        filter_ = InvariantFilter(stand, SensorNoise(), GroundNoise(), 2e-3)
+        filter_.P[:] = -np.eye(len(filter_.P))
+        filter_.weigh(rng.normal(size=(2, 6, 3)))
+        filter_.correct(stand.d - stand.p + 1e-6, stand.Z.copy(), (np.inf, np.inf))
+        found.append(np.concatenate((filter_.P.ravel(), stand.columns.ravel(), stand.offsets)))
+    np.testing.assert_allclose(*found, atol=1e-9)

@@ -31,9 +31,8 @@ class CompiledTerms:
     Attributes:
         kernels: the library.
         bound: the terms as other kernels take them.
-        q: where they read the configuration, shape (nq,) [m, -, rad].
-        v: where they read the velocity, shape (nv,) [m/s, rad/s].
-        update: fills all arrays of the state that q and v hold; returns whether that is finite.
+        update: fills all arrays of the state that the terms' q and v hold; returns whether that is finite.
+        place: fills those of `RobotTerms.place`, behind Pinocchio's computeCentroidalMomentum and ccrba.
     """
 
     def __init__(
@@ -45,13 +44,12 @@ class CompiledTerms:
         torso_motion: tuple[Array, Array, Array],
     ) -> None:
         self.kernels, self._data = kernels, terms.data
-        self.q, self.v = np.zeros(terms.model.nq), np.zeros(terms.model.nv)
         self._mass, self._force, self._moment = np.array([terms.mass]), np.zeros(3), np.zeros(3)
         self._to_sole = np.zeros((2, 6, 6))
         own = {
             name: getattr(terms, name)
             for name in (
-                "model_mass", "wrench_unit", "angular_momentum", "mass_matrix", "bias", "com", "com_velocity",
+                "q", "v", "model_mass", "wrench_unit", "angular_momentum", "mass_matrix", "bias", "com", "com_velocity",
                 "base_angular_velocity", "sole_position", "contact_position", "contact_rotation", "sole_jacobian",
                 "sole_velocity", "sole_bias", "sole_wrench_map", "torso_jacobian", "torso_velocity", "torso_bias",
             )
@@ -64,9 +62,8 @@ class CompiledTerms:
             mass=self._mass,
             load_force=self._force,
             load_moment=self._moment,
-            q=self.q,
-            v=self.v,
             joint_jacobian_columns=terms.data.J,
+            momentum=terms.data.h[0].vector,
             linear_momentum=terms.data.hg.linear,
             base_rotation_columns=terms.base_rotation,
             left=self._sole(terms, 0, soles[0]),
@@ -74,7 +71,7 @@ class CompiledTerms:
             torso=self._frame(terms, torso, *torso_motion),
             to_sole=self._to_sole,
         )
-        self.update = kernels.bind("terms_update", self.bound)
+        self.update, self.place = (kernels.bind(name, self.bound) for name in ("terms_update", "terms_place"))
         self._wrench, self._level, self._yaw, self._zmp = np.zeros((2, 6)), np.zeros((2, 3)), np.zeros(2), np.zeros(3)
         self._see = kernels.bind(
             "feet_see",

@@ -172,7 +172,7 @@ class WholeBody:
         self.measurement = measurement = self.plant.measure()
         self._readings = measurement if self._sensors is None else self._sensors.read(measurement, tick)
         if self._own_truth is not None:
-            self._own_truth.update(measurement.q, measurement.v)
+            self._own_truth.place(measurement.q, measurement.v)
         return self.plant.control_tick if self._says_tick else tick  # type: ignore[attr-defined]
 
     def control(self, tick: int, now: float) -> tuple[PlanSample, Spent]:

@@ -51,8 +51,9 @@ typedef struct {
     const double *q;
     const double *v;
     const double *joint_jacobian_columns;
+    const double *momentum;
     const double *linear_momentum;
-    const double *angular_momentum;
+    double *angular_momentum;
     const double *mass_matrix;
     const double *bias;
     const double *com;
@@ -76,6 +77,7 @@ typedef struct {
 } Terms;
 
 int64_t terms_update(const Terms *terms);
+void terms_place(const Terms *terms);
 void terms_unshift(const Terms *terms, int64_t foot);
 void terms_shift(const Terms *terms, int64_t foot, double forward, double pitch);
 

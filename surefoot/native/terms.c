@@ -17,15 +17,20 @@ static void dual_action(const double *R, const double *p, double *out, int strid
     }
 }
 
-/* Counterpart of pinocchio's updateFramePlacement, getFrameJacobian, getFrameVelocity and classical acceleration. */
-static void frame_update(const Terms *terms, const Frame *frame) {
-    double joint[9], R[9], centripetal[3];
+/* Counterpart of pinocchio's updateFramePlacement; R is its rotation. */
+static void frame_place(const Frame *frame, double *R) {
+    double joint[9];
     transpose(frame->joint_rotation_columns, joint);
     compose(joint, frame->placement_rotation, R);
     transpose(R, frame->rotation_columns);
     rotate(joint, frame->placement_position, frame->position);
     for (int i = 0; i < 3; i++) frame->position[i] += frame->joint_position[i];
+}
 
+/* Counterpart of pinocchio's updateFramePlacement, getFrameJacobian, getFrameVelocity and classical acceleration. */
+static void frame_update(const Terms *terms, const Frame *frame) {
+    double R[9], centripetal[3];
+    frame_place(frame, R);
     see_motion(frame->placement_rotation, frame->placement_position, frame->joint_velocity, frame->velocity);
     see_motion(frame->placement_rotation, frame->placement_position, frame->joint_acceleration, frame->bias);
     cross(frame->velocity + 3, frame->velocity, centripetal);
@@ -40,15 +45,20 @@ static void frame_update(const Terms *terms, const Frame *frame) {
     }
 }
 
+/* Where a sole is, of a frame that is in its place. */
+static void sole_place(const Sole *sole) {
+    transpose(sole->frame->rotation_columns, sole->rotation);
+    memcpy(sole->position, sole->frame->position, 3 * sizeof(double));
+    memcpy(sole->pose, sole->position, 3 * sizeof(double));
+    quaternion(sole->rotation, sole->pose + 3);
+}
+
 /* Counterpart of `RobotTerms._update_sole`. */
 static void sole_update(const Terms *terms, const Sole *sole) {
     frame_update(terms, sole->frame);
-    transpose(sole->frame->rotation_columns, sole->rotation);
-    memcpy(sole->position, sole->frame->position, 3 * sizeof(double));
+    sole_place(sole);
     memcpy(sole->contact_rotation, sole->rotation, 9 * sizeof(double));
     memcpy(sole->contact_position, sole->position, 3 * sizeof(double));
-    memcpy(sole->pose, sole->position, 3 * sizeof(double));
-    quaternion(sole->rotation, sole->pose + 3);
     dual_action(sole->rotation, sole->position, sole->wrench_map, 12);
 }
 
@@ -65,6 +75,22 @@ int64_t terms_update(const Terms *terms) {
     sole_update(terms, terms->right);
     frame_update(terms, terms->torso);
     return isfinite(sum) != 0;
+}
+
+/* Counterpart of `RobotTerms.place` behind computeCentroidalMomentum and ccrba: the momentum of the one about the CoM of
+ * the other, as computeAllTerms has both. */
+void terms_place(const Terms *terms) {
+    double turn[3], R[9];
+    cross(terms->momentum, terms->com, turn);
+    for (int i = 0; i < 3; i++) {
+        terms->angular_momentum[i] = terms->momentum[3 + i] + turn[i];
+        terms->com_velocity[i] = terms->momentum[i] / terms->model_mass;
+    }
+    frame_place(terms->left->frame, R);
+    frame_place(terms->right->frame, R);
+    frame_place(terms->torso, R);
+    sole_place(terms->left);
+    sole_place(terms->right);
 }
 
 /* Counterpart of `RobotTerms.unshift`. */

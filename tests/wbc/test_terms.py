@@ -102,6 +102,39 @@ def test_terms_tell_whether_their_state_is_finite(robot, state, monkeypatch, pla
     assert terms.is_finite
 
 
+PLACED = (
+    "q", "v", "com", "com_velocity", "angular_momentum", "base_rotation", "torso_rotation", "sole_position",
+    "sole_rotation", "sole_pose",
+)  # fmt: skip
+
+
+@pytest.mark.parametrize("switch", ["1", "0"])
+def test_a_place_is_that_of_an_update(robot, rng, monkeypatch, switch):
+    monkeypatch.setenv(VARIABLE, switch)
+    placed = RobotTerms(robot.model, robot.frames)
+    for _ in range(20):
+        state = robot.moved(rng, 0.5, 2.0)
+        placed.place(state.q, state.v)
+        whole = terms_at(robot, state.q, state.v)
+        for name in PLACED:
+            np.testing.assert_allclose(
+                getattr(placed, name), getattr(whole, name), rtol=1e-12, atol=1e-12, err_msg=name
+            )
+    if placed.compiled is not None:
+        assert not placed.sole_jacobian.any()
+
+
+def test_the_state_of_terms_is_their_own(robot, state):
+    """A record reads it where it lies, also of a state that is in other arrays at each tick."""
+    terms = terms_at(robot, state.q, state.v)
+    q, v = terms.q, terms.v
+    assert not np.shares_memory(q, state.q)
+    terms.update(state.q + 0.1, state.v + 0.1)
+    assert terms.q is q
+    assert terms.v is v
+    np.testing.assert_array_equal(q, state.q + 0.1)
+
+
 def test_an_unknown_frame_is_named(robot):
     with pytest.raises(ValueError, match="no frame 'left_sol'"):
         RobotTerms(robot.model, BodyFrames(("left_sol", "right_sole"), robot.frames.torso))

@@ -21,9 +21,12 @@ _THREE, _TWO = np.full(3, math.nan), np.full(2, math.nan)
 _UNKNOWN = Deviation(_THREE, _THREE, _TWO, _TWO, math.nan, math.nan, math.nan)
 """Of an estimator that does not say how sure it is."""
 
-_POSES = ("base_pose", "left_sole", "right_sole")
-_WRENCHES = ("wrench_left", "wrench_right")
+_TOLD = ("base_pose", "wrench_left", "wrench_right")
 _DEVIATIONS = ("com_deviation", "com_velocity_deviation", "tilt_deviation", "sole_height_deviation")
+_SOLES = ("left_sole", "right_sole")
+_SIZES = (7, 12, 10)
+"""Of pose, wrenches and deviations."""
+
 _LOAD = ("force_deviation", "moment_deviation")
 _ERRORS = ("com_error", "com_velocity_error", "tilt_error", "sole_height_error", "yaw_error", "place_error")
 _STATES = ("com", "com_velocity", "base_rotation", "true_com", "true_com_velocity", "true_base_rotation", "true_soles")
@@ -38,10 +41,13 @@ class EstimationRecorder:
         """Open its channels."""
         self._readings = ReadingsRecorder(writer, sizes)
         channel = writer.channel(channels.estimation())
-        vectors = ((channel, (*_POSES, *_WRENCHES, *_DEVIATIONS)),)
+        vectors = ((channel, (*_TOLD, *_DEVIATIONS, *_SOLES)),)
         numbers = ((channel, ("contact", *_LOAD)),)
         derived = ((channel, _ERRORS),)
         self._row = writer.rows(RowLayout(vectors, numbers, derived, _errors, _MORE, ("stance",)))
+        # What comes in other arrays at each tick is copied into these; those of the terms are always the same.
+        self._given = [np.zeros(size) for size in _SIZES]
+        self._seen: tuple[RobotTerms | None, RobotTerms | None] = (None, None)
         self._writer = writer
         self._told: Mapping[str, Array] | None = None
 
@@ -62,14 +68,20 @@ class EstimationRecorder:
         """
         self._readings.tick(time_ns, readings)
         sure, told = estimate.deviation or _UNKNOWN, estimate.contact or (False, False)
-        self._row.append(
-            time_ns,
-            (*told, sure.force, sure.moment, int(forces[1] > forces[0])),
-            *(terms.q[:7], terms.sole_pose.ravel(), wrench.ravel()),
-            *(sure.com, sure.com_velocity, sure.tilt, sure.sole_height),
-            *(terms.com, terms.com_velocity, terms.base_rotation.ravel()),
-            *(truth.com, truth.com_velocity, truth.base_rotation.ravel(), truth.sole_pose.ravel()),
-        )
+        pose, felt, deviations = self._given
+        pose[:], felt[:] = terms.q[:7], wrench.ravel()
+        np.concatenate((sure.com, sure.com_velocity, sure.tilt, sure.sole_height), out=deviations)
+        numbers = (*told, sure.force, sure.moment, forces.item(1) > forces.item(0))
+        if self._seen == (terms, truth):
+            self._row.again(time_ns, numbers)
+        else:
+            self._seen = terms, truth
+            # Rotations lie in memory by columns.
+            self._row.append(
+                time_ns, numbers, pose, felt, deviations, terms.sole_pose,
+                terms.com, terms.com_velocity, terms.base_rotation.T,
+                truth.com, truth.com_velocity, truth.base_rotation.T, truth.sole_pose,
+            )  # fmt: skip
         if estimate.channels:
             self._tell(time_ns, estimate.channels)
 
@@ -92,7 +104,7 @@ def _errors(rows: Rows) -> dict[tuple[str, str], Array]:
     """
     topic = "/estimation"
     n, stance = len(rows["stance"]), rows["stance"][:, 0].astype(int)
-    R, true = rows["base_rotation"].reshape(n, 3, 3), rows["true_base_rotation"].reshape(n, 3, 3)
+    R, true = (np.swapaxes(rows[name].reshape(n, 3, 3), 1, 2) for name in ("base_rotation", "true_base_rotation"))
     soles = rows.span((topic, "left_sole"), (topic, "right_sole")).reshape(n, 2, 7)[:, :, :3]
     true_soles = rows["true_soles"].reshape(n, 2, 7)[:, :, :3]
     yaw = np.arctan2(R[:, 1, 0], R[:, 0, 0]) - np.arctan2(true[:, 1, 0], true[:, 0, 0])

@@ -24,12 +24,14 @@ class ReadingsRecorder:
 
     def tick(self, time_ns: int, readings: Readings) -> None:
         """The readings of a control tick [ns]; what no sensor says is NaN."""
-        r, feet, speeds = readings, readings.wrench, readings.joint_velocity
-        joint, imu = r.joint_position, r.specific_force
-        age, fresh = (np.nan, False) if feet is None else (feet.age, feet.fresh)
-        numbers = (joint.age, imu.age, age, joint.fresh, imu.fresh, fresh)
+        joint, imu = readings.joint_position, readings.specific_force
+        feet, speeds = readings.wrench, readings.joint_velocity
+        if feet is None:
+            age, fresh, wrench = np.nan, False, self._no_wrench
+        else:
+            age, fresh, wrench = feet.age, feet.fresh, feet.values.ravel()
         self._row.append(
-            time_ns, numbers, joint.values, self._no_velocity if speeds is None else speeds.values,
-            r.joint_torque.values, *(getattr(r, name).values for name in _IMU),
-            self._no_wrench if feet is None else feet.values.ravel(),
+            time_ns, (joint.age, imu.age, age, joint.fresh, imu.fresh, fresh),
+            joint.values, self._no_velocity if speeds is None else speeds.values, readings.joint_torque.values,
+            readings.angular_velocity.values, readings.mean_angular_velocity.values, imu.values, wrench,
         )  # fmt: skip

@@ -26,7 +26,7 @@ class ImuMotion:
 
 
 @dataclass(frozen=True, slots=True)
-class _Link:
+class Link:
     """A body of the chain: its axes and origin in its parent at zero angle, and the joint that turns it.
 
     Attributes:
@@ -61,23 +61,28 @@ class ImuChain:
         place: of the IMU.
         turn: rotation vector by which it is mounted wrongly, in its own axes, shape (3,) [rad].
         shift: by which it is away from its place, in the axes of its body, shape (3,) [m].
+
+    Attributes:
+        links: the bodies, from that above the base on.
+        mount: orientation of the IMU in the last body, shape (3, 3).
+        lever: cross product matrix of its place there, shape (3, 3) [m].
     """
 
     def __init__(self, model: mujoco.MjModel, base: int, place: ImuPlace, turn: Array, shift: Array) -> None:
         body = base if place.body is None else model.body(place.body).id
-        links: list[_Link] = []
+        links: list[Link] = []
         while body != base:
             links.append(_link(model, body))
             body = int(model.body_parentid[body])
-        self._links = tuple(reversed(links))
-        self._mount = rotation_of(np.array(place.quaternion)) @ turned(turn)
-        self._lever = skew(np.array(place.position) + shift)
+        self.links = tuple(reversed(links))
+        self.mount = rotation_of(np.array(place.quaternion)) @ turned(turn)
+        self.lever = skew(np.array(place.position) + shift)
 
     def __call__(self, q: Array, v: Array) -> ImuMotion:
         """Its motion in a state of Pinocchio's convention, shapes (7 + nj,) and (6 + nj,)."""
         x, y, z, w = q[3:7].tolist()
         R, velocity, rate = _matrix(w, x, y, z), v[:3], v[3:6]
-        for link in self._links:
+        for link in self.links:
             E, spin = link.axes(float(q[7 + link.joint])), link.axis * float(v[6 + link.joint])
             lever = link.lever
             if link.point is not None:
@@ -85,17 +90,17 @@ class ImuChain:
             velocity, rate, R = (velocity - lever @ rate) @ E, rate @ E + spin, R @ E
             if link.point is not None:
                 velocity = velocity + skew(link.point) @ spin
-        velocity = R @ (velocity - self._lever @ rate)
-        return ImuMotion(R @ self._mount, velocity, rate @ self._mount)
+        velocity = R @ (velocity - self.lever @ rate)
+        return ImuMotion(R @ self.mount, velocity, rate @ self.mount)
 
 
 _UNIT = np.eye(3)
 
 
-def _link(model: mujoco.MjModel, body: int) -> _Link:
+def _link(model: mujoco.MjModel, body: int) -> Link:
     joint = int(model.body_jntadr[body])
     twist, point = skew(np.array(model.jnt_axis[joint])), np.array(model.jnt_pos[joint])
-    return _Link(
+    return Link(
         rotation=rotation_of(model.body_quat[body]),
         lever=skew(np.array(model.body_pos[body])),
         joint=joint - 1,  # joint 0 is the floating base
@@ -131,13 +136,13 @@ def turn_between(before: Array, after: Array) -> Array:
     R = before.T @ after
     vector = 0.5 * np.array([R[2, 1] - R[1, 2], R[0, 2] - R[2, 0], R[1, 0] - R[0, 1]])
     sine = math.sqrt(float(vector @ vector))
-    if sine < _SMALL:
+    if sine < SMALL:
         return vector
     cosine = 0.5 * (float(R[0, 0] + R[1, 1] + R[2, 2]) - 1.0)
     return vector * (math.atan2(sine, cosine) / sine)
 
 
-_SMALL = 1e-9
+SMALL = 1e-9
 """Sine of an angle below which it is the angle itself."""
 
 

@@ -40,6 +40,18 @@ static inline void transpose(const double *R, double *out) {
         for (int j = 0; j < 3; j++) out[3 * j + i] = R[3 * i + j];
 }
 
+/* a x + b y + c z, rounded once a term, as the library that numpy asks has it on processors that fuse. */
+static inline double fused_sum(double a, double x, double b, double y, double c, double z) {
+    return fma(c, z, fma(b, y, a * x));
+}
+
+/* A B, likewise. */
+static inline void fused_compose(const double *A, const double *B, double *out) {
+    for (int i = 0; i < 3; i++)
+        for (int j = 0; j < 3; j++)
+            out[3 * i + j] = fused_sum(A[3 * i], B[j], A[3 * i + 1], B[3 + j], A[3 * i + 2], B[6 + j]);
+}
+
 /* A motion (linear, angular) seen from a frame with rotation R and origin p. */
 static inline void see_motion(const double *R, const double *p, const double *motion, double *out) {
     double lever[3], linear[3];

@@ -394,6 +394,95 @@ typedef struct {
 
 void sensors_read(const Sensors *sensors, int64_t is_pushed);
 
+/* Counterpart of `sim.readings.Noise`: rows of so many numbers, of which each tick takes one; none of silent noise. */
+typedef struct {
+    int64_t size;
+    int64_t silent;
+    const double *drawn;
+} Noise;
+
+/* Counterpart of `sim.readings.Drift`. */
+typedef struct {
+    const Noise *steps;
+    double *value;
+} Drift;
+
+/* Rows of noise and of drifts' steps that this tick takes; that of drifts is negative at the first, which has none. */
+typedef struct {
+    int64_t noise;
+    int64_t drift;
+} DrawnRows;
+
+/* Counterpart of `sim.readings.Encoders`, whose joints say a position, a torque and perhaps a velocity. */
+typedef struct {
+    const DrawnRows *drawn;
+    int64_t joints;
+    int64_t say_velocity;
+    double step;
+    const double *offset;
+    const Noise *noise;
+    const Noise *velocity_noise;
+    const Noise *torque_noise;
+    const double *true_position;
+    const double *true_velocity;
+    const double *true_torque;
+    double *position;
+    double *velocity;
+    double *torque;
+} Encoders;
+
+void encoders_sample(const Encoders *encoders);
+
+/* Counterpart of `sim.imu_motion.ImuChain`; `place` is its lever, `beside` whether a joint is off its body's origin. */
+typedef struct {
+    int64_t links;
+    const int64_t *joint;
+    const int64_t *beside;
+    const double *rotation;
+    const double *lever;
+    const double *axis;
+    const double *twist;
+    const double *square;
+    const double *point;
+    const double *mount;
+    const double *place;
+    const double *q;
+    const double *v;
+} ImuChain;
+
+/* Counterpart of `sim.readings.Imu`; rotation and velocity are those of the tick before. */
+typedef struct {
+    const DrawnRows *drawn;
+    const ImuChain *chain;
+    double period;
+    double small;
+    const double *gravity;
+    double *rotation;
+    double *velocity;
+    const Drift *gyro_bias;
+    const Noise *gyro_noise;
+    const Drift *force_bias;
+    const Noise *force_noise;
+    double most_rate;
+    double most_force;
+    double *rate;
+    double *mean_rate;
+    double *force;
+} Imu;
+
+void imu_sample(const Imu *imu);
+
+/* Counterpart of `sim.readings.Feet`. */
+typedef struct {
+    const DrawnRows *drawn;
+    const Drift *bias;
+    const Noise *noise;
+    const double *true_wrench;
+    double *wrench;
+} Feet;
+
+void feet_sample(const Feet *feet);
+
 /* Counterpart of `planner.plan.PlanSampler`: a plan, its interval that was entered last, and two points within that. */
 typedef struct {
     double begin;

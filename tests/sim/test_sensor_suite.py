@@ -9,9 +9,10 @@ import pytest
 
 from surefoot.models.registry import describe
 from surefoot.models.types import ImuPlace, RobotOptions
+from surefoot.native.library import VARIABLE
 from surefoot.planner.ground.terrain import flat
 from surefoot.sim.imu_motion import ImuChain, rotation_of, turned
-from surefoot.sim.readings import SensorSuite
+from surefoot.sim.readings import BLOCK, SensorSuite
 from surefoot.sim.sensor_errors import CHEAP, GOOD, PERFECT, PRESETS, Delivery, SensorErrors
 from surefoot.sim.world import World
 from surefoot.similarity import GRAVITY, Similarity
@@ -72,6 +73,29 @@ def test_readings_are_not_the_buffers_of_the_world(world, standing_configuration
     suite.read(world.measure(), 1)
     for name, kept in before.items():
         np.testing.assert_array_equal(getattr(found, name).values, kept)
+
+
+@pytest.mark.parametrize("switch", ["1", "0"])
+@pytest.mark.parametrize(
+    "how", [Delivery(), Delivery(latency=0.002), Delivery(latency=0.004, jitter=0.006, dropout=0.2)]
+)
+def test_what_was_read_is_never_written_to_again(world, monkeypatch, switch, how):
+    """Estimators keep readings, and lines hold samples that are late: longer than noise is drawn for."""
+    monkeypatch.setenv(VARIABLE, switch)
+    rng, truth, kept = np.random.default_rng(0), at_rest(), []
+    suite = SensorSuite(world, replace(CHEAP, encoder_velocity=True, joints=how, imu=how, feet=how), RATE, 0)
+    for tick in range(3 * BLOCK):
+        for name in ("joint_position", "joint_velocity", "joint_torque", "wrench"):
+            array = getattr(truth, name)
+            array[:] = rng.normal(size=array.shape)
+        found = suite.read(truth, tick)
+        kept.append([(reading.values, reading.values.copy()) for reading in (getattr(found, name) for name in SENSED)])
+    for one in kept:
+        for now, then in one:
+            np.testing.assert_array_equal(now, then)
+    apart = [values for one in kept[::5] for values, _ in one]
+    if how == Delivery():
+        assert not any(np.shares_memory(a, b) for n, a in enumerate(apart) for b in apart[:n])
 
 
 PLACES = {
@@ -249,6 +273,18 @@ def test_latency_is_the_age_of_what_is_said(world, latency, ticks):
         np.testing.assert_array_equal(one.wrench.values, tick - ticks)
         assert one.wrench.fresh or tick == ticks
         assert (one.joint_position.age, one.specific_force.age) == (0.0, 0.0)
+
+
+@pytest.mark.parametrize("how", [Delivery(), Delivery(latency=0.0035)])
+def test_groups_that_come_alike_come_as_each_alone(world, how):
+    """They go one way then."""
+    one = readings(world, replace(GOOD, joints=how, imu=how, feet=how), 40, truth=ramp)
+    for group, name in (("joints", "joint_position"), ("imu", "angular_velocity"), ("feet", "wrench")):
+        others = {other: Delivery(latency=0.01) for other in ("joints", "imu", "feet")}
+        alone = readings(world, replace(GOOD, **{**others, group: how}), 40, truth=ramp)
+        np.testing.assert_array_equal(values(one, name), values(alone, name))
+        for a, b in zip(one, alone, strict=True):
+            assert (getattr(a, name).age, getattr(a, name).fresh) == (getattr(b, name).age, getattr(b, name).fresh)
 
 
 def test_with_jitter_ages_vary_and_time_never_goes_back(world):

@@ -1,10 +1,11 @@
 """Writes what an estimator makes of the sensors into the log: its estimate, how sure it is, and by what it is wrong."""
 
 import math
-from collections.abc import Mapping
+from collections.abc import Callable, Mapping
 
 import numpy as np
 
+from surefoot.native.library import Library
 from surefoot.planner.geometry import yaw_rotations
 from surefoot.readings import Readings
 from surefoot.scenarios.log import LogWriter
@@ -24,9 +25,6 @@ _UNKNOWN = Deviation(_THREE, _THREE, _TWO, _TWO, math.nan, math.nan, math.nan)
 _TOLD = ("base_pose", "wrench_left", "wrench_right")
 _DEVIATIONS = ("com_deviation", "com_velocity_deviation", "tilt_deviation", "sole_height_deviation")
 _SOLES = ("left_sole", "right_sole")
-_SIZES = (7, 12, 10)
-"""Of pose, wrenches and deviations."""
-
 _LOAD = ("force_deviation", "moment_deviation")
 _ERRORS = ("com_error", "com_velocity_error", "tilt_error", "sole_height_error", "yaw_error", "place_error")
 _STATES = ("com", "com_velocity", "base_rotation", "true_com", "true_com_velocity", "true_base_rotation", "true_soles")
@@ -44,12 +42,14 @@ class EstimationRecorder:
         vectors = ((channel, (*_TOLD, *_DEVIATIONS, *_SOLES)),)
         numbers = ((channel, ("contact", *_LOAD)),)
         derived = ((channel, _ERRORS),)
-        self._row = writer.rows(RowLayout(vectors, numbers, derived, _errors, _MORE, ("stance",)))
-        # What comes in other arrays at each tick is copied into these; those of the terms are always the same.
-        self._given = [np.zeros(size) for size in _SIZES]
+        self._row = writer.rows(
+            RowLayout(vectors, numbers, derived, _errors, _MORE, ("stance",), _compiled, standing=True)
+        )
+        # Wrenches and deviations come in other arrays at each tick, and are copied into these.
+        self._given = np.zeros((2, 6)), np.zeros(10)
         self._seen: tuple[RobotTerms | None, RobotTerms | None] = (None, None)
         self._writer = writer
-        self._told: Mapping[str, Array] | None = None
+        self._told: tuple[str, ...] | None = None
 
     def tick(
         self, time_ns: int, readings: Readings, estimate: Estimate, wrench: Array, terms: RobotTerms,
@@ -68,8 +68,8 @@ class EstimationRecorder:
         """
         self._readings.tick(time_ns, readings)
         sure, told = estimate.deviation or _UNKNOWN, estimate.contact or (False, False)
-        pose, felt, deviations = self._given
-        pose[:], felt[:] = terms.q[:7], wrench.ravel()
+        felt, deviations = self._given
+        felt[:] = wrench
         np.concatenate((sure.com, sure.com_velocity, sure.tilt, sure.sole_height), out=deviations)
         numbers = (*told, sure.force, sure.moment, forces.item(1) > forces.item(0))
         if self._seen == (terms, truth):
@@ -78,7 +78,7 @@ class EstimationRecorder:
             self._seen = terms, truth
             # Rotations lie in memory by columns.
             self._row.append(
-                time_ns, numbers, pose, felt, deviations, terms.sole_pose,
+                time_ns, numbers, terms.q[:7], felt, deviations, terms.sole_pose,
                 terms.com, terms.com_velocity, terms.base_rotation.T,
                 truth.com, truth.com_velocity, truth.base_rotation.T, truth.sole_pose,
             )  # fmt: skip
@@ -88,10 +88,10 @@ class EstimationRecorder:
     def _tell(self, time_ns: int, told: Mapping[str, Array]) -> None:
         """Log what else an estimator tells; what it tells at the first tick is what it tells."""
         if self._told is None:
-            self._told = told
+            self._told = tuple(told)
             fields = tuple(FieldSpec(name, np.shape(value), "", "", "") for name, value in told.items())
             self._more = self._writer.channel(ChannelSpec("/estimator", "Estimator", fields, _OWN))
-        self._more.append(time_ns, *(told[name] for name in self._told))
+        self._more.append(time_ns, *[told[name] for name in self._told])
 
 
 _OWN = "What else the estimator tells, by names of its own, every control tick."
@@ -122,3 +122,15 @@ def _errors(rows: Rows) -> dict[tuple[str, str], Array]:
         (topic, "yaw_error"): yaw,
         (topic, "place_error"): place,
     }
+
+
+def _compiled(kernels: Library, part: Callable[..., Array]) -> Callable[[], None]:
+    """The kernel that does what `_errors` does."""
+    topic = "/estimation"
+    row = kernels.fill(
+        "EstimationRow",
+        **{name: part(name, name) for name in ("stance", *_STATES)},
+        soles=part((topic, "left_sole"), (topic, "right_sole")),
+        **{name: part((topic, name), (topic, name)) for name in _ERRORS},
+    )
+    return kernels.bind("estimation_row_derive", row)

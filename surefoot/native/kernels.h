@@ -593,6 +593,27 @@ typedef struct {
 
 void body_row_derive(const BodyRow *row);
 
+/* Counterpart of `scenarios.record.estimation._errors`, for one row; rotations lie by columns, soles are poses. */
+typedef struct {
+    const double *stance;
+    const double *com;
+    const double *com_velocity;
+    const double *base_rotation;
+    const double *soles;
+    const double *true_com;
+    const double *true_com_velocity;
+    const double *true_base_rotation;
+    const double *true_soles;
+    double *com_error;
+    double *com_velocity_error;
+    double *tilt_error;
+    double *sole_height_error;
+    double *yaw_error;
+    double *place_error;
+} EstimationRow;
+
+void estimation_row_derive(const EstimationRow *row);
+
 /* Counterpart of the end of a span in `wbc.external.LoadObserver`. */
 typedef struct {
     const LoadSums *sums;

@@ -104,3 +104,29 @@ void body_row_derive(const BodyRow *row) {
     }
     row->limit_ratio[0] = most;
 }
+
+void estimation_row_derive(const EstimationRow *row) {
+    static const double pi = 3.14159265358979323846;
+    const double *R = row->base_rotation, *true_R = row->true_base_rotation;
+    const double *sole = row->soles + (row->stance[0] > 0.0 ? 7 : 0);
+    const double *true_sole = row->true_soles + (sole - row->soles);
+    const double off = fmod(atan2(R[1], R[0]) - atan2(true_R[1], true_R[0]) + pi, 2.0 * pi);
+    const double yaw = (off < 0.0 ? off + 2.0 * pi : off) - pi, c = cos(-yaw), s = sin(-yaw);
+    const double back[9] = {c, -s, 0.0, s, c, 0.0, 0.0, 0.0, 1.0};
+    double turned[9], seen[9], tilt[9], from_foot[3];
+    for (int i = 0; i < 3; i++) from_foot[i] = row->com[i] - sole[i];
+    rotate(back, from_foot, row->com_error);
+    rotate(back, row->com_velocity, row->com_velocity_error);
+    for (int i = 0; i < 3; i++) {
+        row->com_error[i] -= row->true_com[i] - true_sole[i];
+        row->com_velocity_error[i] -= row->true_com_velocity[i];
+        row->place_error[i] = sole[i] - true_sole[i];
+    }
+    transpose(R, turned);
+    fused_compose(back, turned, seen);
+    fused_compose(seen, true_R, tilt); /* in memory, what lies by columns is its transpose by rows */
+    row->tilt_error[0] = 0.5 * (tilt[7] - tilt[5]);
+    row->tilt_error[1] = 0.5 * (tilt[2] - tilt[6]);
+    row->yaw_error[0] = yaw;
+    for (int k = 0; k < 2; k++) row->sole_height_error[k] = row->soles[7 * k + 2] - row->true_soles[7 * k + 2];
+}

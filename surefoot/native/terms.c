@@ -77,8 +77,8 @@ int64_t terms_update(const Terms *terms) {
     return isfinite(sum) != 0;
 }
 
-/* Counterpart of `RobotTerms.place` behind computeCentroidalMomentum and ccrba: the momentum of the one about the CoM of
- * the other, as computeAllTerms has both. */
+/* Counterpart of `RobotTerms.place` behind computeCentroidalMomentum and ccrba: the momentum of the one about the CoM
+ * of the other, as computeAllTerms has both. */
 void terms_place(const Terms *terms) {
     double turn[3], R[9];
     cross(terms->momentum, terms->com, turn);

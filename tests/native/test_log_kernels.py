@@ -8,6 +8,7 @@ from surefoot.native.library import VARIABLE
 from surefoot.scenarios.log import LogWriter, read
 from surefoot.scenarios.log.rows import CompiledRows, RowWriter
 from surefoot.scenarios.record.body import Recorder
+from surefoot.scenarios.record.estimation import EstimationRecorder
 from surefoot.scenarios.record.walk import WalkRecorder
 
 pytestmark = pytest.mark.unit
@@ -31,13 +32,19 @@ class Both:
 
 @pytest.mark.parametrize(
     ("name", "seconds", "overrides"),
-    [("walk-fast", 3.0, {}), ("walk", 1.6, {"pushes": PUSH}), ("walk", 1.0, {"robot": "talos"})],
-    ids=["rolling", "pushed", "talos"],
+    [
+        ("walk-fast", 3.0, {}),
+        ("walk", 1.6, {"pushes": PUSH}),
+        ("walk", 1.0, {"robot": "talos"}),
+        ("walk", 1.2, {"sensing.preset": "cheap"}),
+    ],
+    ids=["rolling", "pushed", "talos", "sensed"],
 )
 def test_messages_are_those_of_plain_python(kernels, tmp_path, monkeypatch, name, seconds, overrides):
     made = []
     monkeypatch.setattr(Recorder, "__init__", _noted(Recorder.__init__, made))
     monkeypatch.setattr(WalkRecorder, "__init__", _noted(WalkRecorder.__init__, made))
+    monkeypatch.setattr(EstimationRecorder, "__init__", _noted(EstimationRecorder.__init__, made))
     with surefoot.Simulation(surefoot.load(name, overrides)) as simulation:
         loop = simulation._loop
         with LogWriter(tmp_path / "compiled.mcap", {}) as one, LogWriter(tmp_path / "plain.mcap", {}) as other:
@@ -49,7 +56,7 @@ def test_messages_are_those_of_plain_python(kernels, tmp_path, monkeypatch, name
             assert {type(rows) for rows in one._rows} == {CompiledRows}
             assert {type(rows) for rows in other._rows} == {RowWriter}
             for (kind, _), *pair in zip(kinds, compiled, plain, strict=True):
-                owners = {loop.walker: "_recorder"}
+                owners = {loop.walker: "_sensed" if kind is EstimationRecorder else "_recorder"}
                 if kind is WalkRecorder:
                     owners = {loop: "_recorder", loop.planning: "recorder"}
                 for owner, attribute in owners.items():

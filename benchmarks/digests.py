@@ -4,7 +4,8 @@
     python benchmarks/digests.py --against before.json        # on the new; exits 1 where a walk differs
 
 A digest covers time, CoM, its velocity, ZMP, the fall and the plan's CoM and ZMP reference of each tenth control tick.
-Physics amplifies what differs between them. Walks that are refused count with their refusal.
+Physics amplifies what differs between them. Walks that are refused count with their refusal. All have the true state,
+so that code before the sensors can be held against as well.
 """
 
 import argparse
@@ -90,7 +91,7 @@ def digest(walk: tuple[str, Overrides]) -> tuple[str, str]:
     name, overrides = walk
     label = f"{name} {json.dumps(overrides, sort_keys=True)}"
     try:
-        simulation = surefoot.Simulation(surefoot.load(name, overrides))
+        simulation = surefoot.Simulation(surefoot.load(name, {"sensing.source": "truth", **overrides}))
     except (surefoot.ScenarioError, surefoot.SetupError) as error:
         return label, f"refused: {error}"
     found, ticks = hashlib.sha256(), 0

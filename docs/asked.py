@@ -137,26 +137,31 @@ def drawn_table() -> str:
 
 
 def bounds_table() -> str:
-    """Bounds of the ZMP that the campaign `sensors` holds with good sensors, where the catalogue asks for more."""
-    campaign = _campaign("sensors")
+    """Bounds of the catalogue, whose scenarios walk from good sensors, that the campaign `truth` holds more tightly."""
+    metrics = {"zmp_inside_fraction": "least", "zmp_error_rms": "most", "com_error_rms": "most"}
     rows = []
-    for name, keys in campaign["grid"]["walk"].items():
+    for name, keys in _campaign("truth")["grid"]["walk"].items():
         path = ROOT / "scenarios" / "catalogue" / f"{keys['scenario']}.yaml"
         own = yaml.safe_load(path.read_text(encoding="utf-8"))["criteria"]
-        inside, error = (_bound(keys, own, metric) for metric in ("zmp_inside_fraction", "zmp_error_rms"))
-        if inside or error:
-            rows.append([f"`{name}`", inside, error])
-    return table(("walk", "`zmp_inside_fraction`, at least", "`zmp_error_rms`, at most"), rows)
+        bounds = [_bound(keys, own, metric) for metric in metrics]
+        if any(bounds):
+            rows.append([f"`{name}`", *bounds])
+    return table(("walk", *(f"`{metric}`, at {end}" for metric, end in metrics.items())), rows)
 
 
 def _bound(keys: dict[str, Any], own: dict[str, Any], metric: str) -> str:
-    """A bound in place of another one, as it is read; empty where a campaign leaves it."""
+    """A bound with that of the truth, as they are read; empty where they are one."""
     given = keys.get(f"criteria.{metric}")
     if given is None:
         return ""
     (end,) = given
     scale, unit = (1e3, " mm") if metric.endswith("rms") else (1e2, " %")
-    return f"{scale * given[end]:g}{unit} for {scale * own[metric][end]:g}"
+    wide, narrow = (", ".join(f"{scale * one:g}" for one in _each(bound[end])) for bound in (own[metric], given))
+    return f"{wide}{unit} for {narrow}"
+
+
+def _each(bound: float | list[float]) -> list[float]:
+    return bound if isinstance(bound, list) else [bound]
 
 
 def commanded_table() -> str:

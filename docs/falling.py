@@ -23,7 +23,8 @@ from surefoot.scenarios.record.foxglove.views import events
 
 PAGE = Path(__file__).with_suffix(".md")
 PUSH = {"step": 4, "phase": "single", "fraction": 0.5, "duration": 0.1, "impulse": 0.4}
-SETTINGS: dict[str, Any] = {"planner.step_adaptation": "none", "pushes": [PUSH]}
+TRUTH: dict[str, Any] = {"sensing.source": "truth", "pushes": [PUSH]}
+SETTINGS = {"planner.step_adaptation": "none", **TRUTH}
 """Of the walk that falls; the other one is without the first of them."""
 
 _PLACE = re.compile(r"(?s)(<!-- fall: ([\w-]+) -->).*?(<!-- end -->)")
@@ -41,7 +42,7 @@ class Pair:
 
 def pair(folder: Path) -> Pair:
     """Run both walks."""
-    walks = (surefoot.load("walk", settings) for settings in (SETTINGS, {"pushes": [PUSH]}))
+    walks = (surefoot.load("walk", settings) for settings in (SETTINGS, TRUTH))
     fell, walked = (surefoot.read(surefoot.run(walk, out=folder).log) for walk in walks)
     return Pair(fell, inspection.inspect(fell), walked, inspection.inspect(walked))
 

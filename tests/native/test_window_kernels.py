@@ -21,12 +21,13 @@ pytestmark = pytest.mark.unit
 NEAR = 1e-11
 """Largest relative difference of what a plan sees and decides from."""
 
-SOON = {"gait.initial_stand": 0.1}
+TRUTH = {"sensing.source": "truth"}
+SOON = {**TRUTH, "gait.initial_stand": 0.1}
 PUSH = {"step": 3, "phase": "single", "fraction": 0.2, "duration": 0.1}
 ASIDE = {**SOON, "pushes": [{**PUSH, "force": [0, -260, 0]}]}
 HARD = {**SOON, "pushes": [{**PUSH, "force": [0, -320, 0]}]}
-STOOD = {"pushes": [{"time": 0.2, "duration": 0.1, "force": [0, 320, 0]}]}
-FORCED = {**SOON, "sensing.source": "truth", "pushes": [{"time": 0.6, "duration": 0.5, "force": [60.0, 40.0, 0.0]}]}
+STOOD = {**TRUTH, "pushes": [{"time": 0.2, "duration": 0.1, "force": [0, 320, 0]}]}
+FORCED = {**SOON, "pushes": [{"time": 0.6, "duration": 0.5, "force": [60.0, 40.0, 0.0]}]}
 WALKS = {
     "walk": ("walk", 2.5, SOON, {"steady"}),
     "aside": ("walk", 2.9, ASIDE, {"steady", "scaled", "adapted", "bent", "height in transition"}),

@@ -60,7 +60,7 @@ def test_a_lasting_force_is_found_within_a_tenth_and_walked_with(tmp_path):
 )
 def test_a_lasting_force_is_found_and_walked_with_from_sensors(direction, phase, seed, tmp_path):
     """Within a tenth in the median; what is found shakes with the noise of momentum and wrenches."""
-    result = walk(tmp_path, "walk", *NATURAL, pulled(40, direction, phase), "sensing.preset=good", f"seed={seed}")
+    result = walk(tmp_path, "walk", *NATURAL, pulled(40, direction, phase), f"seed={seed}")
     assert result.verdict.reasons == ()
     log, along = read(result.log), np.array([*FORCES[direction], 0])
     acting = log["/measurement"].field("external_force") @ along
@@ -95,7 +95,7 @@ def test_an_undisturbed_walk_is_the_same_to_the_last_digit(tmp_path):
 
 @pytest.mark.physics
 @pytest.mark.parametrize("scale", [0.75, 1.25])
-@pytest.mark.parametrize("keys", [(), ("sensing.preset=good",)], ids=["truth", "good"])
+@pytest.mark.parametrize("keys", [("sensing.source=truth",), ()], ids=["truth", "good"])
 def test_the_true_weight_is_found_within_a_hundredth(scale, keys, tmp_path):
     log = read(walk(tmp_path, "stand", f"errors.mass_scale={scale}", "duration=0.8", *keys).log)
     np.testing.assert_allclose(log["/estimate"].field("mass")[100:], 100.0 / scale, rtol=0.01)
@@ -104,7 +104,7 @@ def test_the_true_weight_is_found_within_a_hundredth(scale, keys, tmp_path):
 @pytest.mark.long
 @pytest.mark.parametrize("phase", PHASES)
 @pytest.mark.parametrize("direction", FORCES)
-@pytest.mark.parametrize("keys", [(), ("sensing.preset=good",)], ids=["truth", "good"])
+@pytest.mark.parametrize("keys", [("sensing.source=truth",), ()], ids=["truth", "good"])
 def test_forces_that_last_two_seconds(keys, direction, phase, tmp_path):
     keys = (*NATURAL, pulled(HELD["natural gait"], direction, phase), "start.position_noise=0.0005", *keys)
     assert walk(tmp_path, "walk", *keys).verdict.reasons == ()

@@ -208,12 +208,12 @@ def test_the_load_observer_is_told_how_old_wrenches_are(tmp_path, monkeypatch):
     monkeypatch.setattr(LoadObserver, "update", noted)
     found = {}
     for name, estimator_, keys in (
-        ("truth", None, {}),
+        ("truth", None, {"sensing.source": "truth"}),
         ("bare", Bare, {}),
         ("ours", sensed_state, {}),
         ("torques", sensed_state, {"sensing.wrench": "none"}),
     ):
-        stand(estimator_, tmp_path / name, **({} if name == "truth" else GOOD_SENSORS), **keys)
+        stand(estimator_, tmp_path / name, **{**GOOD_SENSORS, **keys})
         found[name] = ages[-1]
     latency = GOOD.feet.latency
     assert found["truth"] == 0.0 and found["bare"] == pytest.approx(latency)

@@ -91,21 +91,23 @@ def test_a_preset_is_read_by_the_own_estimator_unless_a_source_is_named(keys, so
     assert read_scenario(resolve(scenario).text, "log", "f").sensing == scenario.sensing
 
 
-def test_the_catalogue_keeps_the_truth_and_walks_from_sensors_by_one_key():
+def test_the_catalogue_walks_from_good_sensors_and_goes_back_to_the_truth_by_one_key():
     from surefoot.scenarios.setup.notes import notes
 
-    for name in (*OWN, *CONTROLS):
-        assert load(name).sensing.source == "truth"
-        assert load(name, {"sensing.preset": "good"}).sensing.source == "ekf"
-    blind = resolve(load("walk", {"sensing.preset": "good", "sensing.source": "truth"}))
+    sensed = {name: load(name).sensing for name in OWN}
+    # Those of the paper have noise and filter of its own.
+    assert {name for name, found in sensed.items() if found.source == "truth"} == {"paper-noise", "paper-push"}
+    assert {found.preset for found in sensed.values()} == {"good", None}
+    assert {load(name).sensing.source for name in CONTROLS} == {"truth"}
+    blind = resolve(load("walk", {"sensing.source": "truth"}))
     assert "sensing.preset has no effect beside sensing.source truth, which reads no sensor" in notes(blind)
+    assert load("walk", {"sensing.preset": None}).sensing.source == "truth"
 
 
 def test_a_pendulum_has_no_sensors_and_one_note_tells_it():
     from surefoot.scenarios.setup.notes import notes
 
-    sensed = resolve(load("walk", {"fidelity": "pendulum", "sensing.preset": "good"}))
-    told = [note for note in notes(sensed) if "sensing" in note]
+    told = [note for note in notes(resolve(load("walk", {"fidelity": "pendulum"}))) if "sensing" in note]
     assert told == ["sensing.preset has no effect on a pendulum"]
     alone = resolve(load("paper-walk", {"fidelity": "pendulum", "sensing": {"source": "ekf"}}))
     assert "sensing.source has no effect on a pendulum" in notes(alone)

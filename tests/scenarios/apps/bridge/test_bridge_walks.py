@@ -149,8 +149,9 @@ LINES = {
     [name if name in ("g1", "targets, and pauses") else pytest.param(name, marks=pytest.mark.long) for name in LINES],
 )
 def test_it_walks_over_a_line_that_is_late_and_loses_some(bridge, name, tmp_path):
+    """With the true state: what readings of the IMU that get lost have said is told by no later one."""
     keys, how = LINES[name]
-    plant = bridge.serve("walk", "--set", "gait.steps=4", *keys, *how)
+    plant = bridge.serve("walk", "--set", "gait.steps=4", "--set", "sensing.source=truth", *keys, *how)
     _, verdict, said = bridge.result(bridge.walk())
     assert bridge.end(plant)[0] == 0
     assert (verdict["fell"], verdict["steps_taken"]) == (False, 4), said
@@ -172,7 +173,8 @@ def test_a_line_that_is_broken_for_longer_damps_the_joints_and_both_say_so(bridg
 
 
 def test_a_plant_in_real_time_waits_for_nobody(bridge, tmp_path):
-    plant = bridge.serve("walk", "--set", "gait.steps=0", "--set", "duration=2", "--real-time", "--watchdog", "30")
+    keys = ("--set", "gait.steps=0", "--set", "duration=2", "--set", "sensing.source=truth")
+    plant = bridge.serve("walk", *keys, "--real-time", "--watchdog", "30")
     _, verdict, said = bridge.result(bridge.walk())
     code, _, told = bridge.end(plant)
     assert (code, verdict["fell"]) == (0, False), told + said

@@ -109,8 +109,7 @@ _FULL_SCALE = math.radians(2000.0)
 _QUICK, _SLOW = Delivery(latency=0.002), Delivery(latency=0.005, dropout=0.02)
 
 GOOD = SensorErrors(
-    encoder_noise=1e-5,
-    encoder_bits=19,
+    encoder_noise=1.06e-5,
     encoder_offset=5e-4,
     encoder_velocity=False,
     joint_torque_noise=0.5,
@@ -135,7 +134,7 @@ GOOD = SensorErrors(
     feet=_QUICK,
 )
 """A well built robot of the class of TALOS: absolute encoders of 19 bits at the joints, calibrated to half a
-milliradian; an industrial MEMS IMU of 0.01 deg/s/√Hz and 0.14 mg/√Hz (the classes of Xsens' MTi-100 and of VectorNav's
+milliradian, whose rounding is white in a noise of its size, and so counts as a part of that; an industrial MEMS IMU of 0.01 deg/s/√Hz and 0.14 mg/√Hz (the classes of Xsens' MTi-100 and of VectorNav's
 VN-100); six-axis force sensors that say a share of a percent of their range."""
 
 CHEAP = SensorErrors(

@@ -134,8 +134,9 @@ GOOD = SensorErrors(
     feet=_QUICK,
 )
 """A well built robot of the class of TALOS: absolute encoders of 19 bits at the joints, calibrated to half a
-milliradian, whose rounding is white in a noise of its size, and so counts as a part of that; an industrial MEMS IMU of 0.01 deg/s/√Hz and 0.14 mg/√Hz (the classes of Xsens' MTi-100 and of VectorNav's
-VN-100); six-axis force sensors that say a share of a percent of their range."""
+milliradian, whose rounding is white in a noise of its size and so counts as a part of that; an industrial MEMS IMU of
+0.01 deg/s/√Hz and 0.14 mg/√Hz (the classes of Xsens' MTi-100 and of VectorNav's VN-100); six-axis force sensors that
+say a share of a percent of their range."""
 
 CHEAP = SensorErrors(
     encoder_noise=1e-4,

@@ -18,11 +18,15 @@ from surefoot.scenarios.run.run import closed_loop, one_thread
 from surefoot.scenarios.run.skeleton import ClosedLoop
 from surefoot.scenarios.setup.load import load
 from surefoot.scenarios.setup.walk import resolve
+from surefoot.sim.readings import SensorSuite
 from surefoot.sim.world import World
 from surefoot.wbc.controller import WholeBodyController
+from surefoot.wbc.estimation.estimator import SensedState
 
 PARTS: dict[str, tuple[tuple[type, str], ...]] = {
     "measure": ((World, "measure"),),
+    "sensors": ((SensorSuite, "read"),),
+    "estimator": ((SensedState, "sense"),),
     "Pinocchio terms": ((WholeBodyController, "observe"),),
     "planner": ((WalkingPlanner, "update"),),
     "logging of plans": ((WalkRecorder, "plan"),),

@@ -1,19 +1,17 @@
 """The state of a robot from its sensors: joint observer, contacts, invariant filter, and how sure all of that is."""
 
-import math
 from collections import deque
-from collections.abc import Callable
 
 import numpy as np
 import pinocchio as pin
 
 from surefoot.native.library import library
 from surefoot.readings import Reading, Readings
-from surefoot.values import dataclass
 from surefoot.wbc.estimation.compiled import StateKernel
 from surefoot.wbc.estimation.contact import SoleContact, sprung
 from surefoot.wbc.estimation.doubt import Doubt
 from surefoot.wbc.estimation.estimate import Deviation, Estimate, Planned
+from surefoot.wbc.estimation.footing import Footing
 from surefoot.wbc.estimation.invariant_filter import InvariantFilter
 from surefoot.wbc.estimation.joints import KEPT, JointObserver
 from surefoot.wbc.estimation.kinematics import ImuMount, SensedBody
@@ -23,42 +21,11 @@ from surefoot.wbc.estimation.stand import Stand
 from surefoot.wbc.estimation.torques import TorqueWrench
 from surefoot.wbc.types import GRAVITY, Array, RobotState
 
-Height = Callable[[float, float], float]
-"""How high the ground is at x and y [m]."""
-
-Normal = Callable[[float, float], Array]
-"""Unit normal of the ground at x and y [m], shape (3,) [-]."""
-
 FASTEST, FARTHEST = 300.0, 1e5
 """Speed, of base and joints together, and place beyond which an estimate has diverged [m/s, rad/s, m]."""
 
-LEANING_ROUNDS = 4
-"""Rounds in which the attitude over soles that lean is found."""
-
 ATTITUDE = 0.1
 """How far off the attitude may be before the soles are taken for level [rad]."""
-
-
-@dataclass(frozen=True, slots=True)
-class Footing:
-    """How a robot stands when an estimator starts.
-
-    Attributes:
-        position: sole centres in the world, left first, shape (2, 3) [m].
-        yaw: headings of the soles, shape (2,) [rad].
-        half_size: half of a sole's length and width [m].
-        height: of the ground by place.
-        normal: of the ground by place.
-        leaning: half width of soles that lean with their shanks, of which position has the lines on which they stand;
-            None for others [m].
-    """
-
-    position: Array
-    yaw: Array
-    half_size: tuple[float, float]
-    height: Height
-    normal: Normal
-    leaning: float | None = None
 
 
 class SensedState:
@@ -208,13 +175,7 @@ class SensedState:
 
     def _start(self, joints: Array) -> InvariantFilter:
         body, footing = self._body, self._footing
-        body.update(joints, np.eye(3))
-        normals = np.stack([footing.normal(*footing.position[k, :2].tolist()) for k in (0, 1)])
-        level = [_sole(float(footing.yaw[k]), normals[k]) for k in (0, 1)]
-        turned = [level[k] @ body.rotation[k].T for k in (0, 1)]
-        R = turned[0] @ pin.exp3(0.5 * pin.log3(turned[0].T @ turned[1]))
-        if footing.leaning is not None:
-            R = self._leaning(joints, R, level)
+        R, normals = footing.attitude(body, joints), footing.normals()
         p = (footing.position - body.position @ R.T).mean(axis=0)
         m = len(body.chain)
         columns = np.vstack((np.zeros(3), p, footing.position))
@@ -226,25 +187,6 @@ class SensedState:
         body.update(self._known(joints, filter_.stand.offsets), filter_.stand.R)
         filter_.weigh(J)
         return filter_
-
-    def _leaning(self, joints: Array, R: Array, level: list[Array]) -> Array:
-        """Orientation of the IMU over soles that lean: their lines are level, and so is the way from one to the other.
-
-        Args:
-            joints: their angles, shape (nj,) [rad].
-            R: a first guess, shape (3, 3).
-            level: orientations of level soles, shape (3, 3) each.
-        """
-        body, (left, right) = self._body, self._footing.position
-        apart = (left - right) / np.linalg.norm(left - right)
-        for _ in range(LEANING_ROUNDS):
-            # Which edges are the lines follows from how the soles lean.
-            body.update(joints, R)
-            across = body.position[0] - body.position[1]
-            seen = np.stack((body.rotation[0, :, 0], body.rotation[1, :, 0], across / np.linalg.norm(across)))
-            U, _, V = np.linalg.svd(np.stack((level[0][:, 0], level[1][:, 0], apart)).T @ seen)
-            R = U @ np.diag([1.0, 1.0, float(np.linalg.det(U @ V))]) @ V
-        return R
 
     def _known(self, joints: Array, offsets: Array) -> Array:
         """Angles of the encoders less what their zeros are known to be off."""
@@ -349,11 +291,3 @@ class SensedState:
         state = RobotState(np.concatenate((place, q)), np.concatenate((velocity, qd)))
         # Nothing that is not finite is less than a number.
         return state if place @ place < FARTHEST**2 and state.v @ state.v < FASTEST**2 else None
-
-
-def _sole(yaw: float, up: Array) -> Array:
-    """Orientation of a sole with a heading, flat on ground with a normal, shape (3, 3)."""
-    ahead = np.array([math.cos(yaw), math.sin(yaw), 0.0])
-    side = np.cross(up, ahead)
-    side /= np.linalg.norm(side)
-    return np.column_stack((np.cross(side, up), side, up))

@@ -26,6 +26,9 @@ UNLIKELY = 4.0
 FIRM_EDGE = 1.05
 """Share of the half sole within which its CoP is where it stands still on [-]."""
 
+_SPRUNG = (3, 4, 2)
+"""Components of a wrench by which a sole on springs rolls, pitches and rises."""
+
 _FEET = tuple(tuple([bool(bits >> (k + more) & 1) for k in (0, 1)] for more in (0, 2)) for bits in range(16))
 """Which feet are felt, and which are firm, by the bits that the kernel returns; nobody writes to these lists."""
 
@@ -208,8 +211,10 @@ def sprung(changed: Array, half_size: tuple[float, float], give: float) -> Array
         roll and pitch of each sole, and how far it rises, shape (2, 3) [rad, rad, m].
     """
     length, width = half_size
+    moved = changed.take(_SPRUNG, axis=1)
     # Where the ground presses more, the sole sinks.
-    return changed[:, [3, 4, 2]] * (-give * np.array([width**-2, length**-2, 1.0]))
+    moved *= (-give / width**2, -give / length**2, -give)
+    return moved
 
 
 def _low_pass(cut: float, period: float) -> tuple[float, float]:

@@ -273,11 +273,14 @@ class SensedState:
 
     def _now(self, q: Array, qd: Array) -> RobotState | None:
         """The state now, which is older by the age of the IMU's readings; None of one that has diverged."""
-        s, told, late, gained = self.filter.stand, self._base_told, self._tick - self._imu_at, None
-        time = late * self._period
+        s, told, late = self.filter.stand, self._base_told, self._tick - self._imu_at
+        gained, time = None, late * self._period
         if late and told:
             # What the controller has planned since; its velocity is that of the base in its own axes.
-            gained = self._period * (told[-1] if late == 1 else np.sum(list(told)[-late:], axis=0))
+            gained = told[-1]
+            for back in range(2, min(late, len(told)) + 1):
+                gained = gained + told[-back]
+            gained = self._period * gained
         if self._compiled is not None:
             return self._compiled(q, qd, gained, time)
         q = self._known(q, s.offsets)

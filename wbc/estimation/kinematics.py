@@ -65,6 +65,8 @@ class SensedBody:
         parent = 1 if self._carrier is None else model.frames[self._carrier].parentJoint
         self._parent = parent
         self._at_base = not self._behind and self._placement.isIdentity(1e-12)
+        turned = not np.allclose(self._placement.rotation, np.eye(3), rtol=0.0, atol=1e-12)
+        self._to_imu = np.ascontiguousarray(self._placement.rotation.T) if turned else None
         self.chain = _between(model, parent, self._soles)
         self._q, self._v = pin.neutral(model), np.zeros(model.nv)
         self._imu_rotation, self._imu_position = self._placement.rotation.copy(), self._placement.translation.copy()
@@ -201,9 +203,9 @@ class SensedBody:
 
     def turned_to_imu(self, turn: Array) -> Array | None:
         """A turn of the base in the axes of the IMU, shape (3,); None where joints are between them [rad/s]."""
-        if self._at_base:
-            return turn
-        return None if self._behind else np.asarray(self._placement.rotation.T @ turn)
+        if self._behind:
+            return None
+        return turn if self._to_imu is None else np.asarray(self._to_imu @ turn)
 
     def base(self, R: Array, p: Array, v: Array, rate: Array, q: Array, qd: Array) -> tuple[Array, Array, Array]:
         """The base from the IMU: orientation (3, 3), position (3,) [m], velocity in its axes (6,) [m/s, rad/s].

@@ -196,6 +196,7 @@ def test_the_first_runs_of_campaigns_that_come_along_are_accepted(name):
     [
         ("push-map", ("direction=[forward, over stance]", "phase=[SS 0.5]", "planner.step_adaptation=none")),
         ("push-map-pendulum", ("pushes.0.direction=[0.0, -1.570796]",)),
+        ("random-pushes", ()),
         ("soak", ()),
         pytest.param("recovery-numbers", (), marks=pytest.mark.long),
     ],

@@ -44,7 +44,7 @@ _a_report = maker(WbcReport)
 
 # Members are looked up by name at each access.
 _SOLVED, _SOFTENED = SolveStatus.SOLVED, SolveStatus.SOFTENED
-_IN_TURN = (_SOLVED, _SOFTENED, SolveStatus.SECOND_SOLVER)
+_IN_TURN = (_SOLVED, _SOFTENED, _SOFTENED, SolveStatus.SECOND_SOLVER)
 
 
 class WholeBodyController:
@@ -242,7 +242,8 @@ class WholeBodyController:
     def solve(self, qp: QpData, fail_solvers: bool = False) -> tuple[SolveStatus, QpSolution | None]:
         """A solution by the first solver whose answer holds, else by the equalities alone; None if there is none.
 
-        What holds no limits at all throws the robot. So before that some of the soft ones are broken.
+        What holds no limits at all throws the robot. So before that some of the soft ones are broken, and where that
+        does not do soles slide, lift or turn: one that is torn off the ground by what it carries cannot be held.
         """
         return _of_equalities(qp) if fail_solvers else self._settle(qp, self._solvers[0].solve(qp))
 
@@ -271,7 +272,7 @@ class WholeBodyController:
             reader.see_soles(self._seen)
         return reader.answer
 
-    def _ask(self, solvers: tuple[QpSolver, QpSolver, QpSolver]) -> None:
+    def _ask(self, solvers: tuple[QpSolver, ...]) -> None:
         """Ask these in turn from now on.
 
         The kernels of the first one also read its answer, in one call, unless a class below solves or reads otherwise.

@@ -116,6 +116,7 @@ class Daqp:
         accuracy: float = 1e-9,
         fixed: NDArray[np.intp] | None = None,
         soft: NDArray[np.intp] | None = None,
+        lets_go: bool = False,
     ) -> None:
         """What counts as an equality, and what may be broken.
 
@@ -124,8 +125,9 @@ class Daqp:
             fixed: numbers of bounds that are equalities where both of them are the same; None for none.
             soft: numbers of bounds and rows that are broken, at a cost of the squared violations beside which all
                 others are small, where there is no solution that holds them; None for none.
+            lets_go: whether the rows that hold soles on the ground are soft, too.
         """
-        self._accuracy, self._fixed, self._soft = accuracy, fixed, soft
+        self._accuracy, self._fixed, self._soft, self._lets_go = accuracy, fixed, soft, lets_go
         self._sense = np.zeros(0, dtype=np.intc)
 
     def solve(self, qp: QpData) -> QpSolution | None:
@@ -142,12 +144,19 @@ class Daqp:
         if self._fixed is not None:
             same = qp.bounds_lower[self._fixed] == qp.bounds_upper[self._fixed]
             self._sense[self._fixed] = np.where(same, _EQUALITY, self._usual[self._fixed])
+        soft = self._soft
+        if self._lets_go:
+            # The rows of a sole in the air are those of its wrench, which is zero.
+            held = qp.A[: 2 * FOOT_ROWS, : n - 2 * FOOT_ROWS].any(axis=1)
+            self._sense[n : n + 2 * FOOT_ROWS] = np.where(held, _SOFT, _EQUALITY)
+            rows = n + np.flatnonzero(held)
+            soft = rows if soft is None else np.concatenate((soft, rows))
         x, _, flag, info = daqp.solve(
             qp.H, qp.g, qp.A, qp.bounds_upper, qp.bounds_lower, self._sense, primal_tol=self._accuracy
         )
         if flag not in _OPTIMAL:
             return None
-        return QpSolution(x, qp.violation(x, self._soft), int(info["iterations"]))
+        return QpSolution(x, qp.violation(x, soft), int(info["iterations"]))
 
 
 class EqualityFirst:
@@ -311,15 +320,19 @@ def make_solver(name: str) -> QpSolver:
     return SOLVERS[name]()
 
 
+_LETTING_GO = 1e-6
+"""Accuracy of the solver that lets go of soles: with 1e-9 it fails at half of what has violations of thousands [-]."""
+
+
 def in_turn(
     first: str, second: str, soft: NDArray[np.intp], fixed: NDArray[np.intp] | None = None
-) -> tuple[QpSolver, QpSolver, QpSolver]:
-    """Solvers in the order in which a controller asks them.
+) -> tuple[QpSolver, ...]:
+    """Solvers in the order in which a controller asks them, four in all.
 
     Args:
         first: name of the first one.
         second: of the one that is asked when all others fail.
-        soft: what the one between them may break, as of ``Daqp``.
+        soft: what those between them may break, as of ``Daqp``; the latter of them lets go of soles as well.
         fixed: bounds that may be equalities, as of ``Daqp``, which then is the first one; None for none.
 
     Raises:
@@ -328,5 +341,6 @@ def in_turn(
     return (
         make_solver(first) if fixed is None else Daqp(fixed=fixed),
         Daqp(fixed=fixed, soft=soft),
+        Daqp(_LETTING_GO, fixed, soft, lets_go=True),
         make_solver(second),
     )

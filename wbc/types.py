@@ -33,7 +33,9 @@ class SolveStatus(IntEnum):
     HELD = 3
     """Nothing could be solved: the last torque is held and faded into damping."""
     SOFTENED = 4
-    """Nothing holds all limits: some are broken, of those of the joints' motion and of the distances between limbs."""
+    """Nothing holds all limits: some are broken, of those of the joints' motion and of the distances between limbs.
+
+    Where that does not do, soles that are to rest move as well."""
 
 
 @dataclass(frozen=True, slots=True)

@@ -102,6 +102,12 @@ def with_heel_lifted(schedule: Schedule, number: int, radius: float) -> Schedule
     return replace(schedule, steps=(*schedule.steps[:at], step, *schedule.steps[at + 1 :]))
 
 
+def with_foot_flat(schedule: Schedule, number: int) -> Schedule:
+    """The foot that makes the step of a number does not roll as it leaves the ground."""
+    at, steps = schedule.index(number), schedule.steps
+    return replace(schedule, steps=(*steps[:at], replace(steps[at], roll=None), *steps[at + 1 :]))
+
+
 def lands_short(schedule: Schedule, number: int, feet: FeetState, dcm: Dcm | None, legs: LegReach | None) -> bool:
     """Whether the DCM is beyond the foot that lands after a step, on its own side, and the foot can still get there.
 

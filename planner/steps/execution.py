@@ -219,6 +219,10 @@ class Execution:
         if abs(left - before) < _SAME_TIME * self._size.time:
             return False
         self.clock = self.clock.scaled(self.phase.end - self.clock.now, left / t)
+        # A heel that would be lifted harder than hips swing a foot stays down.
+        roll, hips = self.roll(time), math.inf if self.legs is None else self.legs.acceleration[0]
+        if roll is not None and roll.start >= time and roll.hardest(time, time + self.time_left) > hips:
+            self.schedule = adaptation.with_foot_flat(self.schedule, self.landed + 1)
         self.follow(self.schedule)
         if self.swing is not None:
             self.swing = self.swing.retimed(time, self.time_left - before, t)

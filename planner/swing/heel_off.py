@@ -26,6 +26,9 @@ It turns back while its shank swings forward, so that the ankle has the less to 
 LEVEL_AGAIN = 0.9
 """The same at most, of a swing that is shortened when its foot has begun to roll [-]."""
 
+_LOOKED_AT = 9
+"""Instants at which the acceleration of a roll is looked at, of a double support [-]."""
+
 _LEAST_STEP = 1.5
 """Feet nearer to each other than so many half soles along the foot do not roll [-]."""
 
@@ -85,6 +88,10 @@ class FootRoll:
         value, slope, bend = bump((clock - self.start) / span)
         speed = self.angle * slope / span
         return self.angle * value, speed * rate, self.angle * bend / span**2 * rate**2 + speed * change
+
+    def hardest(self, begin: float, end: float) -> float:
+        """Greatest acceleration with which it lifts the sole's centre between two instants [m/s^2]."""
+        return self.toe * max(abs(self.evaluate(time)[2]) for time in np.linspace(begin, end, _LOOKED_AT).tolist())
 
     def centre(self, time: float, level: Array, rates: Array) -> tuple[Array, Array]:
         """Where the sole's centre is and how it moves, with the foot turned about its toe edge.

@@ -107,6 +107,7 @@ UNNOTICED = {
     "swing.heel_off._BEGIN",
     "swing.heel_off._END",
     "swing.heel_off._LEAST_STEP",
+    "swing.heel_off._LOOKED_AT",
     "swing.heel_off._MOST",
     "swing.heel_off._PER_WAY",
     "swing.heel_off._SHORT",

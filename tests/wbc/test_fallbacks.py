@@ -38,7 +38,7 @@ def test_the_second_solver_answers_for_the_first(controller, reference, loaded):
 
 def test_so_does_the_last_one_for_both_before_it(controller, reference, loaded):
     good = controller.update(reference, loaded).torque.copy()
-    controller._ask((Failing(), Failing(), controller._solvers[2]))
+    controller._ask((Failing(), Failing(), Failing(), controller._solvers[-1]))
     report = controller.update(reference, loaded)
     assert report.status is SolveStatus.SECOND_SOLVER
     np.testing.assert_allclose(report.torque, good, atol=1e-3)
@@ -80,6 +80,39 @@ def test_without_what_may_be_broken_there_is_no_solution(contradicted):
     """Negative control."""
     assert Daqp().solve(contradicted) is None
     assert ProxQp().solve(contradicted) is None
+
+
+@pytest.fixture
+def torn(controller, reference, loaded):
+    """A QP whose left sole is to pitch harder than its leg can make it while the right one is held."""
+    controller.update(reference, loaded)
+    qp, pitch = controller.qp.copy(), controller.layout.variables + controller.layout.contact_rows(0).start + 4
+    qp.bounds_lower[pitch] = qp.bounds_upper[pitch] = 2e4
+    return qp
+
+
+def test_a_sole_that_nothing_holds_is_let_go_of_before_the_robot_is_thrown(controller, torn):
+    """Dynamics, cones and torques hold; only joints, distances and the soles' motion do not."""
+    status, solution = controller.solve(torn)
+    n, layout = controller.layout.variables, controller.layout
+    assert status is SolveStatus.SOFTENED
+    assert solution.violation <= 1e-3
+    assert torn.violation(solution.x, np.concatenate((layout.soft, n + np.arange(12)))) == solution.violation
+    torque = torn.A[layout.torque_rows] @ solution.x + controller.terms.bias[6:]
+    assert (np.abs(torque) <= controller._limits.torque + 1e-3).all()
+
+
+def test_the_equalities_alone_would_throw_it(controller, torn):
+    """Negative control: with torques far beyond their limits."""
+    assert Daqp(soft=controller.layout.soft).solve(torn) is None
+    torque = torn.A[controller.layout.torque_rows] @ equalities_only(torn).x + controller.terms.bias[6:]
+    assert (np.abs(torque) / controller._limits.torque).max() > 3.0
+
+
+@pytest.mark.parametrize("reference", ["swing"], indirect=True)
+def test_a_foot_in_the_air_carries_nothing_where_the_other_one_is_let_go_of(controller, torn):
+    solution = controller.solve(torn)[1]
+    np.testing.assert_allclose(solution.x[controller.layout.wrench(1)], 0.0, atol=1e-9)
 
 
 def test_a_solver_that_lies_is_not_believed(controller, reference, loaded):

@@ -3,14 +3,20 @@ import pytest
 from scipy.spatial.transform import Rotation
 
 from surefoot.planner.geometry import sole_rotation
+from surefoot.planner.ground.terrain import flat
 from surefoot.planner.model.leg_chain import LegChain, Link
 from surefoot.planner.model.vectors import headings
+from surefoot.planner.parameters import PlannerParameters
 from surefoot.planner.plan import PlanSampler
 from surefoot.planner.planner import WalkingPlanner
 from surefoot.planner.plants import IdealFeet
 from surefoot.planner.references.nominal_feet import nominal_feet
+from surefoot.planner.steps.execution import Execution
 from surefoot.planner.steps.gait import GaitParameters
+from surefoot.planner.steps.schedule import Schedule
+from surefoot.planner.swing.course import Ground
 from surefoot.planner.swing.heel_off import FootRoll, bump
+from surefoot.planner.swing.leg_reach import LegReach
 from surefoot.planner.types import CentroidalState, Foot, PhaseKind
 
 pytestmark = pytest.mark.unit
@@ -51,6 +57,40 @@ def test_the_centre_of_a_rolled_sole_keeps_the_toe_edge_where_it_was():
     edge = level[:3] + 0.11 * flat[:, 0]
     np.testing.assert_allclose(now[0] + 0.11 * turned[:, 0], edge, atol=1e-12)
     assert now[0][2] > level[2] + 0.03
+
+
+def test_the_hardest_lift_of_a_roll_is_that_of_the_soles_centre():
+    roll, times = FootRoll(Foot.LEFT, 1.0, 1.3, 0.5, 0.11), np.linspace(1.02, 1.15, 1001)
+    pitch = np.array([roll.evaluate(time)[0] for time in times])
+    lift = 0.11 * np.gradient(np.gradient(pitch, times), times)[2:-2]
+    assert roll.hardest(1.02, 1.15) == pytest.approx(np.abs(lift).max(), rel=0.05)
+
+
+@pytest.mark.parametrize(
+    ("hips", "left", "begun", "rolls"),
+    [
+        (60.0, 0.09, 0, True),  # hardly sooner than by the clock
+        (60.0, 0.03, 0, False),
+        (600.0, 0.03, 0, True),  # hips that are strong enough for it
+        (60.0, 0.03, 3, True),  # it rolls already
+    ],
+)
+def test_a_heel_is_lifted_no_harder_than_hips_swing_a_foot(stand, hips, left, begun, rolls):
+    """A double support that is cut short by a push would roll the foot, by the same angle, at many times its rate."""
+    ground = Ground(flat(), np.array([0.11, 0.055]), PlannerParameters(reach_length=0.8))
+    legs = LegReach(0.27, 0.2, 0.115, 0.12, 0.24, (hips, 50.0))
+    execution = Execution(Schedule.start(GAIT, stand(GAIT.step_width), ground), 151, legs)
+    while execution.phase.kind is not PhaseKind.DOUBLE or execution.phase.roll is None:
+        execution.advance(stand(GAIT.step_width))
+    for _ in range(begun):
+        execution.advance(stand(GAIT.step_width))
+    time = 0.02 * execution.clock.ticks
+    assert (execution.roll(time).start < time) is bool(begun)
+    execution.end_in(left, time)
+    assert (execution.roll(time) is not None) is rolls
+    while execution.phase.kind is PhaseKind.DOUBLE:
+        execution.advance(stand(GAIT.step_width))
+    assert (execution.phase.roll is not None) is rolls
 
 
 def test_a_roll_begins_in_double_support_and_ends_before_touchdown(walk):

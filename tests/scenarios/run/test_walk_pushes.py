@@ -1,0 +1,41 @@
+"""A small robot that walks is pushed hard at its torso, catches itself with a long step, and goes on."""
+
+import pytest
+
+import surefoot
+from surefoot.planner.swing.heel_off import FootRoll
+from surefoot.wbc import solvers
+from surefoot.wbc.types import SolveStatus
+
+pytestmark = pytest.mark.physics
+
+
+def pushed(impulse, direction):
+    """Whether it falls of a push late in its third step, and at how many ticks its QP dropped all limits."""
+    push = {"step": 3, "phase": "single", "fraction": 0.65, "duration": 0.1}
+    push |= {"impulse": impulse, "direction": direction}
+    keys = {"robot": "g1", "sensing.source": "truth", "criteria": {"fell": False}, "duration": 6.0, "pushes": [push]}
+    dropped = 0
+    with surefoot.Simulation(surefoot.load("walk", keys)) as simulation:
+        while not simulation.done:
+            tick = simulation.step()
+            dropped += tick.report.status is SolveStatus.EQUALITIES_ONLY
+            if tick.fell:
+                return True, dropped
+    return False, dropped
+
+
+@pytest.mark.parametrize("direction", [0.25, -0.3])
+def test_a_long_step_does_not_throw_it_as_it_lands(direction):
+    """Of five neighbours four stand at least, and none of them meets a QP whose limits are all dropped."""
+    runs = [pushed(impulse, direction) for impulse in (0.52, 0.55, 0.58, 0.61, 0.64)]
+    assert sum(fell for fell, _ in runs) <= 1
+    assert not any(dropped for fell, dropped in runs if not fell)
+
+
+def test_with_a_heel_rolled_in_no_time_and_soles_held_at_any_price_it_is_thrown(monkeypatch):
+    """Negative control."""
+    monkeypatch.setattr(FootRoll, "hardest", lambda roll, begin, end: 0.0)
+    held = property(lambda solver: False, lambda solver, value: None)
+    monkeypatch.setattr(solvers.Daqp, "_lets_go", held, raising=False)
+    assert sum(pushed(impulse, -0.3)[0] for impulse in (0.55, 0.58, 0.61)) >= 2

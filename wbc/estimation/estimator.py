@@ -11,10 +11,9 @@ from surefoot.wbc.estimation.compiled import StateKernel
 from surefoot.wbc.estimation.contact import SoleContact, sprung
 from surefoot.wbc.estimation.doubt import Doubt
 from surefoot.wbc.estimation.estimate import Deviation, Estimate, Planned
-from surefoot.wbc.estimation.footing import Footing
 from surefoot.wbc.estimation.invariant_filter import InvariantFilter
 from surefoot.wbc.estimation.joints import KEPT, JointObserver
-from surefoot.wbc.estimation.kinematics import ImuMount, SensedBody
+from surefoot.wbc.estimation.kinematics import Footing, ImuMount, SensedBody
 from surefoot.wbc.estimation.parameters import EstimatorParameters
 from surefoot.wbc.estimation.rates import RateFilter
 from surefoot.wbc.estimation.stand import Stand

@@ -16,10 +16,10 @@ GOOD, POOR = SensorNoise(), SensorNoise(wrench_force=20.0, wrench_bias=20.0, wre
 class Feet:
     """Two feet whose sensors have noise and a bias."""
 
-    def __init__(self, sensors=GOOD, seed=1, bias=None):
+    def __init__(self, sensors=GOOD, seed=1, bias=None, force=8.0):
         self.rng, self.sensors = np.random.default_rng(seed), sensors
         self.bias = sensors.wrench_bias * self.rng.normal(size=(2, 6)) if bias is None else bias
-        self.contact = SoleContact(ContactDetection(), sensors, WEIGHT, HALF, PERIOD)
+        self.contact = SoleContact(ContactDetection(force=force), sensors, WEIGHT, HALF, PERIOD)
         self.update(0.5, 0.5)
 
     def update(self, left, right, above=(0.0, 0.0), rolling=-1, cop=0.0, ticks=1):
@@ -53,8 +53,8 @@ def test_a_swing_tares_the_sensor_and_feels_nothing(sensors):
     assert 0.0 < feet.contact.bias < 0.2 * sensors.wrench_bias
 
 
-def swung(sensors=GOOD):
-    feet = Feet(sensors)
+def swung(sensors=GOOD, **how):
+    feet = Feet(sensors, **how)
     feet.update(0.0, 1.0, ticks=40)
     feet.update(0.0, 1.0, above=(0.05, 0.0), ticks=300)
     return feet
@@ -71,10 +71,18 @@ def test_a_touch_near_the_ground_is_not_tared_away():
     feet = swung()
     feet.update(0.02, 0.98, above=(0.001, 0.0), ticks=2000)
     assert feet.contact.wrench[0, 2] == pytest.approx(0.02 * WEIGHT, abs=12.0)
-    high = swung()
-    high.contact.threshold = high.contact._lasting = 1e3
+    high = swung(force=400.0)
     high.update(0.02, 0.98, above=(0.05, 0.0), ticks=2000)
     assert abs(high.contact.wrench[0, 2]) < 12.0
+
+
+def test_no_sensor_is_tared_while_nothing_carries_the_robot():
+    """A robot that is let down, or jumps, may touch with either foot next."""
+    for carried, tares in ((0.3, False), (0.5, True)):
+        feet = Feet()
+        feet.update(0.0, carried, ticks=40)
+        feet.update(0.0, carried, above=(0.05, 0.0), ticks=100)
+        assert (feet.contact.tared[0] > 0.0) == tares
 
 
 @pytest.mark.parametrize("blow", [-0.08, -0.3])

@@ -1122,6 +1122,44 @@ typedef struct {
 } SensedSole;
 
 /*
+ * Counterpart of `wbc.estimation.torques.TorqueWrench`: Pinocchio's data, of whose M the other triangle is filled, which
+ * velocities move the left sole and the right one (1 or 0), which move any, noise, what is observed, and memory in
+ * between.
+ */
+typedef struct {
+    int64_t nv;
+    int64_t count;
+    int64_t held;
+    double base_noise;
+    double torque_noise;
+    double least;
+    double *M;
+    const double *C_columns;
+    const double *gravity;
+    const double *joint_jacobian_columns;
+    const SensedSole *left;
+    const SensedSole *right;
+    const int64_t *rows;
+    const double *supporting;
+    const double *velocity_noise;
+    const double *scale;
+    const double *v;
+    const double *torque;
+    double *momentum;
+    double *driven;
+    double *last_torque;
+    double *residual;
+    double *noise;
+    double *A;
+    double *some;
+    double *seen;
+    double *wrench;
+    double *deviation;
+} TorqueWrench;
+
+int64_t torque_wrench_update(const TorqueWrench *torques, double span, double share);
+
+/*
  * Counterpart of `wbc.estimation.kinematics.SensedBody`: Pinocchio's data in the axes of the base, where the IMU is in
  * its joint, which joints carry left sole, right sole and IMU (1 or 0), and what follows.
  */

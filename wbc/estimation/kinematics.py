@@ -76,7 +76,7 @@ class SensedBody:
         self._imu_rotation, self._imu_position = self._placement.rotation.copy(), self._placement.translation.copy()
         self.position, self.rotation = np.zeros((2, 3)), np.zeros((2, 3, 3))
         self._jacobian = np.zeros((2, 6, len(self.chain)))
-        self._supporting = _supporting(model, (*(model.frames[sole].parentJoint for sole in self._soles), parent))
+        self._supporting = supporting(model, (*(model.frames[sole].parentJoint for sole in self._soles), parent))
         self.leaning, self._beside = leaning, np.zeros((2, 3))
         self.mass = float(sum(inertia.mass for inertia in model.inertias))
         # Which of its edges a leaning sole is on, only Python knows.
@@ -88,17 +88,7 @@ class SensedBody:
 
     def _bound(self, kernels: Library) -> Bound:
         model, data, imu = self.model, self._data, self._data.oMi[self._parent]
-        soles = []
-        for frame in (model.frames[sole] for sole in self._soles):
-            joint = data.oMi[frame.parentJoint]
-            sole = kernels.fill(
-                "SensedSole",
-                joint_rotation_columns=joint.rotation.T,
-                joint_position=joint.translation,
-                placement_rotation=np.ascontiguousarray(frame.placement.rotation),
-                placement_position=np.array(frame.placement.translation),
-            )
-            soles.append(sole)
+        left, right = (sole_of(kernels, model, data, frame) for frame in self._soles)
         return kernels.fill(
             "SensedBody",
             joints=model.nv - 6,
@@ -109,8 +99,8 @@ class SensedBody:
             imu_joint_position=imu.translation,
             mount_rotation=np.ascontiguousarray(self._placement.rotation),
             mount_position=np.array(self._placement.translation),
-            left=soles[0],
-            right=soles[1],
+            left=left,
+            right=right,
             joint_jacobian_columns=data.J.T,
             com=data.com[0],
             com_jacobian_columns=data.Jcom.T,
@@ -307,7 +297,20 @@ def _between(model: pin.Model, carrier: int, soles: tuple[int, ...]) -> Array:
     return np.array(sorted(model.idx_vs[joint] - 6 for joint in found), dtype=np.intp)
 
 
-def _supporting(model: pin.Model, carriers: tuple[int, ...]) -> Array:
+def sole_of(kernels: Library, model: pin.Model, data: pin.Data, number: int) -> Bound:
+    """A sole as kernels take it, by its frame."""
+    frame = model.frames[number]
+    joint = data.oMi[frame.parentJoint]
+    return kernels.fill(
+        "SensedSole",
+        joint_rotation_columns=joint.rotation.T,
+        joint_position=joint.translation,
+        placement_rotation=np.ascontiguousarray(frame.placement.rotation),
+        placement_position=np.array(frame.placement.translation),
+    )
+
+
+def supporting(model: pin.Model, carriers: tuple[int, ...]) -> Array:
     """Which joints carry what is on some joints: 1 or 0, shape (carriers, nj)."""
     found = np.zeros((len(carriers), model.nv - 6))
     for row, carrier in zip(found, carriers, strict=True):

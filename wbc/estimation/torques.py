@@ -1,11 +1,13 @@
 """Sole wrenches of a robot without sensors in its feet, from the torques of its joints."""
 
 import math
+from collections.abc import Callable
 
 import numpy as np
 import pinocchio as pin
-from numpy.typing import NDArray
 
+from surefoot.native.library import Library, library
+from surefoot.wbc.estimation.kinematics import sole_of, supporting
 from surefoot.wbc.estimation.parameters import SensorNoise
 from surefoot.wbc.types import Array, RobotState
 
@@ -20,6 +22,9 @@ BASE = (1e-3, 2e-3)
 
 LEVER = 0.1
 """At which moments count as forces [m]."""
+
+BASE_NOISE = 1e-4
+"""Variance of what drives the base beside its velocities, so that theirs has an inverse [N^2, (N·m)^2]."""
 
 LARGEST = 1e4
 """Deviation of a wrench before anything is measured: far more than any is, against legs that are stretched [N]."""
@@ -67,11 +72,54 @@ class TorqueWrench:
         self._velocity_noise = np.full(model.nv, rate**2 * differenced)
         self._velocity_noise[:6] = np.repeat(np.square(BASE), 3) * differenced
         self._torque_noise = (sensors.joint_torque**2 + 0.05**2) * passed
-        self._residual: Array | None = None
+        self._begun, self._residual = False, np.zeros(model.nv)
         self._momentum, self._driven, self._torque = np.zeros(model.nv), np.zeros(model.nv), np.zeros(model.nv - 6)
         self._scale = np.tile([1.0, 1.0, 1.0, LEVER, LEVER, LEVER], 2)
-        self._rows: NDArray[np.intp] | None = None
+        # The base moves both soles.
+        carriers = tuple(model.frames[sole].parentJoint for sole in self._soles)
+        self._supporting = np.hstack((np.ones((2, 6)), supporting(model, carriers)))
+        self._rows = np.flatnonzero(self._supporting.any(axis=0))
         self.wrench, self.deviation = np.zeros((2, 6)), (0.0, 0.0)
+        kernels = library()
+        self._find = self._compiled(kernels) if kernels else None
+
+    def _compiled(self, kernels: Library) -> Callable[[float, float], int]:
+        model, data, m = self._model, self._data, len(self._rows)
+        self._v, self._given = np.zeros(model.nv), np.zeros(model.nv - 6)
+        self._found, self._spread = np.zeros((2, 6)), np.zeros(12)
+        left, right = (sole_of(kernels, model, data, frame) for frame in self._soles)
+        find: Callable[[float, float], int] = kernels.bind(
+            "torque_wrench_update",
+            nv=model.nv,
+            count=m,
+            held=self._held,
+            base_noise=BASE_NOISE,
+            torque_noise=self._torque_noise,
+            least=1.0 / LARGEST**2,
+            M=data.M.T,
+            C_columns=data.C.T,
+            gravity=data.g,
+            joint_jacobian_columns=data.J.T,
+            left=left,
+            right=right,
+            rows=self._rows,
+            supporting=self._supporting,
+            velocity_noise=self._velocity_noise,
+            scale=self._scale,
+            v=self._v,
+            torque=self._given,
+            momentum=self._momentum,
+            driven=self._driven,
+            last_torque=self._torque,
+            residual=self._residual,
+            noise=np.zeros((m, m)),
+            A=np.zeros((m, 12)),
+            some=np.zeros(model.nv),
+            seen=np.zeros(m),
+            wrench=self._found,
+            deviation=self._spread,
+        )
+        return find
 
     def update(self, state: RobotState, torque: Array, passed: float | None = None) -> Array:
         """Wrenches in the sole frames, shape (2, 6) [N, N·m].
@@ -84,45 +132,49 @@ class TorqueWrench:
         model, data, q, v = self._model, self._data, state.q, state.v
         pin.computeCoriolisMatrix(model, data, q, v)
         pin.crba(model, data, q)
-        M = np.triu(data.M) + np.triu(data.M, 1).T
-        gravity = pin.computeGeneralizedGravity(model, data, q)
-        driven = data.C.T @ v - gravity
-        momentum = M @ v
-        if self._residual is None:
-            self._residual = -driven
-            self._residual[6:] -= torque
+        pin.computeGeneralizedGravity(model, data, q)
+        pin.computeJointJacobians(model, data, q)
+        # At first there is no span.
+        span, self._begun = (passed or self._period) if self._begun else 0.0, True
+        share = 1.0 - (1.0 - self._gain) ** (span / self._period)
+        if self._find is not None:
+            self._v[:], self._given[:] = v, torque
+            if self._find(span, share):
+                raise np.linalg.LinAlgError("the covariance of the residual is not positive")
+            self.wrench, spread = self._found.copy(), self._spread
         else:
-            # The exact discrete low pass of what drives the momentum beside all that is known. Half a tick in the
-            # torque is a force where a command jumps.
-            span = passed or self._period
-            lacking = (momentum - self._momentum) / span - 0.5 * (driven + self._driven)
-            lacking[6:] -= torque if self._held else 0.5 * (torque + self._torque)
-            gain = 1.0 - (1.0 - self._gain) ** (span / self._period)
-            self._residual = self._residual + gain * (lacking - self._residual)
-        # Who gives the torque may write the next one into the same array.
-        self._momentum, self._driven, self._torque[:] = momentum, driven, torque
-        self.wrench = self._wrenches(q, M)
+            M = np.triu(data.M) + np.triu(data.M, 1).T
+            self._observe(M, v, torque, span, share)
+            self.wrench, spread = self._wrenches(M)
+        largest = spread.reshape(2, 2, 3).max(axis=(0, 2)).tolist()
+        self.deviation = largest[0], largest[1]
         return self.wrench
 
-    def _wrenches(self, q: Array, M: Array) -> Array:
-        model, data = self._model, self._data
-        pin.computeJointJacobians(model, data, q)
+    def _observe(self, M: Array, v: Array, torque: Array, span: float, share: float) -> None:
+        """Take what drives the momentum beside all that is known, a share of it in a span."""
+        driven, momentum = self._data.C.T @ v - self._data.g, M @ v
+        if span > 0.0:
+            # The exact discrete low pass. Half a tick in the torque is a force where a command jumps.
+            lacking = (momentum - self._momentum) / span - 0.5 * (driven + self._driven)
+            lacking[6:] -= torque if self._held else 0.5 * (torque + self._torque)
+            self._residual += share * (lacking - self._residual)
+        else:
+            self._residual[:] = -driven
+            self._residual[6:] -= torque
+        # Who gives the torque may write the next one into the same array.
+        self._momentum[:], self._driven[:], self._torque[:] = momentum, driven, torque
+
+    def _wrenches(self, M: Array) -> tuple[Array, Array]:
+        """Wrenches of the soles, and their deviations one after the other, shape (12,)."""
+        model, data, rows = self._model, self._data, self._rows
         pin.updateFramePlacements(model, data)
         jacobians = [pin.getFrameJacobian(model, data, frame, pin.ReferenceFrame.LOCAL) for frame in self._soles]
-        A = np.vstack(jacobians).T * self._scale
-        if self._rows is None:
-            self._rows = np.flatnonzero(np.abs(A).sum(axis=1) > 0.0)
-        rows, residual = self._rows, self._residual
-        assert residual is not None
-        some = M[rows]
+        A, some = (np.vstack(jacobians).T * self._scale)[rows], M[rows]
         noise = (some * self._velocity_noise) @ some.T
-        noise[np.diag_indices_from(noise)] += np.where(rows < 6, 1e-4, self._torque_noise)
-        A = A[rows]
+        noise[np.diag_indices_from(noise)] += np.where(rows < 6, BASE_NOISE, self._torque_noise)
         weighted = np.linalg.solve(noise, A)
         normal = A.T @ weighted
         normal[np.diag_indices(12)] += 1.0 / LARGEST**2
         covariance = np.linalg.inv(normal)
-        spread = self._scale * np.sqrt(covariance.diagonal())
-        self.deviation = float(spread[[0, 1, 2, 6, 7, 8]].max()), float(spread[[3, 4, 5, 9, 10, 11]].max())
-        found: Array = (self._scale * (covariance @ (weighted.T @ residual[rows]))).reshape(2, 6)
-        return found
+        found: Array = (self._scale * (covariance @ (weighted.T @ self._residual[rows]))).reshape(2, 6)
+        return found, self._scale * np.sqrt(covariance.diagonal())

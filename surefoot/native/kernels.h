@@ -1157,7 +1157,7 @@ typedef struct {
     double *deviation;
 } TorqueWrench;
 
-int64_t torque_wrench_update(const TorqueWrench *torques, double span, double share);
+void torque_wrench_update(const TorqueWrench *torques, double span, double share);
 
 /*
  * Counterpart of `wbc.estimation.kinematics.SensedBody`: Pinocchio's data in the axes of the base, where the IMU is in

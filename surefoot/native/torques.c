@@ -44,8 +44,13 @@ static void see_soles(const TorqueWrench *torques, double *A) {
     }
 }
 
-/* Counterpart of `TorqueWrench.update`, of a span or at first; returns whether a covariance is not positive. */
-int64_t torque_wrench_update(const TorqueWrench *torques, double span, double share) {
+/* No wrench, as of a state that is not finite. */
+static void know_nothing(const TorqueWrench *torques) {
+    for (int a = 0; a < WRENCHES; a++) torques->wrench[a] = torques->deviation[a] = NAN;
+}
+
+/* Counterpart of `TorqueWrench.update`, of a span or at first. */
+void torque_wrench_update(const TorqueWrench *torques, double span, double share) {
     const int64_t nv = torques->nv, m = torques->count;
     double *noise = torques->noise, *A = torques->A, *some = torques->some, *seen = torques->seen;
     double normal[WRENCHES * WRENCHES] = {0.0}, spread[WRENCHES * WRENCHES] = {0.0}, y[WRENCHES] = {0.0};
@@ -62,7 +67,10 @@ int64_t torque_wrench_update(const TorqueWrench *torques, double span, double sh
     }
     for (int64_t r = 0; r < m; r++)
         noise[(m + 1) * r] += torques->rows[r] < POSE ? torques->base_noise : torques->torque_noise;
-    if (cholesky(noise, m, m)) return 1;
+    if (cholesky(noise, m, m)) {
+        know_nothing(torques);
+        return;
+    }
     forward_solve(noise, m, m, A, WRENCHES);
     forward_solve(noise, m, m, seen, 1);
     for (int64_t r = 0; r < m; r++)
@@ -74,7 +82,10 @@ int64_t torque_wrench_update(const TorqueWrench *torques, double span, double sh
         normal[(WRENCHES + 1) * a] += torques->least;
         spread[(WRENCHES + 1) * a] = 1.0;
     }
-    if (cholesky(normal, WRENCHES, WRENCHES)) return 1;
+    if (cholesky(normal, WRENCHES, WRENCHES)) {
+        know_nothing(torques);
+        return;
+    }
     forward_solve(normal, WRENCHES, WRENCHES, spread, WRENCHES);
     forward_solve(normal, WRENCHES, WRENCHES, y, 1);
     for (int a = 0; a < WRENCHES; a++) {
@@ -86,5 +97,4 @@ int64_t torque_wrench_update(const TorqueWrench *torques, double span, double sh
         torques->wrench[a] = torques->scale[a] * found;
         torques->deviation[a] = torques->scale[a] * sqrt(variance);
     }
-    return 0;
 }

@@ -83,12 +83,12 @@ class TorqueWrench:
         kernels = library()
         self._find = self._compiled(kernels) if kernels else None
 
-    def _compiled(self, kernels: Library) -> Callable[[float, float], int]:
+    def _compiled(self, kernels: Library) -> Callable[[float, float], None]:
         model, data, m = self._model, self._data, len(self._rows)
         self._v, self._given = np.zeros(model.nv), np.zeros(model.nv - 6)
         self._found, self._spread = np.zeros((2, 6)), np.zeros(12)
         left, right = (sole_of(kernels, model, data, frame) for frame in self._soles)
-        find: Callable[[float, float], int] = kernels.bind(
+        find: Callable[[float, float], None] = kernels.bind(
             "torque_wrench_update",
             nv=model.nv,
             count=m,
@@ -139,8 +139,7 @@ class TorqueWrench:
         share = 1.0 - (1.0 - self._gain) ** (span / self._period)
         if self._find is not None:
             self._v[:], self._given[:] = v, torque
-            if self._find(span, share):
-                raise np.linalg.LinAlgError("the covariance of the residual is not positive")
+            self._find(span, share)
             self.wrench, spread = self._found.copy(), self._spread
         else:
             M = np.triu(data.M) + np.triu(data.M, 1).T

@@ -6,6 +6,7 @@ import numpy as np
 import pinocchio as pin
 import pytest
 
+from surefoot.native.library import VARIABLE
 from surefoot.wbc.estimation.parameters import SensorNoise
 from surefoot.wbc.estimation.torques import TorqueWrench
 from surefoot.wbc.types import RobotState
@@ -125,3 +126,16 @@ def test_a_velocity_of_the_body_that_jumps_is_no_force_on_a_foot(robot):
         seen.append(found.wrench[:, 2])
     shaken = 1e-3 * math.sqrt(2.0) * mass / PERIOD
     assert np.std(np.array(seen)[50:] - wrench[:, 2]) < 0.2 * shaken
+
+
+@pytest.mark.parametrize("lost", ["q", "v"])
+@pytest.mark.parametrize("variable", ["", "0"])
+def test_of_a_state_that_is_not_finite_nothing_is_known(robot, monkeypatch, variable, lost):
+    """An estimate that has diverged ends in a fall, and so raises nothing here."""
+    monkeypatch.setenv(VARIABLE, variable)
+    found = TorqueWrench(robot.model, robot.frames.soles, PERIOD, SensorNoise())
+    _, torque = balanced(robot, robot.standing, 0.5)
+    state = {"q": robot.standing.copy(), "v": np.zeros(robot.nv)}
+    assert np.isfinite(found.update(RobotState(**state), torque)).all()
+    state[lost][8] = np.nan
+    assert np.isnan(found.update(RobotState(**state), torque)).all()

@@ -99,7 +99,9 @@ class SensedState:
             self._contact.update(self._wrench(readings), self._still, self._above)
             self._load = self._contact.wrench
             self._compiled = self._kernel(len(q))
-            self._state = self._now(q, qd)
+            # First readings that are not finite make a state that is not, which the controller tells.
+            nowhere = RobotState(np.full(7 + len(q), np.nan), np.full(6 + len(q), np.nan))
+            self._state = self._now(q, qd) or nowhere
             self._deviation = self._unsure(self._body.offset_jacobians())
         elif not self._lost:
             with np.errstate(all="ignore"):

@@ -5,12 +5,13 @@ import pinocchio as pin
 import pytest
 
 from surefoot.native.library import VARIABLE, library
-from surefoot.readings import Reading
+from surefoot.readings import Reading, Readings
 from surefoot.wbc.estimation.contact import SoleContact
 from surefoot.wbc.estimation.doubt import Doubt
+from surefoot.wbc.estimation.estimator import SensedState
 from surefoot.wbc.estimation.invariant_filter import InvariantFilter
-from surefoot.wbc.estimation.kinematics import ImuMount, SensedBody
-from surefoot.wbc.estimation.parameters import ContactDetection, GroundNoise, SensorNoise
+from surefoot.wbc.estimation.kinematics import Footing, ImuMount, SensedBody
+from surefoot.wbc.estimation.parameters import ContactDetection, EstimatorParameters, GroundNoise, SensorNoise
 from surefoot.wbc.estimation.stand import Stand
 
 pytestmark = pytest.mark.unit
@@ -66,3 +67,22 @@ def test_a_covariance_that_is_not_positive_is_weighed_by_plain_python(monkeypatc
         filter_.correct(stand.d - stand.p + 1e-6, stand.Z.copy(), (np.inf, np.inf))
         found.append(np.concatenate((filter_.P.ravel(), stand.columns.ravel(), stand.offsets)))
     np.testing.assert_allclose(*found, atol=1e-9)
+
+
+@pytest.mark.parametrize("lost", ["joints", "rate"])
+@pytest.mark.parametrize("variable", ["", "0"])
+def test_first_readings_that_are_not_finite_make_a_state_that_is_not(robot, monkeypatch, variable, lost):
+    """The controller says so then, in a sentence."""
+    monkeypatch.setenv(VARIABLE, variable)
+    said = {"joints": robot.standing[7:].copy(), "rate": np.zeros(3), "force": np.array([0.0, 0.0, 9.81])}
+    said[lost][0] = np.nan
+    load = np.zeros((2, 6))
+    load[:, 2] = 490.0
+    joints, rate, force, torque, wrench = (
+        Reading(values, 0.0, True) for values in (*said.values(), np.zeros(robot.nv - 6), load)
+    )
+    feet = np.array([[0.0, 0.1, 0.0], [0.0, -0.1, 0.0]])
+    footing = Footing(feet, np.zeros(2), (0.1, 0.05), lambda x, y: 0.0, lambda x, y: np.array([0.0, 0.0, 1.0]))
+    estimator = SensedState(robot.model, robot.frames.soles, ImuMount(), footing, 2e-3, EstimatorParameters())
+    state = estimator.sense(Readings(0.0, joints, None, torque, rate, rate, force, wrench)).state
+    assert not np.isfinite(state.q).all() or not np.isfinite(state.v).all()

@@ -4,6 +4,7 @@ import math
 from collections.abc import Callable
 from copy import copy
 from dataclasses import replace
+from functools import partial
 
 import numpy as np
 
@@ -17,7 +18,7 @@ from surefoot.planner.steps.phases import Phase, PhaseSamples
 from surefoot.planner.steps.schedule import Schedule
 from surefoot.planner.steps.source import StepSource
 from surefoot.planner.swing.heel_off import FootRoll
-from surefoot.planner.swing.leg_reach import LegReach, around_stance_leg
+from surefoot.planner.swing.leg_reach import LegReach, around_stance_leg, in_time
 from surefoot.planner.swing.trajectory import LEAST_GLIDE, SwingTrajectory, start_swing
 from surefoot.planner.types import Array, FeetState, Footstep, PhaseInfo, PhaseKind
 from surefoot.values import maker
@@ -84,6 +85,7 @@ class Execution:
         self._times = self._wide and legs is not None and parameters.step_adaptation.timing
         self._parameters, self._size, self._terrain = parameters, parameters.size, schedule.ground.terrain
         self._pose = np.repeat([self._size.length, 1.0], 3)
+        self._hardest = math.inf if legs is None else legs.acceleration[0]  # knees are about as strong as hips
         self._told: tuple[Phase, TimeScaling, Schedule, PhaseInfo] | None = None
         self._aimed: Array | None = None  # place for which the swing's target was looked at last
         self._lead, self._patience = parameters.touchdown_lead / t, round(parameters.late_touchdown / t)
@@ -159,25 +161,22 @@ class Execution:
             if lands and adaptation.lands_short(self.schedule, self.landed, feet, dcm(), self.legs):
                 self._swing_anew(clock)
                 return
+            if over and not contact and self.waited < self._patience:
+                self.waited += 1
+                return
+            if felt and not over and self.adapted and self._times:
+                clock, over = clock.showing(phase.end), True
             if over:
-                if not contact and self.waited < self._patience:
-                    self.waited += 1
-                    return
                 self._land(feet.position[swing], clock.now)
             elif felt:
-                if self.adapted and self._times:
-                    clock, over = clock.showing(phase.end), True
-                    self._land(feet.position[swing], clock.now)
-                else:
-                    self.early = True
-                    self.fix(feet.position[swing])
+                self.early = True
+                self.fix(feet.position[swing])
         elif over:
             self.schedule = self.foresight.forgotten(self.schedule, clock.now)
         self.clock = clock
         if over or phase.samples == math.inf:
             self.follow(self.schedule)
-        if self.phase.swing_foot is None:
-            self.swing = None
+        self.swing = None if self.phase.swing_foot is None else self.swing
 
     def change(self, gait: GaitParameters, source: StepSource | None, time: float) -> None:
         """Walk on otherwise; what is left of the present phase changes in proportion to its duration.
@@ -220,8 +219,8 @@ class Execution:
             return False
         self.clock = self.clock.scaled(self.phase.end - self.clock.now, left / t)
         # A heel that would be lifted harder than hips swing a foot stays down.
-        roll, hips = self.roll(time), math.inf if self.legs is None else self.legs.acceleration[0]
-        if roll is not None and roll.start >= time and roll.hardest(time, time + self.time_left) > hips:
+        roll = self.roll(time)
+        if roll is not None and roll.start >= time and roll.hardest(time, time + self.time_left) > self._hardest:
             self.schedule = adaptation.with_foot_flat(self.schedule, self.landed + 1)
         self.follow(self.schedule)
         if self.swing is not None:
@@ -306,7 +305,7 @@ class Execution:
             planned.append(_a_footstep(place.foot, position, place.yaw, normal, step.number, touchdown))
         return tuple(planned)
 
-    def swing_to(self, landing: Footstep, time: float, feet: FeetState, held: bool) -> None:
+    def swing_to(self, landing: Footstep, time: float, feet: FeetState, held: bool, com: Array | None = None) -> None:
         """Let the swing foot go on to where it is to land; asked in single support only.
 
         Args:
@@ -314,6 +313,7 @@ class Execution:
             time: now [s].
             feet: the measured feet, from one of which a swing begins.
             held: keep to the target of before.
+            com: where the CoM will be at the samples from now on, shape (n, 3) [m]; None where its course holds.
         """
         stance, place = self.schedule.step(self.landed).place, landing.position
         if self.swing is None:
@@ -325,8 +325,8 @@ class Execution:
             # Of the place where it landed the height is believed, too: what is off is off in both, and not the map.
             x, y, height = feet.position[stance.foot].tolist()
             unsure = feet.height_deviation, height - self._terrain.height(x, y)
-            lifting = math.inf if self.legs is None else self.legs.acceleration[0]  # knees are about as strong as hips
-            self.swing = start_swing(foot, pose, target, time, self.left, course, self._parameters, unsure, lifting)
+            begin = partial(start_swing, foot, pose, target, time, self.left, unsure=unsure, lifting=self._hardest)
+            self.swing = in_time(begin, course, self._parameters, stance, self.legs, com)
         elif not (self.fixed or held or place is self._aimed):
             target, self._aimed = sole_pose(place, landing.yaw, landing.normal), place
             target[2] -= self.swing.aim

@@ -240,6 +240,7 @@ def in_time(
 
     A step that catches the body may leave the feet so wide apart that a leg does not span it from over the other foot.
     A slow swing leaves its foot behind then: the leg pulls at the hips, and the ZMP goes where nobody asked for it.
+    Hips that cannot swing the foot so hard do it as soon as they can.
 
     Args:
         begin: the swing of a course and of the parameters.
@@ -252,11 +253,13 @@ def in_time(
     best, least = begin(course=course, parameters=parameters), math.inf
     if legs is None or com is None:
         return best
-    begun, t = best.rise_start, parameters.sample_time
+    begun, t, rotation = best.rise_start, parameters.sample_time, frame_rotation(stance.yaw)
     times = begun + t * np.arange(float(min(len(com), math.ceil((best.touchdown_time - begun) / t))))
     for share in GLIDES:
         hurried = replace(course, glide_start=share * course.glide_start, glide_end=share * course.glide_end)
         swing = begin(course=hurried, parameters=parameters)
+        if share < 1.0 and (np.abs(swing.bends(times) @ rotation).max(axis=0) > legs.acceleration).any():
+            break
         shares = legs.stretched(swing, stance, com[: len(times)], times)
         if (most := float(shares.max())) < least:
             best, least = swing, most

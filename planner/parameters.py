@@ -72,11 +72,11 @@ class GroundSearch:
 
         Args:
             deviation: standard deviation of the sole's height over the stance foot [m].
-            over: how high the stance foot is believed over its footstep: as high the ground is believed too low [m].
+            over: how high the feet are believed over the map: as high the ground is believed too low (see `astray`) [m].
         """
         if deviation == 0.0:
             return self, 0.0
-        least, most = min(deviation, self.most_unsure), self.most_unsure
+        least = min(deviation, self.most_unsure)
         speed = self.touchdown_speed + self.unsure_speed * least
         faster = replace(
             self,
@@ -84,8 +84,19 @@ class GroundSearch:
             speed=max(self.speed, speed),
             acceleration=self.acceleration + self.unsure_acceleration * least,
         )
-        # A foot that is farther from the map stands on a step of the ground, which tells nothing of the next place.
-        return faster, self.unsure_aim * least - (over if abs(over) <= most else 0.0)
+        return faster, self.unsure_aim * least - over
+
+    def astray(self, before: float, over: float) -> float:
+        """How high the feet are believed over the map, once one more of them stands [m].
+
+        Height goes astray little by little, and is followed however far. A foot that is off by much stands on a step of
+        the ground, which tells little of the next place: as much as the height may have gone astray since the last one.
+
+        Args:
+            before: the same before [m].
+            over: how high that foot is believed over the map [m].
+        """
+        return before + min(max(over - before, -self.most_unsure), self.most_unsure)
 
     def motion(self, since: float) -> tuple[float, float, float]:
         """Way down [m], downward speed [m/s] and acceleration [m/s^2], `since` the touchdown [s]."""

@@ -75,7 +75,7 @@ class Execution:
     def __init__(self, schedule: Schedule, window: int, legs: LegReach | None = None) -> None:
         self.legs, self._window, parameters = legs, window, schedule.ground.parameters
         t = parameters.sample_time
-        self.landed, self.waited, self.lowering = 0, 0, 0.0
+        self.landed, self.waited, self.lowering, self._astray = 0, 0, 0.0, 0.0
         self.early = self.fixed = self.adapted = False
         self.swing: SwingTrajectory | None = None
         self.clock, self.foresight = TimeScaling(t), Foresight()
@@ -321,10 +321,10 @@ class Execution:
             foot, leaving = landing.foot, self.schedule.step(self.landed - 1).place
             yaw = leaving.yaw + wrap_angle(float(feet.yaw[foot]) - leaving.yaw)
             pose = sole_pose(feet.position[foot], yaw, leaving.normal)
-            course = self.schedule.step(self.phase.step).course
             # Of the place where it landed the height is believed, too: what is off is off in both, and not the map.
             x, y, height = feet.position[stance.foot].tolist()
-            unsure = feet.height_deviation, height - self._terrain.height(x, y)
+            self._astray = self._parameters.search.astray(self._astray, height - self._terrain.height(x, y))
+            unsure, course = (feet.height_deviation, self._astray), self.schedule.step(self.phase.step).course
             begin = partial(start_swing, foot, pose, target, time, self.left, unsure=unsure, lifting=self._hardest)
             self.swing = in_time(begin, course, self._parameters, stance, self.legs, com)
         elif not (self.fixed or held or place is self._aimed):

@@ -72,7 +72,7 @@ class GroundSearch:
 
         Args:
             deviation: standard deviation of the sole's height over the stance foot [m].
-            over: how high the feet are believed over the map: as high the ground is believed too low (see `astray`) [m].
+            over: how high feet are believed over the map, and the ground too low (see `astray`) [m].
         """
         if deviation == 0.0:
             return self, 0.0

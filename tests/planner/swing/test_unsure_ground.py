@@ -1,6 +1,7 @@
 """A swing to ground whose height is not known well: aimed below it, and faster down."""
 
 from dataclasses import replace
+from itertools import accumulate
 from types import SimpleNamespace
 
 import numpy as np
@@ -55,22 +56,33 @@ def test_a_footstep_is_aimed_below_the_ground_and_stays_where_it_is_planned(heig
     np.testing.assert_allclose(moved.footstep, place[:3] + np.array([0.05, 0.0, 0.02]), atol=1e-12)
 
 
-def test_ground_that_the_stance_foot_shows_to_be_higher_or_lower_counts_as_far_as_it_is_unsure():
-    """The height of the ground is that of a foot that stands on it; the truth needs no such look."""
-    most = GroundSearch().most_unsure
+def test_the_ground_is_aimed_at_where_feet_are_believed_over_the_map():
+    """The height of the ground is that of feet that stand on it; the truth needs no such look."""
     level, place = swing(1e-3)
-    for over in (6e-4, -6e-4):
+    for over in (6e-4, -6e-4, -0.02):
         found, _ = swing(1e-3, over=over)
         assert found.target[2] - level.target[2] == pytest.approx(over, abs=1e-12)
         np.testing.assert_allclose(found.footstep, place[:3], atol=1e-12)
-    # A foot on a plate that nobody told of is no ground of another height.
-    assert swing(1e-3, over=most + 1e-6)[0].target[2] == swing(1e-3, over=-0.02)[0].target[2] == level.target[2]
     assert swing(0.0, over=1e-3)[0].aim == 0.0
 
 
-def test_a_walk_whose_feet_are_all_believed_too_low_aims_as_much_lower_at_every_step(stand):
+def test_a_height_that_goes_astray_is_followed_however_far_and_a_step_of_the_ground_is_not():
+    """A plate that nobody told of is no ground of another height; tiles tell where it is on the whole."""
+    search = GroundSearch()
+    most = search.most_unsure
+    assert search.astray(0.0, 0.6 * most) == 0.6 * most
+    assert search.astray(1e-3, 0.02) - 1e-3 == 1e-3 - search.astray(1e-3, -0.02) == pytest.approx(most)
+    drift = -0.9 * most * np.arange(1, 40)
+    assert list(accumulate(drift, search.astray, initial=0.0))[1:] == pytest.approx(drift.tolist())
+    tiles = drift + np.random.default_rng(0).uniform(-0.01, 0.01, len(drift))
+    believed = np.array(list(accumulate(tiles, search.astray, initial=0.0))[1:])
+    assert np.abs(believed - drift)[10:].max() < 0.01
+
+
+@pytest.mark.parametrize("sinks", [8e-4, 5e-3])
+def test_a_walk_whose_feet_are_all_believed_too_low_aims_as_much_lower_at_every_step(stand, sinks):
     """What has drifted is off at the foot that stands and where the next one lands; the map alone does not drift."""
-    gait, sinks, deviation = GaitParameters(steps=4), 8e-4, 3e-4
+    gait, deviation, search = GaitParameters(steps=4), 3e-4, GroundSearch()
     planner, feet = WalkingPlanner(gait, stand(gait.step_width), 0.22, 0.11), stand(gait.step_width)
 
     def update(state, feet):
@@ -83,4 +95,5 @@ def test_a_walk_whose_feet_are_all_believed_too_low_aims_as_much_lower_at_every_
     swings = [plan.swing for plan in plans if plan.swing is not None]
     aims = {round(swing.touchdown_time, 6): swing.aim for swing in swings}
     assert len(aims) == gait.steps
-    np.testing.assert_allclose(list(aims.values()), GroundSearch().unsure_aim * deviation + sinks, atol=1e-9)
+    followed = np.minimum(search.most_unsure * np.arange(1, gait.steps + 1), sinks)
+    np.testing.assert_allclose(list(aims.values()), search.unsure_aim * deviation + followed, atol=1e-9)

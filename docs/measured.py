@@ -72,6 +72,7 @@ MADE = {
     "heel-off": _of_page("heel-off", "gait.heel_off", *HEEL_OFF),
     "rough-ground": _of_page("rough-ground", "ground", *ROUGH),
     "sensor-faults": Made("sensor-faults", columns=("fault", "status", *SENSED, *HIDDEN)),
+    "sensor-limits": Made("docs/campaigns/sensor-limits.yaml"),
     "hidden": Made("hidden", columns=("hidden", "feet", "status", *HIDDEN)),
 }
 """By the name of the result."""

@@ -149,6 +149,18 @@ def faults_table() -> str:
     return table(heads, lines)
 
 
+def limits_table() -> str:
+    """How poor each term may be alone: the rung asked for, and the last that was survived before one that was not."""
+    lines = []
+    for row in rows("sensor-limits"):
+        term, _, unit = row["term"].removesuffix("]").partition(" [")
+        unit = "" if unit == "-" else f" {unit}"
+        above = "at least " if row["side"] == "above" else ""
+        most = float(f"{float(row['threshold']):.2g}")
+        lines.append([term, f"{row['low']}{unit}", f"{above}{most:g}{unit}"])
+    return table(("term", "first rung", "survived up to"), lines)
+
+
 def hidden_table() -> str:
     """What is survived with one thing each that the robot is not told, on both feet; of several runs the worst."""
     heads = "hidden", "feet", "survived", "CoP at p99", "step moved", "force found that nobody gave"
@@ -231,6 +243,7 @@ TABLES: dict[str, tuple[str, Callable[[], str]]] = {
     "heel-off": ("fast-walking.md", partial(runs_table, "heel-off", ("gait.heel_off",), HEEL_OFF)),
     "rough-ground": ("scenarios.md", partial(runs_table, "rough-ground", ("ground",), ROUGH)),
     "sensor-faults": ("sensors.md", faults_table),
+    "sensor-limits": ("sensors.md", limits_table),
     "hidden": ("sensors.md", hidden_table),
     **{
         name: (page, partial(plain_table, name))

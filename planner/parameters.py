@@ -38,6 +38,7 @@ class GroundSearch:
         unsure_acceleration: likewise of the acceleration [1/s^2].
         unsure_aim: how far below the ground a footstep is aimed, in standard deviations of its height [-].
         most_unsure: deviation of the height beyond which nothing changes any more [m].
+        most_astray: by which feet are believed more over the map, or under it, than a step before (see `astray`) [m].
 
     Raises:
         ParameterError: a number is negative, an acceleration is zero, or one that must be finite is not.
@@ -53,6 +54,7 @@ class GroundSearch:
     unsure_acceleration: float = quantity(5100.0, "1/s^2")
     unsure_aim: float = quantity(1.5, "-")
     most_unsure: float = quantity(2e-3, "m")
+    most_astray: float = quantity(6e-3, "m")
 
     def __post_init__(self) -> None:
         for entry in fields(self):
@@ -96,7 +98,7 @@ class GroundSearch:
             before: the same before [m].
             over: how high that foot is believed over the map [m].
         """
-        return before + min(max(over - before, -self.most_unsure), self.most_unsure)
+        return before + min(max(over - before, -self.most_astray), self.most_astray)
 
     def motion(self, since: float) -> tuple[float, float, float]:
         """Way down [m], downward speed [m/s] and acceleration [m/s^2], `since` the touchdown [s]."""

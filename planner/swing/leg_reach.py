@@ -240,7 +240,7 @@ def in_time(
 
     A step that catches the body may leave the feet so wide apart that a leg does not span it from over the other foot.
     A slow swing leaves its foot behind then: the leg pulls at the hips, and the ZMP goes where nobody asked for it.
-    Hips that cannot swing the foot so hard do it as soon as they can.
+    Where hips are left too little for a foot that has to go elsewhere it keeps to its time: quick swings, above all.
 
     Args:
         begin: the swing of a course and of the parameters.
@@ -258,7 +258,8 @@ def in_time(
     for share in GLIDES:
         hurried = replace(course, glide_start=share * course.glide_start, glide_end=share * course.glide_end)
         swing = begin(course=hurried, parameters=parameters)
-        if share < 1.0 and (np.abs(swing.bends(times) @ rotation).max(axis=0) > legs.acceleration).any():
+        hardest = np.abs(swing.bends(times) @ rotation).max(axis=0)
+        if share < 1.0 and (hardest > HURRIED * np.array(legs.acceleration)).any():
             break
         shares = legs.stretched(swing, stance, com[: len(times)], times)
         if (most := float(shares.max())) < least:
@@ -270,6 +271,10 @@ def in_time(
 
 STRAIGHTEST = 0.99
 """Share of its length at which a leg that swings is still bent enough to be moved [-]."""
+
+HURRIED = 0.5
+"""Share of what hips can that a swing may take of them so as to be in time: with all of it 5 of 7 punches backward on a
+small robot fell that are survived by 5 of 7 without [-]."""
 
 GLIDES = (1.0, 0.9, 0.8, 0.7, 0.6, 0.5, 0.4, 0.3, 0.2)
 """Shares of the glide of a course in which a swing may do it [-]."""

@@ -273,8 +273,8 @@ STRAIGHTEST = 0.99
 """Share of its length at which a leg that swings is still bent enough to be moved [-]."""
 
 HURRIED = 0.5
-"""Share of what hips can that a swing may take of them so as to be in time: with all of it 5 of 7 punches backward on a
-small robot fell that are survived by 5 of 7 without [-]."""
+"""Share of what hips can that a swing may take of them so as to be in time; with all of it a small robot falls by 5 of
+7 punches backward, with half by 2 as without any hurry [-]."""
 
 GLIDES = (1.0, 0.9, 0.8, 0.7, 0.6, 0.5, 0.4, 0.3, 0.2)
 """Shares of the glide of a course in which a swing may do it [-]."""

@@ -92,7 +92,7 @@ class GroundSearch:
         """How high the feet are believed over the map, once one more of them stands [m].
 
         Height goes astray little by little, and is followed however far. A foot that is off by much stands on a step of
-        the ground, which tells little of the next place: as much as the height may have gone astray since the last one.
+        the ground. That counts no more than height goes astray in a step.
 
         Args:
             before: the same before [m].

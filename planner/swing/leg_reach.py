@@ -250,22 +250,24 @@ def in_time(
         legs: what they can do; None where the swing keeps to its course.
         com: where the CoM will be at the samples from now on, shape (n, 3) [m]; None likewise.
     """
-    best, least = begin(course=course, parameters=parameters), math.inf
+    best = begin(course=course, parameters=parameters)
     if legs is None or com is None:
         return best
     begun, t, rotation = best.rise_start, parameters.sample_time, frame_rotation(stance.yaw)
     times = begun + t * np.arange(float(min(len(com), math.ceil((best.touchdown_time - begun) / t))))
+    com, hips = com[: len(times)], HURRIED * np.array(legs.acceleration)
+    shares = legs.stretched(best, stance, com, times)
+    least, bent = float(shares.max()), max(STRAIGHTEST, float(shares[0]))
     for share in GLIDES:
+        if least <= bent:
+            break
         hurried = replace(course, glide_start=share * course.glide_start, glide_end=share * course.glide_end)
         swing = begin(course=hurried, parameters=parameters)
-        hardest = np.abs(swing.bends(times) @ rotation).max(axis=0)
-        if share < 1.0 and (hardest > HURRIED * np.array(legs.acceleration)).any():
+        if (np.abs(swing.bends(times) @ rotation).max(axis=0) > hips).any():
             break
-        shares = legs.stretched(swing, stance, com[: len(times)], times)
-        if (most := float(shares.max())) < least:
+        most = float(legs.stretched(swing, stance, com, times).max())
+        if most < least:
             best, least = swing, most
-        if most <= max(STRAIGHTEST, float(shares[0])):
-            break
     return best
 
 
@@ -276,8 +278,8 @@ HURRIED = 0.5
 """Share of what hips can that a swing may take of them so as to be in time; with all of it a small robot falls by 5 of
 7 punches backward, with half by 2 as without any hurry [-]."""
 
-GLIDES = (1.0, 0.9, 0.8, 0.7, 0.6, 0.5, 0.4, 0.3, 0.2)
-"""Shares of the glide of a course in which a swing may do it [-]."""
+GLIDES = (0.9, 0.8, 0.7, 0.6, 0.5, 0.4, 0.3, 0.2)
+"""Shares of the glide of a course in which a swing may do it where all of it is too long [-]."""
 
 
 def around_stance_leg(

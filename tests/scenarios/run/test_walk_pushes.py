@@ -67,5 +67,5 @@ def test_a_foot_left_far_behind_does_not_hold_the_body_back(seed, tmp_path):
 @pytest.mark.parametrize("seed", [2, 4])
 def test_one_that_takes_its_time_fells_it(seed, tmp_path, monkeypatch):
     """Negative control."""
-    monkeypatch.setattr(leg_reach, "GLIDES", (1.0,))
+    monkeypatch.setattr(leg_reach, "GLIDES", ())
     assert not caught_wide(tmp_path, seed)

@@ -216,11 +216,13 @@ class SensedState:
             filter_.weigh(J)
         if readings.joint_position.fresh:
             slipped = filter_.correct(body.position, body.rotation)
-            if slipped is not None:
+            if slipped:
                 J = body.offset_jacobians()
                 filter_.spread((0.5, 0.5))
-                self._land(slipped, J)
+                for k in slipped:
+                    self._land(k, J, None)
                 filter_.weigh(J)
+                filter_.correct(body.position, body.rotation)
         if due:
             self._deviation = self._unsure(J)
             self._above = self._over_ground()
@@ -256,15 +258,18 @@ class SensedState:
                 filter_.lift(k)
         for k in (0, 1):
             if firm[k] and not filter_.standing[k]:
-                self._land(k, J)
+                self._land(k, J, self._height(k))
 
-    def _land(self, k: int, J: Array) -> None:
-        filter_, body, noise = self.filter, self._body, self._parameters.ground
-        s = filter_.stand
-        foot = s.p + s.R @ body.position[k]
-        height = self._footing.height(float(foot[0]), float(foot[1]))
-        known = (height, noise.height) if noise.height > 0.0 else None
-        filter_.land(k, body.position[k], body.rotation[k], J[k], known, noise.landing, noise.landing_turn)
+    def _height(self, k: int) -> tuple[float, float] | None:
+        """Of the ground under a sole, and its deviation; None where nothing is known of it [m]."""
+        s, deviation = self.filter.stand, self._parameters.ground.height
+        foot = s.p + s.R @ self._body.position[k]
+        return (self._footing.height(float(foot[0]), float(foot[1])), deviation) if deviation > 0.0 else None
+
+    def _land(self, k: int, J: Array, height: tuple[float, float] | None) -> None:
+        """A foot stands anew, on ground of that height; one that slipped is on ground that has told its own before."""
+        body, noise = self._body, self._parameters.ground
+        self.filter.land(k, body.position[k], body.rotation[k], J[k], height, noise.landing, noise.landing_turn)
 
     def _over_ground(self) -> Array:
         """How far the soles are over the ground, shape (2,) [m]."""

@@ -294,7 +294,7 @@ class InvariantFilter:
             found[6 * i + 3 : 6 * i + 6] = pin.log3(s.R @ Y[k] @ s.Z[k].T)
         return found
 
-    def correct(self, y: Array, Y: Array, gates: tuple[float, float] = GATES) -> int | None:
+    def correct(self, y: Array, Y: Array, gates: tuple[float, float] = GATES) -> tuple[int, ...]:
         """Take the kinematics of a tick.
 
         Args:
@@ -303,24 +303,25 @@ class InvariantFilter:
             gates: as of `GATES`; infinite where standing feet are known to stand still.
 
         Returns:
-            the foot that has slipped, which is then to land anew; None where none has.
+            the feet that have slipped, which are then to land anew, whereupon the kinematics of the tick are still to
+            be taken: the covariance counts those of every tick. Empty where none has, and all is taken.
         """
         if self._gain is None:
-            return None
+            return ()
         if self._kernels is not None:
             slipped = self._kernels.correct(y, Y, gates[len(self._feet) - 1])
-            return None if slipped is None else self._slipped(slipped)
+            return () if slipped is None else self._slipped(slipped)
         r = self.residual(y, Y)
         if float(r @ self._weights @ r) > gates[len(self._feet) - 1]:
             return self._slipped(r)
         self.stand.move(self._gain @ r)
-        return None
+        return ()
 
-    def _slipped(self, r: Array) -> int:
-        """The foot whose own residual is the less likely."""
+    def _slipped(self, r: Array) -> tuple[int, ...]:
+        """The feet whose own residuals are not likely, and the one whose is the least in any case."""
         blocks = [self._weights[6 * i : 6 * i + 6, 6 * i : 6 * i + 6] for i in range(len(self._feet))]
         likely = [float(r[6 * i : 6 * i + 6] @ block @ r[6 * i : 6 * i + 6]) for i, block in enumerate(blocks)]
-        return self._feet[int(np.argmax(likely))]
+        return tuple(k for k, square in zip(self._feet, likely, strict=True) if square >= min(GATES[0], max(likely)))
 
     @property
     def compiled(self) -> Bound | None:

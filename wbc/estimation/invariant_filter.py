@@ -46,6 +46,9 @@ chance in one of 370 landings, which then tells no height [-]."""
 UNSURE = 0.5
 """Deviation of what springs under a sole do, over what they are believed to do [-]."""
 
+NONE = 1e-9
+"""As many ticks whose kinematics were not taken, as all of an outage are, tell the covariance nothing [-]."""
+
 GATES = (38.0, 50.0)
 """Square of the normalised residual of one foot, and of two, from which on one has slipped: by chance in one of 10^6
 ticks [-]."""
@@ -54,7 +57,8 @@ ticks [-]."""
 class InvariantFilter:
     """The filter. Propagation and correction of the state at every tick, covariance and gain when they are asked for.
 
-    Between two computations the gain holds; it is that of a tick, and the covariance counts all ticks of its span.
+    Between two computations the gain holds; it is that of a tick. The covariance counts the ticks of its span whose
+    kinematics were taken, and no others: a filter that counts what it refused is sure of what it never heard.
 
     Args:
         stand: where everything is at the start; the soles are level on the ground.
@@ -79,7 +83,8 @@ class InvariantFilter:
         self.P, self._F = np.zeros((n, n)), np.eye(n)
         self.acceleration = np.zeros(3)
         self.standing = [True, True]
-        self._since, self._ticks = 0.0, 0
+        # The soles stand where the kinematics of the start say.
+        self._since, self._taken = 0.0, 1
         self._gain: Array | None = None
         self._feet: list[int] = []
         kernels = library()
@@ -153,7 +158,6 @@ class InvariantFilter:
             time: that both are of [s].
         """
         self._since += time
-        self._ticks += 1
         if self._kernels is not None:
             self.acceleration = self._kernels.propagate(rate, force, time)
             return
@@ -257,9 +261,9 @@ class InvariantFilter:
         self.standing[k] = False
 
     def weigh(self, J: Array) -> None:
-        """Gain of a tick, and covariance after as many ticks as since the last time; J as in `begin`."""
+        """Gain of a tick, and covariance after as many as were taken since the last time; J as in `begin`."""
         self._feet = feet = [k for k in (0, 1) if self.standing[k]]
-        ticks, self._ticks = max(self._ticks, 1), 0
+        ticks, self._taken = self._taken or NONE, 0
         if not feet:
             self._gain = None
             return
@@ -303,18 +307,21 @@ class InvariantFilter:
             gates: as of `GATES`; infinite where standing feet are known to stand still.
 
         Returns:
-            the feet that have slipped, which are then to land anew, whereupon the kinematics of the tick are still to
-            be taken: the covariance counts those of every tick. Empty where none has, and all is taken.
+            the feet that have slipped. Nothing of the tick is taken then, also of the other foot: they are to land
+            anew, and the tick is to be taken after it. Empty where none has slipped, and all is taken.
         """
         if self._gain is None:
             return ()
         if self._kernels is not None:
             slipped = self._kernels.correct(y, Y, gates[len(self._feet) - 1])
-            return () if slipped is None else self._slipped(slipped)
-        r = self.residual(y, Y)
-        if float(r @ self._weights @ r) > gates[len(self._feet) - 1]:
-            return self._slipped(r)
-        self.stand.move(self._gain @ r)
+            if slipped is not None:
+                return self._slipped(slipped)
+        else:
+            r = self.residual(y, Y)
+            if float(r @ self._weights @ r) > gates[len(self._feet) - 1]:
+                return self._slipped(r)
+            self.stand.move(self._gain @ r)
+        self._taken += 1
         return ()
 
     def _slipped(self, r: Array) -> tuple[int, ...]:

@@ -1,4 +1,4 @@
-"""From sensors, heights drift on tiles that soles tilt on: feet are aimed at the ground all the same."""
+"""From sensors on tiles that soles tilt on: heights drift there, and soles are turned by what they stand on."""
 
 import pytest
 
@@ -23,7 +23,8 @@ def survives(seed):
         return not simulation.fell
 
 
-@pytest.mark.parametrize("seed", [7, 8])
+# Of the last, one sole stands on an edge after the walk, and both slip in the estimate.
+@pytest.mark.parametrize("seed", [38, 68, 43])
 def test_walks_on_tiles_with_loads_and_masses_that_it_is_not_told(seed):
     assert survives(seed)
 
@@ -35,4 +36,4 @@ def test_with_heights_that_are_followed_no_farther_than_2_mm_it_falls(monkeypatc
         return over if abs(over) <= search.most_unsure else 0.0
 
     monkeypatch.setattr(GroundSearch, "astray", near)
-    assert not survives(7)
+    assert not survives(68)

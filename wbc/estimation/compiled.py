@@ -121,14 +121,14 @@ class FilterKernels:
             self._sprung[:] = sprung
         self._spread(time)
 
-    def weigh(self, feet: list[int], J: Array, ticks: int) -> bool:
+    def weigh(self, feet: list[int], J: Array, ticks: float) -> bool:
         """See `InvariantFilter.weigh`, of these feet; returns whether it was done, which needs positive covariances."""
         rows = POSE * len(feet)
         self._feet[: len(feet)], self._jacobian[:] = feet, J
         self._filter.struct.feet_count = len(feet)
         self.gain = self._all_gain[: self._size * rows].reshape(-1, rows)
         self.weights = self._all_weights[: rows * rows].reshape(rows, rows)
-        return not self._weigh(float(ticks))
+        return not self._weigh(ticks)
 
     def correct(self, y: Array, Y: Array, gate: float) -> Array | None:
         """See `InvariantFilter.correct`; returns the residual where a foot has slipped, of which nothing is taken."""

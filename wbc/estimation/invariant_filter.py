@@ -263,7 +263,7 @@ class InvariantFilter:
     def weigh(self, J: Array) -> None:
         """Gain of a tick, and covariance after as many as were taken since the last time; J as in `begin`."""
         self._feet = feet = [k for k in (0, 1) if self.standing[k]]
-        ticks, self._taken = self._taken or NONE, 0
+        ticks, self._taken = float(self._taken or NONE), 0
         if not feet:
             self._gain = None
             return

@@ -191,7 +191,10 @@ class WalkingPlanner:
         if self._recovery.steps_out(local, window):
             support, local, window = self._sight(state)
         # Online constraints generator: the box comes with the reference, the reach of the feet here.
-        step, unsure = StepProblem.of(time, execution, feet, support.frame), self._unsure(state, window)
+        unsure = self._unsure(state, window)
+        if self._recovery.steps_no_more(local, support, window, unsure):
+            support, local, window = self._sight(state)
+        step = StepProblem.of(time, execution, feet, support.frame)
         balance = self._recovery.balance(step, local, support, window, self._plan, unsure)
         if self._recovery.goes_again(time, feet, local, support, window, balance, unsure):
             support, local, window = self._sight(state)

@@ -63,6 +63,33 @@ class Recovery:
         execution.follow(with_step_in_place(schedule, now, foot))
         return True
 
+    def steps_no_more(self, local: Array, support: Support, window: Window, unsure: float = 0.0) -> bool:
+        """Leave out inserted steps on the spot that both feet make needless where they are now; says whether.
+
+        A foot that lands early ends its single support with the DCM not yet where the next step needs it. So each such
+        step would ask for another one, for ever.
+
+        Args:
+            local: as of `balance`.
+            support: likewise.
+            window: likewise.
+            unsure: likewise.
+        """
+        execution, numbers = self._execution, self._parameters.recovery
+        schedule, landed = execution.schedule, execution.landed
+        later = schedule.after(landed)
+        # One with which a robot that stood steps out has a stop before it.
+        if execution.phase.kind is not PhaseKind.DOUBLE or not (schedule.stands and later and later[0].stop is None):
+            return False
+        here, usual = schedule.apart(landed)
+        if not all(step.inserted for step in later) or float(np.hypot(*(here - usual))) > numbers.apart:
+            return False
+        dcm = self._capture_point(local, window)[1]
+        if signed_distance(support.outer, support.origin + support.rotation @ dcm) < numbers.tolerance + unsure:
+            return False
+        execution.follow(schedule.until(landed, stands=True))
+        return True
+
     def adds_steps(self, margin: float) -> bool:
         """Insert steps before those to come where the next one leaves something to catch; says whether.
 

@@ -1,0 +1,52 @@
+"""Walks on tiles that soles tilt on, with loads and masses that nobody tells: they are survived, and they end."""
+
+import pytest
+
+import surefoot
+from surefoot.planner.parameters import GroundSearch
+from surefoot.planner.recovery.recovery import Recovery
+from surefoot.planner.types import PhaseKind
+from surefoot.scenarios.study.campaigns.campaign import read_campaign
+from surefoot.scenarios.study.campaigns.points import cells
+
+pytestmark = pytest.mark.physics
+
+GOOD = "sensing.source=ekf", "sensing.preset=good", "gait=natural"
+SMALL = "sensing.source=truth", "gait=paper"
+
+
+def walked(seed, settings):
+    """A run of the campaign `robustness` to its end: whether it has not fallen, and its last phase."""
+    campaign = read_campaign("robustness", settings, seed + 1)
+    *_, cell = cells(campaign)
+    point = cell.point(seed, {})
+    with surefoot.Simulation(surefoot.load(point.base.reference, dict(point.settings))) as simulation:
+        while not simulation.done:
+            simulation.advance()
+        return not simulation.fell, simulation.look().plan.phase
+
+
+# Of the last, one sole stands on an edge after the walk, and both slip in the estimate.
+@pytest.mark.parametrize("seed", [38, 68, 43])
+def test_walks_on_tiles_with_loads_and_masses_that_it_is_not_told(seed):
+    assert walked(seed, GOOD)[0]
+
+
+def test_with_heights_that_are_followed_no_farther_than_2_mm_it_falls(monkeypatch):
+    """Negative control: its feet hang over the ground at their touchdown, and the DCM does not wait."""
+
+    def near(search, before, over):
+        return over if abs(over) <= search.most_unsure else 0.0
+
+    monkeypatch.setattr(GroundSearch, "astray", near)
+    assert not walked(68, GOOD)[0]
+
+
+def test_small_feet_that_land_early_do_not_step_on_the_spot_for_ever(monkeypatch):
+    """Tiles end each single support early, with the DCM short of its next foot; both feet hold it where they are."""
+    stood, phase = walked(31, SMALL)
+    assert stood and phase.kind is PhaseKind.STAND
+    # Negative control: each step on the spot asks for the next one.
+    monkeypatch.setattr(Recovery, "steps_no_more", lambda *_: False)
+    stood, for_ever = walked(31, SMALL)
+    assert stood and for_ever.kind is not PhaseKind.STAND and for_ever.step > phase.step + 2

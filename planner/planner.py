@@ -220,8 +220,7 @@ class WalkingPlanner:
             shift = shifts[0] if free[0] else balance.shift
             balance = Balance(balance.planned, balance.movable, shift, balance.delay, balance.outside, catching)
         if execution.phase.swing_foot is not None:
-            ahead = self._plan.com[1:] if catching and self._plan is not None else None
-            execution.swing_to(footsteps[0], time, feet, motion.solver is SolverStatus.HELD, ahead)
+            execution.swing_to(footsteps[0], time, feet, motion.solver is SolverStatus.HELD)
         self._plan = self._world_plan(time, support, window, local, motion, footsteps, balance)
         if self._plan.phase.left < 2.0 * self.parameters.sample_time:  # the next tick may begin another
             later = execution.foresight.next_of(execution)

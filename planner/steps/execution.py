@@ -4,7 +4,6 @@ import math
 from collections.abc import Callable
 from copy import copy
 from dataclasses import replace
-from functools import partial
 
 import numpy as np
 
@@ -18,7 +17,7 @@ from surefoot.planner.steps.phases import Phase, PhaseSamples
 from surefoot.planner.steps.schedule import Schedule
 from surefoot.planner.steps.source import StepSource
 from surefoot.planner.swing.heel_off import FootRoll
-from surefoot.planner.swing.leg_reach import LegReach, around_stance_leg, in_time
+from surefoot.planner.swing.leg_reach import LegReach, around_stance_leg
 from surefoot.planner.swing.trajectory import LEAST_GLIDE, SwingTrajectory, start_swing
 from surefoot.planner.types import Array, FeetState, Footstep, PhaseInfo, PhaseKind
 from surefoot.values import maker
@@ -305,7 +304,7 @@ class Execution:
             planned.append(_a_footstep(place.foot, position, place.yaw, normal, step.number, touchdown))
         return tuple(planned)
 
-    def swing_to(self, landing: Footstep, time: float, feet: FeetState, held: bool, com: Array | None = None) -> None:
+    def swing_to(self, landing: Footstep, time: float, feet: FeetState, held: bool) -> None:
         """Let the swing foot go on to where it is to land; asked in single support only.
 
         Args:
@@ -313,7 +312,6 @@ class Execution:
             time: now [s].
             feet: the measured feet, from one of which a swing begins.
             held: keep to the target of before.
-            com: where the CoM will be at the samples from now on, shape (n, 3) [m]; None where its course holds.
         """
         stance, place = self.schedule.step(self.landed).place, landing.position
         if self.swing is None:
@@ -325,8 +323,8 @@ class Execution:
             x, y, height = feet.position[stance.foot].tolist()
             self._astray = self._parameters.search.astray(self._astray, height - self._terrain.height(x, y))
             unsure, course = (feet.height_deviation, self._astray), self.schedule.step(self.phase.step).course
-            begin = partial(start_swing, foot, pose, target, time, self.left, unsure=unsure, lifting=self._hardest)
-            self.swing = in_time(begin, course, self._parameters, stance, self.legs, com)
+            numbers, hardest = self._parameters, self._hardest
+            self.swing = start_swing(foot, pose, target, time, self.left, course, numbers, unsure, hardest)
         elif not (self.fixed or held or place is self._aimed):
             target, self._aimed = sole_pose(place, landing.yaw, landing.normal), place
             target[2] -= self.swing.aim

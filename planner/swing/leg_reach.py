@@ -1,7 +1,6 @@
 """What legs can do to catch a body: where a foot may land beside its stance foot, how hard hips swing it there."""
 
 import math
-from collections.abc import Callable
 from dataclasses import field, replace
 
 import numpy as np
@@ -10,7 +9,7 @@ from surefoot.planner.geometry import frame_rotation, wrap_angle
 from surefoot.planner.parameters import PlannerParameters
 from surefoot.planner.swing.quintics import BRAKING, PEAK, detour, farthest
 from surefoot.planner.swing.step_region import soles_apart
-from surefoot.planner.swing.trajectory import SwingCourse, SwingTrajectory
+from surefoot.planner.swing.trajectory import SwingTrajectory
 from surefoot.planner.types import Array, Footstep
 from surefoot.values import dataclass
 
@@ -33,7 +32,6 @@ class LegReach:
         sole: length and width of the soles; those of points need no more room where they are turned [m].
         height: of the hips over the soles as the robot stands [m].
         length: from a hip to its sole with the knee straight [m].
-        below: how far the hips are below the CoM [m].
         parameters: of the planner.
     """
 
@@ -46,7 +44,6 @@ class LegReach:
     sole: tuple[float, float] = (0.0, 0.0)
     height: float = 0.0
     length: float = math.inf
-    below: float = 0.0
     parameters: PlannerParameters = field(default_factory=PlannerParameters)
 
     @property
@@ -147,19 +144,6 @@ class LegReach:
         span = min(0.5 * stride / self.parameters.recovery.spanned, self.length)
         return max(self.height - math.sqrt(self.length**2 - span**2), 0.0)
 
-    def stretched(self, swing: SwingTrajectory, stance: Footstep, com: Array, times: Array) -> Array:
-        """How far a sole that swings is from its hip, as shares of the leg's length, shape (n,) [-].
-
-        Args:
-            swing: of the foot.
-            stance: the other foot, by whose heading the hips are.
-            com: where the CoM will be, shape (n, 3) [m].
-            times: when, shape (n,) [s].
-        """
-        beside = 0.5 * swing.foot.side * self.hip_width
-        hip = np.array([-beside * math.sin(stance.yaw), beside * math.cos(stance.yaw), -self.below])
-        return np.asarray(np.linalg.norm(com + hip - swing.positions(times)[:, :3], axis=1) / self.length)
-
     def edges(self, swing: Array, nominal: Array, singles: Array) -> Array:
         """Where a foot can be swung to in times: front, left, minus back and minus right edge, shape (4, n) [m].
 
@@ -226,60 +210,6 @@ STRIDE = 2.6
 
 ANYWHERE = np.array([[-np.inf, -np.inf], [np.inf, np.inf]])
 """The face of a foot that may land on any ground: its lower and upper corner [m]."""
-
-
-def in_time(
-    begin: Callable[..., SwingTrajectory],
-    course: SwingCourse,
-    parameters: PlannerParameters,
-    stance: Footstep,
-    legs: LegReach | None,
-    com: Array | None,
-) -> SwingTrajectory:
-    """A swing that begins now, and glides so soon that its leg is not stretched while the body goes on over the other.
-
-    A step that catches the body may leave the feet so wide apart that a leg does not span it from over the other foot.
-    A slow swing leaves its foot behind then: the leg pulls at the hips, and the ZMP goes where nobody asked for it.
-    Where hips are left too little for a foot that has to go elsewhere it keeps to its time: quick swings, above all.
-
-    Args:
-        begin: the swing of a course and of the parameters.
-        course: that of the step, whose glide is the longest.
-        parameters: of the planner.
-        stance: the foot that carries.
-        legs: what they can do; None where the swing keeps to its course.
-        com: where the CoM will be at the samples from now on, shape (n, 3) [m]; None likewise.
-    """
-    best = begin(course=course, parameters=parameters)
-    if legs is None or com is None:
-        return best
-    begun, t, rotation = best.rise_start, parameters.sample_time, frame_rotation(stance.yaw)
-    times = begun + t * np.arange(float(min(len(com), math.ceil((best.touchdown_time - begun) / t))))
-    com, hips = com[: len(times)], HURRIED * np.array(legs.acceleration)
-    shares = legs.stretched(best, stance, com, times)
-    least, bent = float(shares.max()), max(STRAIGHTEST, float(shares[0]))
-    for share in GLIDES:
-        if least <= bent:
-            break
-        hurried = replace(course, glide_start=share * course.glide_start, glide_end=share * course.glide_end)
-        swing = begin(course=hurried, parameters=parameters)
-        if (np.abs(swing.bends(times) @ rotation).max(axis=0) > hips).any():
-            break
-        most = float(legs.stretched(swing, stance, com, times).max())
-        if most < least:
-            best, least = swing, most
-    return best
-
-
-STRAIGHTEST = 0.99
-"""Share of its length at which a leg that swings is still bent enough to be moved [-]."""
-
-HURRIED = 0.5
-"""Share of what hips can that a swing may take of them so as to be in time; with all of it a small robot falls by 5 of
-7 punches backward, with half by 2 as without any hurry [-]."""
-
-GLIDES = (0.9, 0.8, 0.7, 0.6, 0.5, 0.4, 0.3, 0.2)
-"""Shares of the glide of a course in which a swing may do it where all of it is too long [-]."""
 
 
 def around_stance_leg(

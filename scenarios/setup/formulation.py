@@ -186,7 +186,6 @@ def leg_reach(parameters: PlannerParameters, facts: RobotFacts, com_height: floa
         sole=(facts.foot_length, facts.foot_width),
         height=standing_height - facts.com_above_hip,
         length=facts.leg_length,
-        below=facts.com_above_hip,
     )
 
 

@@ -36,7 +36,6 @@ NOTICED = {
     "steps.schedule._LAID_OUT": "tests/planner/steps/test_laid_out.py",
     "steps.schedule._STOP_AHEAD": "tests/planner/steps/test_schedule.py",
     "swing.leg_reach.GLIDES": "tests/planner/swing/test_leg_reach.py",
-    "swing.leg_reach.HURRIED": "tests/planner/swing/test_leg_reach.py",
     "swing.leg_reach.STRAIGHTEST": "tests/planner/swing/test_leg_reach.py",
     "swing.leg_reach.STRIDE": "tests/scenarios/study/tour/test_turned.py",
     "swing.quintics.PEAK": "tests/planner/swing/test_swing_limits.py",

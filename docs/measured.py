@@ -49,6 +49,7 @@ SENSED = (*(f"velocity_estimation_error_rms.{axis}" for axis in (0, 1)), *_ZMP)
 _PLANNED = ("planner_infeasible_fraction", *_ZMP, "zmp_inside_fraction")
 HEEL_OFF = ("speed_mean", "cost_of_transport", "knee_angle_mean", "knee_torque_rms", "torque_ratio_max")
 HIDDEN = ("cop_ratio_p99", "step_shift", "ghost_force_max")
+WITHOUT = (*(f"com_estimation_error_rms.{axis}" for axis in range(3)), "estimation_drift", "ghost_force_max")
 ROUGH = ("speed_mean", "cop_ratio_p99", "torque_ratio_max")
 
 
@@ -73,6 +74,7 @@ MADE = {
     "rough-ground": _of_page("rough-ground", "ground", *ROUGH),
     "sensor-faults": Made("sensor-faults", columns=("fault", "status", *SENSED, *HIDDEN)),
     "sensor-limits": Made("docs/campaigns/sensor-limits.yaml"),
+    "without-foot-sensors": _of_page("without-foot-sensors", "walk", *WITHOUT),
     "hidden": Made("hidden", columns=("hidden", "feet", "status", *HIDDEN)),
 }
 """By the name of the result."""

@@ -8,7 +8,7 @@ from itertools import groupby
 from pathlib import Path
 from typing import Any
 
-from measured import HEEL_OFF, HIDDEN, RESULTS, ROUGH, SENSED, head, limit_of, rows, searches
+from measured import HEEL_OFF, HIDDEN, RESULTS, ROUGH, SENSED, WITHOUT, head, limit_of, rows, searches
 from page_table import table
 
 from surefoot.scenarios.judge.metrics import OWN
@@ -161,6 +161,20 @@ def limits_table() -> str:
     return table(("term", "first rung", "survived up to"), lines)
 
 
+def without_table() -> str:
+    """How every walk goes without force sensors in its feet; of several runs the worst."""
+    heads = "walk", "passed", "CoM against the stance foot x, y, z", "drift", "force found that nobody gave"
+    lines = []
+    for walk, group in groupby(rows("without-foot-sensors"), lambda row: row["walk"]):
+        runs = list(group)
+        passed = sum(run["status"] == "pass" for run in runs)
+        *com, drift, ghost = (max(float(run[name] or 0.0) for run in runs) for name in WITHOUT)
+        error = ", ".join(f"{1e3 * most:.1f}" for most in com)
+        cells = f"{passed} of {len(runs)}", f"{error} mm", f"{1e2 * drift:.2f} %", f"{ghost:.0f} N"
+        lines.append([f"`{walk}`", *cells])
+    return table(heads, lines)
+
+
 def hidden_table() -> str:
     """What is survived with one thing each that the robot is not told, on both feet; of several runs the worst."""
     heads = "hidden", "feet", "survived", "CoP at p99", "step moved", "force found that nobody gave"
@@ -244,6 +258,7 @@ TABLES: dict[str, tuple[str, Callable[[], str]]] = {
     "rough-ground": ("scenarios.md", partial(runs_table, "rough-ground", ("ground",), ROUGH)),
     "sensor-faults": ("sensors.md", faults_table),
     "sensor-limits": ("sensors.md", limits_table),
+    "without-foot-sensors": ("sensors.md", without_table),
     "hidden": ("sensors.md", hidden_table),
     **{
         name: (page, partial(plain_table, name))

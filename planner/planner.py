@@ -192,7 +192,7 @@ class WalkingPlanner:
             support, local, window = self._sight(state)
         # Online constraints generator: the box comes with the reference, the reach of the feet here.
         unsure = self._unsure(state, window)
-        if self._recovery.steps_no_more(local, support, window, unsure):
+        if execution.adapted and self._recovery.steps_no_more(local, support, window, unsure):
             support, local, window = self._sight(state)
         step = StepProblem.of(time, execution, feet, support.frame)
         balance = self._recovery.balance(step, local, support, window, self._plan, unsure)

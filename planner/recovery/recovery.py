@@ -76,13 +76,15 @@ class Recovery:
             unsure: likewise.
         """
         execution, numbers = self._execution, self._parameters.recovery
+        if execution.phase.kind is not PhaseKind.DOUBLE or not execution.schedule.stands:
+            return False
         schedule, landed = execution.schedule, execution.landed
         later = schedule.after(landed)
-        # One with which a robot that stood steps out has a stop before it.
-        if execution.phase.kind is not PhaseKind.DOUBLE or not (schedule.stands and later and later[0].stop is None):
+        # A step with which a robot that stood steps out has a stop before it.
+        if not later or later[0].stop is not None or not all(step.inserted for step in later):
             return False
         here, usual = schedule.apart(landed)
-        if not all(step.inserted for step in later) or float(np.hypot(*(here - usual))) > numbers.apart:
+        if float(np.hypot(*(here - usual))) > numbers.apart:
             return False
         dcm = self._capture_point(local, window)[1]
         if signed_distance(support.outer, support.origin + support.rotation @ dcm) < numbers.tolerance + unsure:

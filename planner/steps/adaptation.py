@@ -1,4 +1,4 @@
-"""What a step that is adapted to a push does to the schedule: steps inserted, later ones moved, a heel lifted."""
+"""What pushes and feet that slide do to the schedule: steps inserted, later ones moved, a heel lifted."""
 
 import math
 from dataclasses import replace
@@ -15,6 +15,9 @@ from surefoot.planner.types import FeetState, Foot, PhaseKind, Twist
 
 Dcm = tuple[float, float, float]
 """The DCM in the world frame, and its rate ω [m, 1/s]."""
+
+_SLID = 0.005
+"""Way from where it landed beyond which a foot that stands has slid, of the reference robot [m]."""
 
 _LIFTED = 0.01
 """Height over its swing from which on a foot does not land as it was to, of the reference robot [m]."""
@@ -83,6 +86,27 @@ def aligned(schedule: Schedule, number: int) -> Schedule:
     shift = aside * float(aside @ (step.place.position - step.nominal.position)[:2])
     later = (replace(one, place=one.beside(shift, terrain)) for one in schedule.after(number))
     return replace(schedule, steps=(*schedule.steps[: schedule.index(number) + 1], *later), shift=shift)
+
+
+def with_feet_slid(schedule: Schedule, number: int, feet: FeetState, length: float) -> Schedule:
+    """Feet that have slid since the last step landed stand where they are, and the steps to come go on from there.
+
+    What stands long slides far, be it in the estimate alone. The body then stays over its feet, and not over the place
+    in the world where they once landed.
+
+    Args:
+        schedule: the steps in sight.
+        number: of the step that landed last.
+        feet: as they are measured.
+        length: the robot's size [-].
+    """
+    for one in (number - 1, number):
+        place = schedule.step(one).place
+        position = feet.position[place.foot]
+        x, y = (position - place.position)[:2].tolist()
+        if math.hypot(x, y) > _SLID * length:
+            schedule = schedule.moved(one, position)
+    return schedule
 
 
 def with_heel_lifted(schedule: Schedule, number: int, radius: float) -> Schedule:

@@ -172,6 +172,8 @@ class Execution:
                 self.fix(feet.position[swing])
         elif over:
             self.schedule = self.foresight.forgotten(self.schedule, clock.now)
+        elif phase.kind is PhaseKind.STAND:
+            self.schedule = adaptation.with_feet_slid(self.schedule, self.landed, feet, self._size.length)
         self.clock = clock
         if over or phase.samples == math.inf:
             self.follow(self.schedule)

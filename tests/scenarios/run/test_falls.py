@@ -17,20 +17,28 @@ KEYS = {
 }  # fmt: skip
 
 
-def fallen(out, profile=PROFILES["default"]):
-    return surefoot.run(surefoot.load("walk", KEYS), out=out, planner=profile).verdict.metrics
+SEEDS = range(3)
+
+
+def fallen(out, seed, profile=PROFILES["default"]):
+    return surefoot.run(surefoot.load("walk", {**KEYS, "seed": seed}), out=out, planner=profile).verdict.metrics
 
 
 def test_who_is_pushed_over_gives_way(tmp_path):
-    given = fallen(tmp_path / "given")
-    assert given["fell"]
-    assert given["fall_warning"] > 0.2
-    assert given["capture_margin_min"] < 0.0
+    """How a body hits its stops depends on every tick before it, so that is a mean over seeds of the sensors."""
     profile = PROFILES["default"]
     deaf = replace(profile.parameters.recovery, fall_margin=math.inf)
-    stiff = fallen(tmp_path / "stiff", replace(profile, parameters=replace(profile.parameters, recovery=deaf)))
-    assert stiff["fell"]
-    assert stiff["fall_warning"] is None
-    assert given["joint_limit_margin_min"] > stiff["joint_limit_margin_min"] + 0.2
-    assert given["torque_at_limit_fraction"] < 0.5 * stiff["torque_at_limit_fraction"]
-    assert given["joint_speed_ratio_max"] < 0.5 * stiff["joint_speed_ratio_max"]
+    rigid = replace(profile, parameters=replace(profile.parameters, recovery=deaf))
+    kept = []
+    for seed in SEEDS:
+        given, stiff = fallen(tmp_path / "given", seed), fallen(tmp_path / "stiff", seed, rigid)
+        assert given["fell"]
+        assert given["fall_warning"] > 0.2
+        assert given["capture_margin_min"] < 0.0
+        assert stiff["fell"]
+        assert stiff["fall_warning"] is None
+        kept.append(given["joint_limit_margin_min"] - stiff["joint_limit_margin_min"])
+        assert given["torque_at_limit_fraction"] < 0.5 * stiff["torque_at_limit_fraction"]
+        assert given["joint_speed_ratio_max"] < 0.5 * stiff["joint_speed_ratio_max"]
+    assert min(kept) > 0.0
+    assert sum(kept) / len(kept) > 0.2

@@ -43,7 +43,7 @@ def test_both_soles_that_slip_at_once_slip_once(robot, monkeypatch, variable):
         sense(tick)
     del landed[:]
     believed[0] = 3e-3
-    # Whatever joint it is, it turns both legs, or all of a leg that stands.
+    # All joints of both legs turn at once, so that no sole is where it stood.
     joints[:] += 5e-3
     for tick in range(100, 200):
         state = sense(tick)

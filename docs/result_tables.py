@@ -268,6 +268,7 @@ TABLES: dict[str, tuple[str, Callable[[], str]]] = {
             ("sabotage", "checking.md"),
             ("criteria", "scenarios.md"),
             ("public-humanoids", "robots.md"),
+            ("robustness", "campaigns.md"),
         )
     },
     "startup": ("benchmarks.md", startup_table),

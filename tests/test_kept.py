@@ -81,7 +81,8 @@ def test_an_entry_under_another_key_is_none(source, cache):
     kept.from_sources("a", Maker())
     (entry,) = cache.glob("*.json")
     assert kept.opened(entry.stem, entry.read_bytes()) is not None
-    assert kept.opened("0" + entry.stem[1:], entry.read_bytes()) is None
+    other = ("1" if entry.stem[0] == "0" else "0") + entry.stem[1:]
+    assert kept.opened(other, entry.read_bytes()) is None
 
 
 def test_without_a_folder_nothing_is_kept(source, tmp_path, monkeypatch):

@@ -47,7 +47,7 @@ UNSURE = 0.5
 """Deviation of what springs under a sole do, over what they are believed to do [-]."""
 
 NONE = 1e-9
-"""Stands for no tick that was taken, as in an outage of the encoders: the noise is then as good as infinite [-]."""
+"""Stands for zero ticks, as in an outage of the encoders. The noise is then as good as infinite [-]."""
 
 GATES = (38.0, 50.0)
 """Square of the normalised residual of one foot, and of two, from which on one has slipped: by chance in one of 10^6
@@ -261,7 +261,7 @@ class InvariantFilter:
         self.standing[k] = False
 
     def weigh(self, J: Array) -> None:
-        """Gain of a tick, and covariance after the ticks that were taken since the last time; J as in `begin`."""
+        """Gain and covariance after the ticks since the last time; J as in `begin`."""
         self._feet = feet = [k for k in (0, 1) if self.standing[k]]
         ticks, self._taken = float(self._taken or NONE), 0
         if not feet:

@@ -90,9 +90,9 @@ def sensor_noise(errors: SensorErrors, period: float) -> SensorNoise:
         gyro_bias=errors.gyro_bias,
         gyro_walk=errors.gyro_walk,
         accelerometer_density=math.hypot(errors.accelerometer_density, errors.accelerometer_noise * root, pushing),
-        # Likewise a share of gravity for an acceleration.
-        accelerometer_bias=math.hypot(errors.accelerometer_bias, GRAVITY * errors.imu_misalignment),
+        accelerometer_bias=errors.accelerometer_bias,
         accelerometer_walk=errors.accelerometer_walk,
+        mounting=errors.imu_misalignment,
         encoder=math.hypot(errors.encoder_noise, rounding),
         encoder_offset=errors.encoder_offset,
         joint_torque=errors.joint_torque_noise,

@@ -2,7 +2,7 @@
 #include "algebra.h"
 #include "kernels.h"
 
-enum { TURN = 0, VELOCITY = 3, POSITION = 6, FOOT = 9, SOLE = 15, GYRO = 21, FORCE = 24, FIXED = 27 };
+enum { TURN = 0, VELOCITY = 3, POSITION = 6, FOOT = 9, SOLE = 15, GYRO = 21, FORCE = 24, FIXED = 27, AXES = 3 };
 enum { POSE = 6, MOST = 12, GROUP = 15 };
 
 static double square(double x) { return x * x; }
@@ -122,7 +122,7 @@ int64_t covariance_weigh(const Covariance *covariance, double ticks) {
             const double own = a < 3 ? covariance->kinematics : covariance->turning;
             at[r] = (a < 3 ? FOOT + 3 * k : SOLE + 3 * k - 3) + a;
             from[r] = a < 3 ? POSITION + a : TURN + a - 3;
-            noise[r] = square(own) + square(covariance->encoder) * dot(J + m * a, J + m * a, m);
+            noise[r] = square(own) + square(covariance->encoder) * dot(J + m * a, J + m * a, m - AXES);
             const double *block = J + m * (a < 3 ? 0 : 3), *line = R + 3 * (a % 3);
             for (int64_t j = 0; j < m; j++)
                 turned[m * r + j] = line[0] * block[j] + line[1] * block[m + j] + line[2] * block[2 * m + j];

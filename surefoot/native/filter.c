@@ -70,12 +70,14 @@ int64_t filter_correct(const Filter *filter, double gate) {
 
 /* Counterpart of `SensedState._now`; returns whether it is less than what has diverged. */
 int64_t sensed_base_now(const SensedBase *sensed, double late) {
-    double base[9], half[9], turn[9], seen[3], way[6], *p = sensed->q, *v = sensed->v;
+    double base[9], half[9], turn[9], mounted[9], seen[3], way[6], *p = sensed->q, *v = sensed->v;
     const int64_t joints = sensed->joints;
+    rotation_of(sensed->offsets + sensed->chain_count, turn);
+    compose(sensed->mount, turn, mounted);
     for (int i = 0; i < 3; i++)
-        for (int j = 0; j < 3; j++) base[3 * i + j] = dot(sensed->R + 3 * i, sensed->mount + 3 * j, 3);
+        for (int j = 0; j < 3; j++) base[3 * i + j] = dot(sensed->R + 3 * i, mounted + 3 * j, 3);
     for (int i = 0; i < 3; i++) seen[i] = sensed->rate[i] - sensed->gyro_bias[i];
-    rotate(sensed->mount, seen, v + 3);
+    rotate(mounted, seen, v + 3);
     rotate_back(base, sensed->columns, v);
     cross(v + 3, sensed->lever, seen);
     for (int i = 0; i < 3; i++) v[i] -= seen[i];

@@ -1172,6 +1172,7 @@ typedef struct {
     const double *imu_joint_position;
     const double *mount_rotation;
     const double *mount_position;
+    const double *mounting;
     const SensedSole *left;
     const SensedSole *right;
     const double *joint_jacobian_columns;
@@ -1224,7 +1225,7 @@ int64_t covariance_weigh(const Covariance *covariance, double ticks);
 
 /*
  * Counterpart of `wbc.estimation.doubt.Doubt`: lever of the CoM from the stance sole in axes of the IMU, and variances
- * of CoM, soles' heights, one height over the other, and CoM velocity, shape (9,).
+ * of CoM, soles' heights, one height over the other, tilt of the base, and CoM velocity, shape (11,).
  */
 typedef struct {
     const SensedBody *body;

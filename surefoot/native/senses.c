@@ -2,7 +2,7 @@
 #include "algebra.h"
 #include "kernels.h"
 
-enum { VELOCITY = 3, POSITION = 6, POSE = 6, FIXED = 27 };
+enum { VELOCITY = 3, POSITION = 6, POSE = 6, FIXED = 27, AXES = 3 };
 enum { TICK, AT, TOLD };
 
 static double square(double x) { return x * x; }
@@ -124,9 +124,11 @@ int64_t sole_contact_update(const SoleContact *contact, double share, int64_t st
 
 /* Counterpart of `SensedBody.update`, after Pinocchio has placed the joints. */
 void sensed_body_update(const SensedBody *body) {
-    double joint[9], apart[3], sole[9], at[3];
+    double joint[9], apart[3], sole[9], at[3], turn[9], mounted[9];
     transpose(body->imu_joint_rotation_columns, joint);
-    compose(joint, body->mount_rotation, body->imu_rotation);
+    rotation_of(body->mounting, turn);
+    compose(body->mount_rotation, turn, mounted);
+    compose(joint, mounted, body->imu_rotation);
     rotate(joint, body->mount_position, body->imu_position);
     for (int i = 0; i < 3; i++) body->imu_position[i] += body->imu_joint_position[i];
     for (int k = 0; k < 2; k++) {
@@ -155,9 +157,10 @@ static void sensed_motion(const SensedBody *body, int64_t joint, const double *a
 
 /* Counterpart of `SensedBody.offset_jacobians`, after Pinocchio has computed the joints' Jacobian. */
 void sensed_body_jacobians(const SensedBody *body) {
-    const int64_t m = body->chain_count;
+    const int64_t m = body->chain_count, columns = m + AXES;
     for (int k = 0; k < 2; k++) {
         double at[3], seen[POSE], moved[3];
+        const double *y = body->position + 3 * k;
         sensed_point(body, k, at);
         for (int64_t c = 0; c < m; c++) {
             const int64_t j = body->chain[c];
@@ -165,8 +168,12 @@ void sensed_body_jacobians(const SensedBody *body) {
             sensed_motion(body, j, at, moved);
             rotate_back(body->imu_rotation, moved, seen);
             rotate_back(body->imu_rotation, body->joint_jacobian_columns + POSE * (POSE + j) + 3, seen + 3);
-            for (int i = 0; i < POSE; i++) body->jacobian[m * (POSE * k + i) + c] = carries * seen[i];
+            for (int i = 0; i < POSE; i++) body->jacobian[columns * (POSE * k + i) + c] = carries * seen[i];
         }
+        const double turned[POSE * AXES] = {0.0, y[2], -y[1], -y[2], 0.0, y[0], y[1], -y[0], 0.0,
+                                            1.0, 0.0,  0.0,   0.0,   1.0, 0.0,  0.0,  0.0,   1.0};
+        for (int i = 0; i < POSE; i++)
+            memcpy(body->jacobian + columns * (POSE * k + i) + m, turned + AXES * i, AXES * sizeof(double));
     }
 }
 
@@ -177,10 +184,10 @@ void sensed_body_jacobians(const SensedBody *body) {
 void doubt_tell(const Doubt *doubt, int64_t stance, double gyro) {
     const SensedBody *body = doubt->body;
     const Filter *filter = doubt->covariance->filter;
-    const int64_t n = filter->size, m = n - FIXED, joints = body->joints;
+    const int64_t n = filter->size, m = n - FIXED, mount = n - AXES, joints = body->joints;
     const double *R = filter->R, *P = doubt->covariance->P, *C = body->com_jacobian_columns + 3 * POSE;
     double *rows = doubt->rows, *lever = doubt->lever, to_world[9], at[3], apart[3], arm[3], reach[3];
-    memset(rows, 0, 6 * n * sizeof(double));
+    memset(rows, 0, 8 * n * sizeof(double));
     for (int i = 0; i < 3; i++) /* R times the transpose of the IMU's orientation in the base */
         for (int j = 0; j < 3; j++) to_world[3 * i + j] = dot(R + 3 * i, body->imu_rotation + 3 * j, 3);
     sensed_point(body, stance, at);
@@ -195,12 +202,16 @@ void doubt_tell(const Doubt *doubt, int64_t stance, double gyro) {
         rotate(to_world, own, by);
         rotate(to_world, C + 3 * j, moving);
         for (int i = 0; i < 3; i++) speed[i] += square(moving[i]);
-        if (in_chain < m && body->chain[in_chain] == j) {
+        if (in_chain < body->chain_count && body->chain[in_chain] == j) {
             for (int i = 0; i < 3; i++) rows[n * i + FIXED + in_chain] = -by[i];
             in_chain++;
         } else {
             for (int i = 0; i < 3; i++) com[i] += square(by[i]);
         }
+    }
+    for (int i = 0; i < 3; i++) { /* R times the skew matrix of the lever */
+        double *row = rows + n * i + mount;
+        cross(R + 3 * i, lever, row);
     }
     rotate(R, lever, arm);
     rows[1] = arm[2], rows[2] = -arm[1];
@@ -216,7 +227,12 @@ void doubt_tell(const Doubt *doubt, int64_t stance, double gyro) {
         for (int64_t j = 0; j < m; j++) row[FIXED + j] = -(R[6] * J[j] + R[7] * J[m + j] + R[8] * J[2 * m + j]);
     }
     for (int64_t i = 0; i < n; i++) rows[5 * n + i] = rows[3 * n + i] - rows[4 * n + i];
-    for (int a = 0; a < 6; a++) {
+    for (int i = 0; i < 2; i++) {
+        double *row = rows + n * (6 + i);
+        row[i] = 1.0;
+        for (int j = 0; j < AXES; j++) row[mount + j] = -R[3 * i + j];
+    }
+    for (int a = 0; a < 8; a++) {
         double sum = 0.0;
         for (int64_t i = 0; i < n; i++)
             if (rows[n * a + i] != 0.0) sum += rows[n * a + i] * dot(P + n * i, rows + n * a, n);
@@ -227,7 +243,7 @@ void doubt_tell(const Doubt *doubt, int64_t stance, double gyro) {
     const double far = dot(reach, reach, 3);
     for (int i = 0; i < 3; i++) {
         doubt->variance[i] += com[i] * square(doubt->encoder_offset);
-        doubt->variance[6 + i] = P[(n + 1) * (VELOCITY + i)] + speed[i] * square(doubt->rate_noise) +
+        doubt->variance[8 + i] = P[(n + 1) * (VELOCITY + i)] + speed[i] * square(doubt->rate_noise) +
                                  (far - square(reach[i])) * square(gyro);
     }
 }

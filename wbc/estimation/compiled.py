@@ -143,7 +143,7 @@ class StateKernel:
         kernels: the library.
         stand: state of the filter, whose arrays stay where they are.
         mount: orientation of the IMU in the base, shape (3, 3), and its place there, shape (3,) [m].
-        chain: joints of which the filter finds the zeros, shape (m,).
+        chain: joints of which the filter finds the zeros, shape (m,); the offsets after these are of the mount.
         joints: how many there are.
         rate: angular velocity of the IMU with its bias, in an array that stays likewise, shape (3,) [rad/s].
         diverged: place and speed, of base and joints together, from which on an estimate is none [m; m/s, rad/s].

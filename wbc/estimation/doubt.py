@@ -12,7 +12,7 @@ from surefoot.wbc.estimation.estimate import Deviation
 from surefoot.wbc.estimation.invariant_filter import InvariantFilter
 from surefoot.wbc.estimation.kinematics import SensedBody
 from surefoot.wbc.estimation.parameters import SensorNoise
-from surefoot.wbc.estimation.stand import OFFSETS, POSITION, TURN, VELOCITY
+from surefoot.wbc.estimation.stand import AXES, OFFSETS, POSITION, TURN, VELOCITY
 from surefoot.wbc.external import SPAN
 from surefoot.wbc.types import GRAVITY, Array
 
@@ -33,7 +33,7 @@ class Doubt:
         self._body, self._sensors, self._rate_noise = body, sensors, rate_noise
         self._weight = GRAVITY * body.mass
         self._turning: tuple[float, float] | None = None
-        self._lever, self._variance = np.zeros(3), np.zeros(9)
+        self._lever, self._variance = np.zeros(3), np.zeros(11)
         self._tell: Callable[[int, float], None] | None = None
         self._of: InvariantFilter | None = None
 
@@ -57,8 +57,8 @@ class Doubt:
             self._tell(stance, gyro)
             lever, variance = self._lever, self._variance
         deviation = np.sqrt(variance)
-        com, heights, apart, speed = deviation[:3], deviation[3:5], deviation.item(5), deviation[6:]
-        tilt, up = np.sqrt(np.diagonal(filter_.P)[:2]), float(lever @ filter_.stand.R[2])
+        com, heights, apart, tilt = deviation[:3], deviation[3:5], deviation.item(5), deviation[6:8]
+        speed, up = deviation[8:], float(lever @ filter_.stand.R[2])
         load = self._of_load(float(speed[:2].max()), float(com[:2].max()), float(tilt.max()), up, gyro, contact)
         return Deviation(com, speed, tilt, heights, apart, *load)
 
@@ -72,7 +72,7 @@ class Doubt:
             covariance=covariance,
             encoder_offset=self._sensors.encoder_offset,
             rate_noise=self._rate_noise,
-            rows=np.zeros((6, len(filter_.P))),
+            rows=np.zeros((8, len(filter_.P))),
             lever=self._lever,
             variance=self._variance,
         )
@@ -81,19 +81,20 @@ class Doubt:
     def _plain(self, filter_: InvariantFilter, stance: int, gyro: float, J: Array) -> tuple[Array, Array]:
         """Lever of the CoM from the stance sole in axes of the IMU, and variances of what `deviation` says.
 
-        Of the CoM, of the soles' heights, of one over the other, and of the CoM velocity, shape (9,).
+        Of the CoM, of the soles' heights, of one over the other, of the base's tilt, and of the CoM velocity, shape (11,).
         """
         body, sensors, s, P = self._body, self._sensors, filter_.stand, filter_.P
         lever, by_joints, moving = body.com_jacobians(stance)
         by_joints = s.R @ by_joints
-        rows = np.zeros((6, len(P)))
+        rows = np.zeros((8, len(P)))
         rows[:3, TURN] = -pin.skew(s.R @ lever)
-        rows[:3, OFFSETS] = -by_joints[:, body.chain]
+        rows[:3, OFFSETS] = np.hstack((-by_joints[:, body.chain], s.R @ pin.skew(lever)))
         for k in (0, 1):
             rows[3 + k, TURN] = -pin.skew(s.R @ body.position[k] + s.p)[2]
             rows[3 + k, POSITION.stop - 1] = 1.0
             rows[3 + k, OFFSETS] = -s.R[2] @ J[k, :3]
         rows[5] = rows[3] - rows[4]
+        rows[6:, TURN], rows[6:, -AXES:] = np.eye(3)[:2], -s.R[:2]
         place = np.maximum(np.einsum("ij,jk,ik->i", rows, P, rows), 0.0)
         by_joints[:, body.chain] = 0.0
         place[:3] += (by_joints**2).sum(axis=1) * sensors.encoder_offset**2

@@ -16,7 +16,7 @@ from surefoot.wbc.estimation.joints import KEPT, JointObserver
 from surefoot.wbc.estimation.kinematics import Footing, ImuMount, SensedBody
 from surefoot.wbc.estimation.parameters import EstimatorParameters
 from surefoot.wbc.estimation.rates import RateFilter
-from surefoot.wbc.estimation.stand import Stand
+from surefoot.wbc.estimation.stand import AXES, Stand
 from surefoot.wbc.estimation.torques import TorqueWrench
 from surefoot.wbc.types import GRAVITY, Array, RobotState
 
@@ -128,7 +128,8 @@ class SensedState:
 
     def _channels(self) -> dict[str, Array]:
         s = self.filter.stand
-        return {"gyro_bias": s.gyro_bias.copy(), "force_bias": s.force_bias.copy(), "offsets": s.offsets.copy()}
+        zeros, mounting = s.offsets[:-AXES].copy(), s.offsets[-AXES:].copy()
+        return {"gyro_bias": s.gyro_bias.copy(), "force_bias": s.force_bias.copy(), "offsets": zeros, "mounting": mounting}
 
     def _feeling(self, readings: Readings) -> SoleContact:
         """Contact by sensors in the feet, or by the torques of the joints."""
@@ -160,7 +161,7 @@ class SensedState:
         What observes the joints follows an impact later than the IMU does, which would be a force that is none.
         """
         s, reading = self.filter.stand, readings.joint_position
-        joints, at = self._known(reading.values, s.offsets), self._tick - round(reading.age / self._period)
+        joints, at = self._body.known(reading.values, s.offsets), self._tick - round(reading.age / self._period)
         rate, v = readings.angular_velocity.values - s.gyro_bias, s.v
         if readings.joint_velocity is not None:
             speed = readings.joint_velocity.values
@@ -178,22 +179,16 @@ class SensedState:
         body, footing = self._body, self._footing
         R, normals = footing.attitude(body, joints), footing.normals()
         p = (footing.position - body.position @ R.T).mean(axis=0)
-        m = len(body.chain)
+        m = len(body.chain) + AXES
         columns = np.vstack((np.zeros(3), p, footing.position))
         stand = Stand(R, columns, np.zeros((2, 3, 3)), np.zeros(3), np.zeros(3), np.zeros(m))
         parameters, leaning = self._parameters, footing.leaning is not None
         filter_ = InvariantFilter(stand, parameters.sensors, parameters.ground, self._period, leaning)
         J = body.offset_jacobians()
         filter_.begin(body.position, body.rotation, J, normals, ATTITUDE)
-        body.update(self._known(joints, filter_.stand.offsets), filter_.stand.R)
+        body.update(joints, filter_.stand.R, filter_.stand.offsets)
         filter_.weigh(J)
         return filter_
-
-    def _known(self, joints: Array, offsets: Array) -> Array:
-        """Angles of the encoders less what their zeros are known to be off."""
-        known = joints.copy()
-        known[self._body.chain] -= offsets
-        return known
 
     def _step(self, readings: Readings) -> None:
         filter_, contact, body = self.filter, self._contact, self._body
@@ -204,7 +199,7 @@ class SensedState:
             self._rate.update(readings.angular_velocity.values, self._gained(at), at - self._imu_at)
             self._imu_at = at
         contact.update(self._wrench(readings), self._still, self._above)
-        body.update(self._known(readings.joint_position.values, filter_.stand.offsets), filter_.stand.R)
+        body.update(readings.joint_position.values, filter_.stand.R, filter_.stand.offsets)
         changed = contact.firm != filter_.standing
         due = changed or self._tick % self._every == 0
         if due:
@@ -289,7 +284,7 @@ class SensedState:
             gained = self._period * gained
         if self._compiled is not None:
             return self._compiled(q, qd, gained, time)
-        q = self._known(q, s.offsets)
+        q = self._body.known(q, s.offsets)
         base, p, velocity = self._body.base(s.R, s.p, s.v, self._rate.rate - s.gyro_bias, q, qd)
         if gained is not None:
             way = time * (velocity + 0.5 * gained)

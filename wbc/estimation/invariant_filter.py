@@ -3,16 +3,16 @@
 Hartley, Ghaffari, Eustice and Grizzle, "Contact-aided invariant extended Kalman filtering for robot state estimation",
 International Journal of Robotics Research 2020, with the orientations of the feet as Bloesch et al. have them ("State
 estimation for legged robots: consistent fusion of leg kinematics and IMU", RSS 2012; Rotella et al. 2014), and with the
-zeros of the encoders as states.
+zeros of the encoders and the turn of the IMU on its mount as states.
 
 The state is X = (R, v, p, d_0, d_1) of SE_4(3), the orientations Z_0, Z_1 of the soles, the biases b_g and b_a and the
-offsets o of the encoders. Its error ξ is that of the right, X = exp(ξ) X̂, Z = exp(ζ) Ẑ, so that R' = R hat(ω) and
+offsets o of the encoders and of the mount. Its error ξ is that of the right, X = exp(ξ) X̂, Z = exp(ζ) Ẑ, so that R' = R hat(ω) and
 v' = R a + g give (eq. 28 and 37 there)
 
     ξ_R' = -R̂ β_g,   ξ_v' = hat(g) ξ_R - hat(v̂) R̂ β_g - R̂ β_a,   ξ_p' = ξ_v - hat(p̂) R̂ β_g,   ξ_d' = -hat(d̂) R̂ β_g,
 
 which but for the biases β knows no state: group-affine. A sole at y with orientation Y in the frame of the IMU, by the
-encoders less their offsets, gives for a foot that stands (eq. 33, with J the Jacobian of y and Y to the joints)
+encoders and the mount less their offsets, gives for a foot that stands (eq. 33, with J the Jacobian of y and Y to both)
 
     R̂ y + p̂ - d̂ = ξ_d - ξ_p + R̂ J_y o,   log(R̂ Y Ẑᵀ) = ζ - ξ_R + R̂ J_Y o.
 """
@@ -24,7 +24,7 @@ from surefoot.native.library import Bound, library
 from surefoot.similarity import GRAVITY
 from surefoot.wbc.estimation.compiled import FilterKernels
 from surefoot.wbc.estimation.parameters import GroundNoise, SensorNoise
-from surefoot.wbc.estimation.stand import FOOT, FORCE, GYRO, OFFSETS, POSITION, SOLE, TURN, VELOCITY, Stand
+from surefoot.wbc.estimation.stand import AXES, FOOT, FORCE, GYRO, OFFSETS, POSITION, SOLE, TURN, VELOCITY, Stand
 from surefoot.wbc.types import Array
 
 FIXED = 27
@@ -69,7 +69,7 @@ class InvariantFilter:
 
     Attributes:
         stand: the state.
-        P: covariance of its error, shape (27 + m, 27 + m), in an array that stays where it is.
+        P: covariance of its error, shape (30 + m, 30 + m), in an array that stays where it is.
         acceleration: of the IMU in the world, last, shape (3,) [m/s^2].
         standing: feet that stand, left first.
     """
@@ -94,26 +94,28 @@ class InvariantFilter:
         self._kernels = FilterKernels(kernels, stand, self.P, sensors, ground, *ways) if kernels else None
         spread = np.zeros(n)
         spread[VELOCITY], spread[GYRO], spread[FORCE] = 1e-3, sensors.gyro_bias, sensors.accelerometer_bias
-        spread[OFFSETS] = sensors.encoder_offset
+        spread[OFFSETS], spread[-AXES:] = sensors.encoder_offset, sensors.mounting
         self.P[np.diag_indices(n)] = spread**2
 
     def begin(self, y: Array, Y: Array, J: Array, normals: Array, tilt: float) -> None:
-        """Attitude and height from soles that are level on the ground.
+        """Attitude and height from soles that are level on the ground, which heading and place of the world are of.
+
+        An offset that is found later then turns the IMU and not the way that the soles go.
 
         Args:
             y: sole centres in the frame of the IMU, shape (2, 3) [m].
             Y: their orientations, shape (2, 3, 3).
-            J: Jacobians of both to the joints of the chain, shape (2, 6, m).
+            J: Jacobians of both as of `SensedBody.offset_jacobians`, shape (2, 6, m + 3).
             normals: of the ground under them, shape (2, 3).
             tilt: how far the attitude may be off before [rad].
         """
         s, n, P = self.stand, len(self.P), self.P
-        P[0, 0] = P[1, 1] = tilt**2
-        P[8, 8] = tilt**2
+        D = np.einsum("ii->i", P)
+        D[TURN] = D[POSITION] = tilt**2
         lever = np.eye(n)
         lever[POSITION, TURN] = pin.skew(s.p)
         P[:] = lever @ P @ lever.T
-        rows, wanted = np.zeros((6, n)), np.zeros(6)
+        rows, wanted = np.zeros((9, n)), np.zeros(9)
         for k in (0, 1):
             # Sole normals R̂ Y e_z turn by ξ_R - R̂ J_Y o, sole heights move by ξ_p + hat-terms of ξ_R - R̂ J_y o.
             up, turned = normals[k], s.R @ J[k, 3:]
@@ -130,10 +132,16 @@ class InvariantFilter:
                     row[TURN], row[OFFSETS] = axis, -axis @ turned
                     wanted[3 * k + i] = axis @ np.cross(s.R @ Y[k, :, 2], up)
             foot = s.R @ y[k] + s.p
-            row = rows[3 * k + 2]
-            row[TURN], row[POSITION], row[OFFSETS] = -pin.skew(foot)[2], _UNIT[2], -(s.R @ J[k, :3])[2]
+            moved = np.zeros((3, n))
+            moved[:, TURN], moved[:, POSITION], moved[:, OFFSETS] = -pin.skew(foot), _UNIT, -s.R @ J[k, :3]
+            rows[3 * k + 2] = moved[2]
             wanted[3 * k + 2] = s.d[k, 2] - foot[2]
-        noise = np.tile([self._ground.level] * 2 + [self._ground.landing], 2)
+            # Between the soles is their middle, and their headings have a mean.
+            rows[6:8] += 0.5 * moved[:2]
+            rows[8, OFFSETS] -= 0.5 * turned[2]
+        rows[8, TURN] = _UNIT[2]
+        ground = self._ground
+        noise = np.r_[np.tile([ground.level] * 2 + [ground.landing], 2), [ground.kinematics] * 2, ground.turning]
         self._correct(rows, wanted, noise**2)
         for k in (0, 1):
             # By the zeros that are known from now on they are elsewhere.
@@ -230,7 +238,7 @@ class InvariantFilter:
             k: foot.
             y: its sole's centre in the frame of the IMU, shape (3,) [m].
             Y: its orientation, shape (3, 3).
-            J: Jacobian of both to the joints of the chain, shape (6, m).
+            J: Jacobian of both as of `SensedBody.offset_jacobians`, shape (6, m + 3).
             height: of the ground there, as it is believed, and its deviation; None where that is not known. A foot
                 that cannot have landed on that by all that is known has found a step of the ground [m].
             place: deviation of where it comes to rest [m].
@@ -278,7 +286,7 @@ class InvariantFilter:
         PH = self.P[:, rows] - self.P[:, columns] + self.P[:, OFFSETS] @ turned.T
         S = PH[rows] - PH[columns] + turned @ PH[OFFSETS]
         ground, encoder = self._ground, self._sensors.encoder
-        levers = (J[feet].reshape(-1, J.shape[2]) ** 2).sum(axis=1) * encoder**2
+        levers = (J[feet, :, :-AXES].reshape(6 * len(feet), -1) ** 2).sum(axis=1) * encoder**2
         noise = levers + np.tile([ground.kinematics**2] * 3 + [ground.turning**2] * 3, len(feet))
         many = S.copy()
         many[np.diag_indices_from(S)] += noise / ticks

@@ -12,6 +12,7 @@ import pinocchio as pin
 
 from surefoot.native.library import Bound, Library, library
 from surefoot.values import dataclass
+from surefoot.wbc.estimation.stand import AXES
 from surefoot.wbc.leaning import line_centre
 from surefoot.wbc.model import cross
 from surefoot.wbc.types import Array
@@ -68,14 +69,15 @@ class SensedBody:
             self._placement = model.frames[self._carrier].placement * self._placement
         parent = 1 if self._carrier is None else model.frames[self._carrier].parentJoint
         self._parent = parent
-        self._at_base = not self._behind and self._placement.isIdentity(1e-12)
         turned = not np.allclose(self._placement.rotation, np.eye(3), rtol=0.0, atol=1e-12)
         self._to_imu = np.ascontiguousarray(self._placement.rotation.T) if turned else None
         self.chain = _between(model, parent, self._soles)
         self._q, self._v = pin.neutral(model), np.zeros(model.nv)
         self._imu_rotation, self._imu_position = self._placement.rotation.copy(), self._placement.translation.copy()
+        self._mounting = np.zeros(AXES)
         self.position, self.rotation = np.zeros((2, 3)), np.zeros((2, 3, 3))
-        self._jacobian = np.zeros((2, 6, len(self.chain)))
+        self._jacobian = np.zeros((2, 6, len(self.chain) + AXES))
+        self._jacobian[:, 3:, -AXES:] = np.eye(3)
         self._supporting = supporting(model, (*(model.frames[sole].parentJoint for sole in self._soles), parent))
         self.leaning, self._beside = leaning, np.zeros((2, 3))
         self.mass = float(sum(inertia.mass for inertia in model.inertias))
@@ -99,6 +101,7 @@ class SensedBody:
             imu_joint_position=imu.translation,
             mount_rotation=np.ascontiguousarray(self._placement.rotation),
             mount_position=np.array(self._placement.translation),
+            mounting=self._mounting,
             left=left,
             right=right,
             joint_jacobian_columns=data.J.T,
@@ -116,36 +119,50 @@ class SensedBody:
         """Orientation, shape (3, 3), and place, shape (3,) [m], of the IMU in the base; None where joints move it."""
         return None if self._behind else (self._placement.rotation, self._placement.translation)
 
-    def update(self, joints: Array, attitude: Array) -> None:
+    def known(self, joints: Array, offsets: Array) -> Array:
+        """Angles that encoders say, shape (nj,), less what their zeros are known to be off [rad]."""
+        known = joints.copy()
+        known[self.chain] -= offsets[:-AXES]
+        return known
+
+    def update(self, joints: Array, attitude: Array, offsets: Array | None = None) -> None:
         """Take joint angles.
 
         Args:
             joints: shape (nj,) [rad].
             attitude: of the IMU in the world, by which soles that lean do so, shape (3, 3).
+            offsets: what is known of those of the chain and of the mount, shape (m + 3,); None where nothing is [rad].
         """
-        self._q[7:] = joints
+        self._mounting[:] = 0.0 if offsets is None else offsets[-AXES:]
+        self._q[7:] = joints if offsets is None else self.known(joints, offsets)
         pin.forwardKinematics(self.model, self._data, self._q)
         if self.compiled is not None:
             self._place()
             return
-        imu = self._placement
+        imu = self._mounted
         if self._behind:
-            imu = self._data.oMi[self._parent] * self._placement
-            self._imu_rotation[:], self._imu_position[:] = imu.rotation, imu.translation
+            imu = self._data.oMi[self._parent] * imu
+        self._imu_rotation[:], self._imu_position[:] = imu.rotation, imu.translation
         for k, frame in enumerate(self._soles):
-            placed = pin.updateFramePlacement(self.model, self._data, frame)
-            if not self._at_base:
-                placed = imu.actInv(placed)
+            placed = imu.actInv(pin.updateFramePlacement(self.model, self._data, frame))
             self.position[k], self.rotation[k] = placed.translation, placed.rotation
             if self.leaning is not None:
                 self._beside[k] = line_centre(k, np.zeros(3), attitude @ placed.rotation, self.leaning) @ attitude
                 self.position[k] += self._beside[k]
 
-    def offset_jacobians(self) -> Array:
-        """From small turns of the joints of the chain to those of the soles, shape (2, 6, m) [m/rad, -].
+    @property
+    def _mounted(self) -> pin.SE3:
+        """The IMU in what carries it, as it is known to be turned."""
+        return pin.SE3(self._placement.rotation @ pin.exp3(self._mounting), self._placement.translation)
 
-        Both rows of the position and of the rotation vector are in the axes of the IMU. At the angles last taken; the
-        next call writes over them.
+    def offset_jacobians(self) -> Array:
+        """From small turns of the joints of the chain, and of offsets of the mount, to those of the soles.
+
+        An IMU that is turned further sees the soles turned back, as a joint at its origin would turn them.
+
+        Returns:
+            shape (2, 6, m + 3) [m/rad, -]. Both rows of the position and of the rotation vector are in the axes of the
+            IMU. At the angles last taken; the next call writes over them.
         """
         pin.computeJointJacobians(self.model, self._data)
         if self.compiled is not None:
@@ -155,7 +172,8 @@ class SensedBody:
         for k in (0, 1):
             # What carries both moves neither against the other, and what carries the IMU turns the sole the other way.
             moved = (carries[k] * self._motion(self._in_base(k)))[:, self.chain]
-            self._jacobian[k, :3], self._jacobian[k, 3:] = R.T @ moved[:3], R.T @ moved[3:]
+            self._jacobian[k, :3, :-AXES], self._jacobian[k, 3:, :-AXES] = R.T @ moved[:3], R.T @ moved[3:]
+            self._jacobian[k, :3, -AXES:] = -pin.skew(self.position[k])
         return self._jacobian
 
     def _in_base(self, k: int) -> Array:
@@ -212,13 +230,11 @@ class SensedBody:
             q: joint angles, shape (nj,) [rad].
             qd: joint velocities, shape (nj,) [rad/s].
         """
-        if self._at_base:
-            return R, p, np.concatenate((v @ R, rate))
-        imu, turning, moving = self._placement, np.zeros(3), np.zeros(3)
+        imu, turning, moving = self._mounted, np.zeros(3), np.zeros(3)
         if self._behind:
             self._q[7:], self._v[6:] = q, qd
             pin.forwardKinematics(self.model, self._data, self._q, self._v)
-            imu = self._data.oMi[self._parent] * self._placement
+            imu = self._data.oMi[self._parent] * imu
             motion, turned = self._data.v[self._parent], self._data.oMi[self._parent].rotation
             turning = turned @ motion.angular
             moving = turned @ (motion.linear + cross(motion.angular, self._placement.translation))

@@ -9,7 +9,10 @@ from surefoot.wbc.types import Array
 TURN, VELOCITY, POSITION = slice(0, 3), slice(3, 6), slice(6, 9)
 FOOT, SOLE = (slice(9, 12), slice(12, 15)), (slice(15, 18), slice(18, 21))
 GYRO, FORCE, OFFSETS = slice(21, 24), slice(24, 27), slice(27, None)
-"""Places in the error: R, v, p, d, Z, biases of gyroscope and accelerometer, offsets of the encoders."""
+"""Places in the error: R, v, p, d, Z, biases of gyroscope and accelerometer, offsets of the encoders and of the mount."""
+
+AXES = 3
+"""Offsets that are of the mount, the last ones: how the IMU is turned about its axes from where it should be."""
 
 
 @dataclass(slots=True)
@@ -22,7 +25,7 @@ class Stand:
         Z: orientations of the soles, shape (2, 3, 3).
         gyro_bias: shape (3,) [rad/s].
         force_bias: of the accelerometer, shape (3,) [m/s^2].
-        offsets: of the encoders of the chain, shape (m,) [rad].
+        offsets: of the encoders of the chain, then of the mount about the axes of the IMU, shape (m + 3,) [rad].
     """
 
     R: Array

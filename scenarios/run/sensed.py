@@ -18,7 +18,6 @@ from surefoot.scenarios.setup.parts import ESTIMATE, guarded
 from surefoot.scenarios.setup.walk import Walk
 from surefoot.sim.measurement import Measurement
 from surefoot.sim.sensor_errors import SensorErrors
-from surefoot.similarity import GRAVITY
 from surefoot.values import opened
 from surefoot.wbc.estimation.estimate import Deviation, Estimate, Planned
 from surefoot.wbc.estimation.estimator import SensedState
@@ -30,9 +29,6 @@ from surefoot.wbc.types import Array, FootSensing, WbcReference, WbcReport
 _OPTIONS = ("sensing", "options")
 
 _OpenSensing = opened(FootSensing)
-
-SWAY, SWAY_TIME = (0.3, 1.0), 0.1
-"""Angular velocity and acceleration of a walking pelvis, RMS, and how long they keep their sign [rad/s, m/s^2, s]."""
 
 
 def sensed_state(walk: Walk, **options: Any) -> SensedState:
@@ -83,13 +79,11 @@ def sensor_noise(errors: SensorErrors, period: float) -> SensorNoise:
     """
     rounding = math.tau / 2**errors.encoder_bits / math.sqrt(12.0) if errors.encoder_bits else 0.0
     root = math.sqrt(period)
-    # An IMU that is mounted wrongly takes turns and accelerations for ones about other axes.
-    turning, pushing = (errors.imu_misalignment * size * math.sqrt(SWAY_TIME) for size in SWAY)
     return SensorNoise(
-        gyro_density=math.hypot(errors.gyro_density, errors.gyro_noise * root, turning),
+        gyro_density=math.hypot(errors.gyro_density, errors.gyro_noise * root),
         gyro_bias=errors.gyro_bias,
         gyro_walk=errors.gyro_walk,
-        accelerometer_density=math.hypot(errors.accelerometer_density, errors.accelerometer_noise * root, pushing),
+        accelerometer_density=math.hypot(errors.accelerometer_density, errors.accelerometer_noise * root),
         accelerometer_bias=errors.accelerometer_bias,
         accelerometer_walk=errors.accelerometer_walk,
         mounting=errors.imu_misalignment,

@@ -81,7 +81,7 @@ class Doubt:
     def _plain(self, filter_: InvariantFilter, stance: int, gyro: float, J: Array) -> tuple[Array, Array]:
         """Lever of the CoM from the stance sole in axes of the IMU, and variances of what `deviation` says.
 
-        Of the CoM, of the soles' heights, of one over the other, of the base's tilt, and of the CoM velocity, shape (11,).
+        Of the CoM, the soles' heights, one over the other, the base's tilt and the CoM velocity, shape (11,).
         """
         body, sensors, s, P = self._body, self._sensors, filter_.stand, filter_.P
         lever, by_joints, moving = body.com_jacobians(stance)

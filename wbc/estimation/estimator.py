@@ -128,8 +128,8 @@ class SensedState:
 
     def _channels(self) -> dict[str, Array]:
         s = self.filter.stand
-        zeros, mounting = s.offsets[:-AXES].copy(), s.offsets[-AXES:].copy()
-        return {"gyro_bias": s.gyro_bias.copy(), "force_bias": s.force_bias.copy(), "offsets": zeros, "mounting": mounting}
+        biases = {"gyro_bias": s.gyro_bias.copy(), "force_bias": s.force_bias.copy()}
+        return {**biases, "offsets": s.offsets[:-AXES].copy(), "mounting": s.mounting.copy()}
 
     def _feeling(self, readings: Readings) -> SoleContact:
         """Contact by sensors in the feet, or by the torques of the joints."""
@@ -172,7 +172,7 @@ class SensedState:
         else:
             speed = np.zeros(len(joints))
         self._encoders = reading.values
-        base, p, velocity = self._body.base(s.R, s.p, v, rate, joints, speed)
+        base, p, velocity = self._body.base(s.R, s.p, v, rate, joints, speed, s.mounting)
         return RobotState(np.concatenate((p, pin.Quaternion(base).coeffs(), joints)), np.concatenate((velocity, speed)))
 
     def _start(self, joints: Array) -> InvariantFilter:
@@ -285,7 +285,7 @@ class SensedState:
         if self._compiled is not None:
             return self._compiled(q, qd, gained, time)
         q = self._body.known(q, s.offsets)
-        base, p, velocity = self._body.base(s.R, s.p, s.v, self._rate.rate - s.gyro_bias, q, qd)
+        base, p, velocity = self._body.base(s.R, s.p, s.v, self._rate.rate - s.gyro_bias, q, qd, s.mounting)
         if gained is not None:
             way = time * (velocity + 0.5 * gained)
             turn = pin.exp3(0.5 * way[3:])

@@ -6,8 +6,8 @@ estimation for legged robots: consistent fusion of leg kinematics and IMU", RSS 
 zeros of the encoders and the turn of the IMU on its mount as states.
 
 The state is X = (R, v, p, d_0, d_1) of SE_4(3), the orientations Z_0, Z_1 of the soles, the biases b_g and b_a and the
-offsets o of the encoders and of the mount. Its error ξ is that of the right, X = exp(ξ) X̂, Z = exp(ζ) Ẑ, so that R' = R hat(ω) and
-v' = R a + g give (eq. 28 and 37 there)
+offsets o of encoders and mount. Its error ξ is that of the right, X = exp(ξ) X̂, Z = exp(ζ) Ẑ, so that R' = R hat(ω)
+and v' = R a + g give (eq. 28 and 37 there)
 
     ξ_R' = -R̂ β_g,   ξ_v' = hat(g) ξ_R - hat(v̂) R̂ β_g - R̂ β_a,   ξ_p' = ξ_v - hat(p̂) R̂ β_g,   ξ_d' = -hat(d̂) R̂ β_g,
 

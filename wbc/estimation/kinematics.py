@@ -139,7 +139,7 @@ class SensedBody:
         if self.compiled is not None:
             self._place()
             return
-        imu = self._mounted
+        imu = self._mounted(self._mounting)
         if self._behind:
             imu = self._data.oMi[self._parent] * imu
         self._imu_rotation[:], self._imu_position[:] = imu.rotation, imu.translation
@@ -150,10 +150,9 @@ class SensedBody:
                 self._beside[k] = line_centre(k, np.zeros(3), attitude @ placed.rotation, self.leaning) @ attitude
                 self.position[k] += self._beside[k]
 
-    @property
-    def _mounted(self) -> pin.SE3:
-        """The IMU in what carries it, as it is known to be turned."""
-        return pin.SE3(self._placement.rotation @ pin.exp3(self._mounting), self._placement.translation)
+    def _mounted(self, turn: Array) -> pin.SE3:
+        """The IMU in what carries it, turned by that about its own axes, shape (3,) [rad]."""
+        return pin.SE3(self._placement.rotation @ pin.exp3(turn), self._placement.translation)
 
     def offset_jacobians(self) -> Array:
         """From small turns of the joints of the chain, and of offsets of the mount, to those of the soles.
@@ -219,7 +218,9 @@ class SensedBody:
             return None
         return turn if self._to_imu is None else np.asarray(self._to_imu @ turn)
 
-    def base(self, R: Array, p: Array, v: Array, rate: Array, q: Array, qd: Array) -> tuple[Array, Array, Array]:
+    def base(
+        self, R: Array, p: Array, v: Array, rate: Array, q: Array, qd: Array, mounting: Array
+    ) -> tuple[Array, Array, Array]:
         """The base from the IMU: orientation (3, 3), position (3,) [m], velocity in its axes (6,) [m/s, rad/s].
 
         Args:
@@ -229,8 +230,9 @@ class SensedBody:
             rate: its angular velocity in its own axes, shape (3,) [rad/s].
             q: joint angles, shape (nj,) [rad].
             qd: joint velocities, shape (nj,) [rad/s].
+            mounting: offsets of the mount, shape (3,) [rad].
         """
-        imu, turning, moving = self._mounted, np.zeros(3), np.zeros(3)
+        imu, turning, moving = self._mounted(mounting), np.zeros(3), np.zeros(3)
         if self._behind:
             self._q[7:], self._v[6:] = q, qd
             pin.forwardKinematics(self.model, self._data, self._q, self._v)

@@ -9,7 +9,7 @@ from surefoot.wbc.types import Array
 TURN, VELOCITY, POSITION = slice(0, 3), slice(3, 6), slice(6, 9)
 FOOT, SOLE = (slice(9, 12), slice(12, 15)), (slice(15, 18), slice(18, 21))
 GYRO, FORCE, OFFSETS = slice(21, 24), slice(24, 27), slice(27, None)
-"""Places in the error: R, v, p, d, Z, biases of gyroscope and accelerometer, offsets of the encoders and of the mount."""
+"""Places in the error: R, v, p, d, Z, biases of gyroscope and accelerometer, offsets of encoders and mount."""
 
 AXES = 3
 """Offsets that are of the mount, the last ones: how the IMU is turned about its axes from where it should be."""
@@ -51,6 +51,11 @@ class Stand:
     def d(self) -> Array:
         """Sole centres, shape (2, 3) [m]."""
         return self.columns[2:]
+
+    @property
+    def mounting(self) -> Array:
+        """Offsets of the mount, shape (3,) [rad]."""
+        return self.offsets[-AXES:]
 
     def move(self, x: Array) -> None:
         """Apply exp(x) from the left; of the group's V-matrix the identity is taken, for small x."""

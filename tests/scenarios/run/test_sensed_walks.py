@@ -98,8 +98,8 @@ def test_noise_is_that_of_the_sensors():
         noise = sensor_noise(errors, 0.002)
         rounding = 2.0 * np.pi / 2**errors.encoder_bits / np.sqrt(12.0) if errors.encoder_bits else 0.0
         assert noise.encoder == pytest.approx(np.hypot(errors.encoder_noise, rounding))
-        assert noise.accelerometer_bias >= errors.accelerometer_bias
-        assert noise.encoder_offset == errors.encoder_offset and noise.gyro_density >= errors.gyro_density
+        assert noise.accelerometer_bias == errors.accelerometer_bias and noise.mounting == errors.imu_misalignment
+        assert noise.encoder_offset == errors.encoder_offset and noise.gyro_density == errors.gyro_density
 
 
 @pytest.mark.unit
@@ -289,6 +289,16 @@ def test_walks_pass_from_good_sensors(name, tmp_path):
     assert max(verdict["velocity_estimation_error_rms"]) < (0.004 if name == "walk-fast" else 0.002)
     assert verdict["tilt_estimation_error_rms"] < np.radians(0.2) and verdict["estimation_drift"] < 0.002
     assert verdict["step_shift"] < 1e-3
+
+
+@pytest.mark.physics
+@pytest.mark.parametrize("seed", [2, pytest.param(7, marks=pytest.mark.long), pytest.param(15, marks=pytest.mark.long)])
+def test_an_imu_that_is_mounted_wrongly_turns_no_way(seed, tmp_path):
+    """The way of the estimate would leave the true one by it: by 0.55 to 0.79 percent in these seeds."""
+    keys = {"sensing.preset": "cheap", "seed": seed, "gait.steps": 30, "duration": 20.0, "criteria": {}}
+    result = surefoot.run(surefoot.load("walk", keys), out=tmp_path)
+    assert not result.verdict["fell"]
+    assert result.verdict["estimation_drift"] < 0.002
 
 
 @pytest.mark.physics

@@ -29,6 +29,7 @@ def test_kernels_see_soles_and_doubt_as_plain_python_does(robot, monkeypatch, mo
     rng, found = np.random.default_rng(stance), []
     q = pin.integrate(robot.model, robot.standing, 0.3 * rng.normal(size=robot.nv))
     spread = rng.normal(size=(27 + robot.nv, 27 + robot.nv))
+    turn = 0.1 * rng.normal(size=3)
     rotations = [pin.exp3(rng.normal(size=3)) for _ in range(3)]
     columns, contact = rng.normal(size=(4, 3)), SoleContact(ContactDetection(), SensorNoise(), 981.0, (0.1, 0.05), 2e-3)
     load = np.zeros((2, 6))
@@ -37,12 +38,12 @@ def test_kernels_see_soles_and_doubt_as_plain_python_does(robot, monkeypatch, mo
     for variable in ("", "0"):
         monkeypatch.setenv(VARIABLE, variable)
         body = SensedBody(robot.model, robot.frames.soles, mount)
-        m, still = len(body.chain), np.zeros(3)
-        stand = Stand(rotations[0].copy(), columns.copy(), np.stack(rotations[1:]), still, still, np.zeros(m))
+        still, offsets = np.zeros(3), np.concatenate((0.1 * np.ones(len(body.chain)), turn))
+        stand = Stand(rotations[0].copy(), columns.copy(), np.stack(rotations[1:]), still, still, offsets)
         filter_ = InvariantFilter(stand, SensorNoise(), GroundNoise(), 2e-3)
         some = 1e-3 * spread[: len(filter_.P)]
         filter_.P[:] = some @ some.T
-        body.update(q[7:], np.eye(3))
+        body.update(q[7:], np.eye(3), offsets)
         J = body.offset_jacobians()
         doubt = Doubt(body, SensorNoise(), 0.01).deviation(filter_, contact, 0.02, J)
         assert (body.compiled is None) == (filter_.compiled is None) == (variable == "0")

@@ -9,11 +9,12 @@ import pytest
 
 from surefoot.wbc.estimation.invariant_filter import FIXED, UNSURE, InvariantFilter
 from surefoot.wbc.estimation.parameters import GroundNoise, SensorNoise
-from surefoot.wbc.estimation.stand import FOOT, FORCE, GYRO, OFFSETS, POSITION, SOLE, TURN, VELOCITY, Stand
+from surefoot.wbc.estimation.stand import AXES, FOOT, FORCE, GYRO, OFFSETS, POSITION, SOLE, TURN, VELOCITY, Stand
 
 pytestmark = pytest.mark.unit
 
 PERIOD, JOINTS = 0.002, 4
+OFFS = JOINTS + AXES
 NOISE = SensorNoise(accelerometer_density=5e-3, encoder=1e-4, encoder_offset=1e-3)
 GROUND = GroundNoise(creep=5e-4, sinking=5e-4, rocking=5e-4, model=0.0, light=1.0, landing=5e-4, landing_turn=5e-4)
 
@@ -23,7 +24,7 @@ def somewhere(rng):
     rotations = [pin.exp3(rng.normal(size=3)) for _ in range(3)]
     return Stand(
         rotations[0], rng.normal(scale=3.0, size=(4, 3)), np.stack(rotations[1:]), *rng.normal(size=(2, 3)),
-        rng.normal(size=JOINTS),
+        rng.normal(size=OFFS),
     )  # fmt: skip
 
 
@@ -54,8 +55,8 @@ def test_errors_go_on_as_the_transition_says_whatever_the_state(seed):
     np.testing.assert_array_equal(F[:, :21], other[:, :21])
     assert np.abs(F[:, GYRO] - other[:, GYRO]).max() > 1e-4
     before = propagated(stand, rate, force)
-    for column in range(FIXED + JOINTS):
-        x = np.zeros(FIXED + JOINTS)
+    for column in range(FIXED + OFFS):
+        x = np.zeros(FIXED + OFFS)
         x[column] = 1e-6
         moved = deepcopy(stand)
         moved.move(x)
@@ -68,16 +69,16 @@ def test_errors_go_on_as_the_transition_says_whatever_the_state(seed):
 def test_no_reading_tells_the_heading_or_the_place():
     """What is added to the covariance along these is there afterwards, which a tilt that is added is not."""
     rng = np.random.default_rng(3)
-    J = rng.normal(size=(2, 6, JOINTS))
+    J = rng.normal(size=(2, 6, OFFS))
 
     def weighed(direction):
         filter_ = InvariantFilter(somewhere(np.random.default_rng(3)), NOISE, GROUND, PERIOD)
-        base = np.diag(np.full(FIXED + JOINTS, 1e-6))
+        base = np.diag(np.full(FIXED + OFFS, 1e-6))
         filter_.P[:] = base + np.outer(direction, direction)
         filter_.weigh(J)
         return filter_.P, filter_._gain
 
-    everything = np.zeros(FIXED + JOINTS)
+    everything = np.zeros(FIXED + OFFS)
     without, gain = weighed(everything)
     for axis in range(4):
         direction = everything.copy()
@@ -108,20 +109,21 @@ def squares(sensors, seeds=8, duration=2.0):
 def _walked(rng, sensors, duration):
     root = 1.0 / np.sqrt(PERIOD)
     bias, pull = NOISE.gyro_bias * rng.normal(size=3), NOISE.accelerometer_bias * rng.normal(size=3)
-    offsets = NOISE.encoder_offset * rng.normal(size=JOINTS)
+    offsets = np.r_[NOISE.encoder_offset * rng.normal(size=JOINTS), NOISE.mounting * rng.normal(size=AXES)]
     R, p, v = np.eye(3), np.array([0.0, 0.0, 1.0]), np.zeros(3)
     feet, soles = np.array([[0.0, 0.1, 0.0], [0.0, -0.1, 0.0]]), np.stack((np.eye(3), np.eye(3)))
     shape = rng.normal(size=(3, 2, 6, JOINTS))
     # At first the feet are told by offsets that the filter does not know of.
-    stand = Stand(R, np.vstack((v, p, feet)), soles, np.zeros(3), np.zeros(3), np.zeros(JOINTS))
+    stand = Stand(R, np.vstack((v, p, feet)), soles, np.zeros(3), np.zeros(3), np.zeros(OFFS))
     filter_ = InvariantFilter(deepcopy(stand), sensors, GROUND, PERIOD)
 
     def seen(time):
-        J = 0.3 * (shape[0] + np.sin(2.0 * time) * shape[1] + np.cos(3.0 * time) * shape[2])
-        off = offsets - filter_.stand.offsets
-        noise = NOISE.encoder * rng.normal(size=JOINTS)
-        y = np.array([R.T @ (feet[k] - p) + J[k, :3] @ (off + noise) for k in (0, 1)])
-        Y = np.array([pin.exp3(J[k, 3:] @ (off + noise)) @ R.T @ soles[k] for k in (0, 1)])
+        way = 0.3 * (shape[0] + np.sin(2.0 * time) * shape[1] + np.cos(3.0 * time) * shape[2])
+        y = np.array([R.T @ (feet[k] - p) for k in (0, 1)])
+        J = np.concatenate((way, np.stack([np.vstack((-pin.skew(at), np.eye(3))) for at in y])), axis=2)
+        off = offsets - filter_.stand.offsets + np.r_[NOISE.encoder * rng.normal(size=JOINTS), np.zeros(AXES)]
+        y += np.array([J[k, :3] @ off for k in (0, 1)])
+        Y = np.array([pin.exp3(J[k, 3:] @ off) @ R.T @ soles[k] for k in (0, 1)])
         return y, Y, J
 
     y, Y, J = seen(0.0)
@@ -176,7 +178,8 @@ def test_errors_are_as_large_as_the_filter_says():
     """From both sides; a filter that is told too little is far too sure, one that is told too much not sure enough."""
     both = squares(NOISE)
     assert (both > 0.5).all() and (both < 2.0).all(), both
-    sure = squares(replace(NOISE, accelerometer_density=2e-4, encoder=1e-5, encoder_offset=1e-5), seeds=2)
+    little = replace(NOISE, accelerometer_density=2e-4, encoder=1e-5, encoder_offset=1e-5, mounting=1e-5)
+    sure = squares(little, seeds=2)
     assert (sure > 4.0).all(), sure
     timid = squares(replace(NOISE, accelerometer_density=5e-2, encoder=1e-3), seeds=2)
     assert timid[1] < 0.3, timid
@@ -187,9 +190,9 @@ def test_after_the_start_soles_are_where_the_zeros_that_it_has_found_say():
     rng = np.random.default_rng(5)
     feet = np.array([[0.0, 0.1, -1.0], [0.0, -0.1, -1.0]])
     stand = Stand(
-        np.eye(3), np.vstack((np.zeros((2, 3)), feet)), np.stack((np.eye(3),) * 2), *np.zeros((2, 3)), np.zeros(JOINTS)
+        np.eye(3), np.vstack((np.zeros((2, 3)), feet)), np.stack((np.eye(3),) * 2), *np.zeros((2, 3)), np.zeros(OFFS)
     )
-    filter_, J = InvariantFilter(stand, NOISE, GROUND, PERIOD), rng.normal(size=(2, 6, JOINTS))
+    filter_, J = InvariantFilter(stand, NOISE, GROUND, PERIOD), rng.normal(size=(2, 6, OFFS))
     Y = np.stack([pin.exp3(2e-3 * rng.normal(size=3)) for _ in range(2)])
     filter_.begin(feet, Y, J, np.tile([0.0, 0.0, 1.0], (2, 1)), 0.1)
     assert np.abs(stand.offsets).max() > 1e-4
@@ -199,15 +202,37 @@ def test_after_the_start_soles_are_where_the_zeros_that_it_has_found_say():
     np.testing.assert_allclose(filter_.residual(y, seen), 0.0, atol=1e-12)
 
 
+def test_heading_and_place_of_the_world_are_those_of_the_soles():
+    """A turn of the mount that is found later turns the IMU by as much, and neither the soles nor the way they go."""
+    feet, mounting = np.array([[0.3, 0.1, -1.0], [0.1, -0.1, -1.0]]), 5e-3
+    stand = Stand(
+        np.eye(3), np.vstack((np.zeros((2, 3)), feet)), np.stack((np.eye(3),) * 2), *np.zeros((2, 3)), np.zeros(AXES)
+    )
+    filter_ = InvariantFilter(stand, replace(NOISE, mounting=mounting), GROUND, PERIOD)
+    J = np.stack([np.vstack((-pin.skew(at), np.eye(3))) for at in feet])
+    filter_.begin(feet, np.stack((np.eye(3),) * 2), J, np.tile([0.0, 0.0, 1.0], (2, 1)), 0.1)
+    P, heading = filter_.P, TURN.stop - 1
+    assert np.sqrt(P[-1, -1]) == pytest.approx(mounting, rel=1e-2)
+    assert P[heading, -1] / P[-1, -1] == pytest.approx(1.0, abs=1e-2)
+    # The error of a place is that of the group: ξ_d + ξ_R x d.
+    soles = np.stack([filter_.P[SOLE[k], :][2] for k in (0, 1)])
+    assert np.sqrt(np.mean(soles[:, [SOLE[k].stop - 1 for k in (0, 1)]])) < 2.0 * GROUND.turning
+    middle = np.zeros((2, len(P)))
+    for k in (0, 1):
+        middle[:, FOOT[k]] += 0.5 * np.eye(3)[:2]
+        middle[:, TURN] -= 0.5 * pin.skew(feet[k])[:2]
+    assert np.sqrt(np.diag(middle @ P @ middle.T)).max() < 2.0 * GROUND.kinematics
+
+
 def test_encoder_zeros_are_found_as_far_as_steps_tell_them():
     """Their deviation shrinks, and the offsets come nearer."""
     rng = np.random.default_rng(2)
     filter_ = InvariantFilter(somewhere(rng), NOISE, GROUND, PERIOD)
     before = np.diag(filter_.P)[OFFSETS].copy()
-    J = rng.normal(size=(2, 6, JOINTS))
+    J = rng.normal(size=(2, 6, OFFS))
     for k in (0, 1):
         filter_.land(k, rng.normal(size=3), np.eye(3), J[k], None, 1e-4, 1e-4)
-    filter_.weigh(rng.normal(size=(2, 6, JOINTS)))
+    filter_.weigh(rng.normal(size=(2, 6, OFFS)))
     assert (np.diag(filter_.P)[OFFSETS] < 0.5 * before).all()
 
 
@@ -217,7 +242,7 @@ def test_a_foot_that_slipped_is_named(foot, alone):
     """A foot that is 2 cm away from where it stood is told from one that is not; noise alone is none."""
     rng = np.random.default_rng(4)
     filter_ = InvariantFilter(somewhere(rng), NOISE, GROUND, PERIOD)
-    s, J = filter_.stand, 0.1 * rng.normal(size=(2, 6, JOINTS))
+    s, J = filter_.stand, 0.1 * rng.normal(size=(2, 6, OFFS))
     y = np.array([s.R.T @ (s.d[k] - s.p) for k in (0, 1)])
     Y = np.array([s.R.T @ s.Z[k] for k in (0, 1)])
     for k in (0, 1):
@@ -240,7 +265,7 @@ def test_a_height_that_is_known_moves_the_robot_there():
     y = np.array([0.1, 0.2, -0.9])
     s = filter_.stand
     height = float((s.p + s.R @ y)[2]) - 0.01
-    filter_.land(0, y, np.eye(3), np.zeros((6, JOINTS)), (height, 1e-4), 1e-5, 1e-5)
+    filter_.land(0, y, np.eye(3), np.zeros((6, OFFS)), (height, 1e-4), 1e-5, 1e-5)
     assert filter_.stand.d[0, 2] == pytest.approx(height, abs=2e-4)
     assert filter_.P[VELOCITY, VELOCITY].max() > 0.0 and filter_.P[FORCE, FORCE].max() > 0.0
 
@@ -249,7 +274,7 @@ def test_a_height_that_is_known_moves_the_robot_there():
 def test_a_landing_that_is_not_on_the_ground_that_is_believed_moves_nothing(step):
     """It is a step of the ground: the state is the one without a height, and what is believed counts again later."""
     unknown, off, on = (InvariantFilter(somewhere(np.random.default_rng(6)), NOISE, GROUND, PERIOD) for _ in range(3))
-    y, J = np.array([0.1, 0.2, -0.9]), np.zeros((6, JOINTS))
+    y, J = np.array([0.1, 0.2, -0.9]), np.zeros((6, OFFS))
     height = float((on.stand.p + on.stand.R @ y)[2])
     for landed, known in ((unknown, None), (off, (height + step, 1.5e-3)), (on, (height + 0.05 * step, 1.5e-3))):
         landed.land(0, y, np.eye(3), J, known, 1e-3, 1e-3)
@@ -303,14 +328,14 @@ def test_a_sole_that_leans_tells_how_it_is_turned_but_for_about_its_line(leaning
     """One foot stands; a turn of its sole about an axis moves the attitude, unless it turns about that at will."""
 
     def turned(axis):
-        stand = Stand(np.eye(3), np.zeros((4, 3)), np.stack((np.eye(3),) * 2), *np.zeros((2, 3)), np.zeros(JOINTS))
+        stand = Stand(np.eye(3), np.zeros((4, 3)), np.stack((np.eye(3),) * 2), *np.zeros((2, 3)), np.zeros(OFFS))
         filter_ = InvariantFilter(stand, NOISE, GROUND, PERIOD, leaning)
         filter_.lift(1)
         filter_.P[TURN, TURN] += 1e-4 * np.eye(3)
         for _ in range(5):
             filter_.propagate(np.zeros(3), np.array([0.0, 0.0, 9.81]), PERIOD)
         filter_.spread((1.0, 0.0))
-        filter_.weigh(np.zeros((2, 6, JOINTS)))
+        filter_.weigh(np.zeros((2, 6, OFFS)))
         filter_.correct(np.zeros((2, 3)), np.stack((pin.exp3(1e-3 * axis),) * 2))
         return pin.log3(filter_.stand.R)
 
@@ -327,10 +352,10 @@ def test_soles_that_lean_tell_the_attitude_at_the_start_by_the_heights_of_both()
         feet = np.array([[0.0, 0.1, 0.0], [0.0, -0.1, 0.0]])
         tilt = pin.exp3(np.array([0.02, 0.01, 0.0]))
         stand = Stand(
-            tilt, np.vstack((np.zeros(3), [0.0, 0.0, 1.0], feet)), soles.copy(), *np.zeros((2, 3)), np.zeros(JOINTS)
+            tilt, np.vstack((np.zeros(3), [0.0, 0.0, 1.0], feet)), soles.copy(), *np.zeros((2, 3)), np.zeros(OFFS)
         )
         filter_ = InvariantFilter(stand, NOISE, GROUND, PERIOD, leaning)
         y = feet - [0.0, 0.0, 1.0]
-        filter_.begin(y, soles, np.zeros((2, 6, JOINTS)), np.tile([0.0, 0.0, 1.0], (2, 1)), 0.1)
+        filter_.begin(y, soles, np.zeros((2, 6, OFFS)), np.tile([0.0, 0.0, 1.0], (2, 1)), 0.1)
         found.append(float(np.abs(pin.log3(filter_.stand.R)[:2]).max()))
     assert found[0] < 2e-3 < 0.02 < found[1]

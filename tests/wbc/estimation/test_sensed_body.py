@@ -1,5 +1,7 @@
 """Kinematics from an IMU that may sit anywhere."""
 
+from dataclasses import replace
+
 import numpy as np
 import pinocchio as pin
 import pytest
@@ -7,7 +9,7 @@ import pytest
 from surefoot.native.library import library
 from surefoot.wbc.estimation.compiled import StateKernel
 from surefoot.wbc.estimation.kinematics import ImuMount, SensedBody
-from surefoot.wbc.estimation.stand import Stand
+from surefoot.wbc.estimation.stand import AXES, Stand
 
 pytestmark = pytest.mark.unit
 
@@ -32,14 +34,20 @@ def imu(robot, mount, q, v):
     return data.oMi[joint] * placement, placement.actInv(data.v[joint])
 
 
+def turned(mount, by):
+    """An IMU that is mounted wrongly, turned by that about its own axes."""
+    return replace(mount, rotation=tuple(map(tuple, (np.array(mount.rotation) @ pin.exp3(by)).tolist())))
+
+
+@pytest.mark.parametrize("wrong", [0.0, 0.2])
 @pytest.mark.parametrize("mount", MOUNTS)
-def test_the_base_follows_from_the_imu(robot, mount):
+def test_the_base_follows_from_the_imu(robot, mount, wrong):
     q, v = moving(robot)
-    pose, motion = imu(robot, mount, q, v)
+    by = wrong * np.array([0.6, -0.3, 0.9])
+    pose, motion = imu(robot, turned(mount, by), q, v)
     body = SensedBody(robot.model, robot.frames.soles, mount)
-    body.update(q[7:], np.eye(3))
     R, p, velocity = body.base(
-        pose.rotation, pose.translation, pose.rotation @ motion.linear, motion.angular, q[7:], v[6:]
+        pose.rotation, pose.translation, pose.rotation @ motion.linear, motion.angular, q[7:], v[6:], by
     )
     base = pin.XYZQUATToSE3(q[:7])
     np.testing.assert_allclose(R, base.rotation, atol=1e-12)
@@ -63,12 +71,33 @@ def test_soles_and_their_jacobians_are_those_of_finite_differences(robot, mount)
             np.testing.assert_allclose((body.position[k] - position[k]) / step, J[k, :3, column], atol=2e-6)
             turn = pin.log3(body.rotation[k] @ rotation[k].T) / step
             np.testing.assert_allclose(turn, J[k, 3:, column], atol=2e-6)
+    # What is known of an offset is taken off.
+    for column in range(len(body.chain) + AXES):
+        offsets = np.zeros(len(body.chain) + AXES)
+        offsets[column] = step
+        body.update(q[7:], np.eye(3), offsets)
+        for k in (0, 1):
+            np.testing.assert_allclose((position[k] - body.position[k]) / step, J[k, :3, column], atol=2e-6)
+            turn = pin.log3(rotation[k] @ body.rotation[k].T) / step
+            np.testing.assert_allclose(turn, J[k, 3:, column], atol=2e-6)
     # Joints that are not in the chain move no sole against the IMU.
     others = np.setdiff1d(np.arange(robot.nv - 6), body.chain)
     moved = q[7:].copy()
     moved[others] += 0.1
     body.update(moved, np.eye(3))
     np.testing.assert_allclose(body.position, position, atol=1e-12)
+
+
+@pytest.mark.parametrize("mount", MOUNTS)
+def test_soles_are_seen_from_where_the_imu_is_known_to_look(robot, mount):
+    """An IMU that is mounted wrongly sees them as one whose mount is right and says so."""
+    (q, _), by = moving(robot), np.array([0.1, -0.2, 0.15])
+    known, right = (SensedBody(robot.model, robot.frames.soles, each) for each in (mount, turned(mount, by)))
+    known.update(q[7:], np.eye(3), np.concatenate((np.zeros(len(known.chain)), by)))
+    right.update(q[7:], np.eye(3))
+    np.testing.assert_allclose(known.position, right.position, atol=1e-12)
+    np.testing.assert_allclose(known.rotation, right.rotation, atol=1e-12)
+    np.testing.assert_allclose(known.offset_jacobians(), right.offset_jacobians(), atol=1e-12)
 
 
 def test_the_com_from_a_sole_is_that_of_finite_differences(robot):
@@ -161,11 +190,13 @@ def test_the_compiled_base_is_where_it_has_come_to(robot, mount, turned):
     q[3:7] = pin.Quaternion(pin.exp3(turned * np.array([0.6, 0.0, 0.8]))).coeffs()
     pose, motion = imu(robot, mount, q, v)
     bias, gained, late = 0.1 * rng.normal(size=3), rng.normal(size=6), 0.006
-    offsets = 1e-3 * rng.normal(size=len(body.chain))
-    columns = np.vstack((pose.rotation @ motion.linear, pose.translation, np.zeros((2, 3))))
-    stand = Stand(pose.rotation.copy(), columns, np.zeros((2, 3, 3)), bias, np.zeros(3), offsets)
+    velocity = pose.rotation @ motion.linear
+    zeros, by = 1e-3 * rng.normal(size=len(body.chain)), 0.1 * rng.normal(size=AXES)
+    pose.rotation, motion.angular = pose.rotation @ pin.exp3(by), pin.exp3(by).T @ motion.angular
+    columns = np.vstack((velocity, pose.translation, np.zeros((2, 3))))
+    stand = Stand(pose.rotation.copy(), columns, np.zeros((2, 3, 3)), bias, np.zeros(3), np.concatenate((zeros, by)))
     joints, speeds = q[7:].copy(), v[6:]
-    joints[body.chain] += offsets
+    joints[body.chain] += zeros
     limits = 2.0 * float(np.linalg.norm(q[:7])), 2.0 * float(np.linalg.norm(v))
     now = StateKernel(kernels, stand, body.mount, body.chain, len(joints), motion.angular + bias, limits)
     for given, way in ((None, np.zeros(6)), (gained, late * (v[:6] + 0.5 * gained))):

@@ -20,7 +20,7 @@ from numpy.typing import NDArray
 from benchmarks.table import Section
 from surefoot.wbc.estimation.invariant_filter import GATES, InvariantFilter
 from surefoot.wbc.estimation.parameters import GroundNoise, SensorNoise
-from surefoot.wbc.estimation.stand import TURN, VELOCITY, Stand
+from surefoot.wbc.estimation.stand import AXES, TURN, VELOCITY, Stand
 
 Array = NDArray[np.float64]
 
@@ -68,18 +68,18 @@ def states(log: ForeignLog, start: Array, every: int) -> Array:
     """States of the filter, rows as of TRUTH; covariance and gain are computed each `every` ticks."""
     time = log.imu[:, 0]
     place = float(np.sqrt(np.mean(np.diagonal(log.kinematics[:, :, 8:].reshape(-1, 6, 6)[:, 3:, 3:], 0, 1, 2))))
-    sensors = SensorNoise(**IMU, accelerometer_bias=1e-2, encoder=0.0, encoder_offset=0.0)
+    sensors = SensorNoise(**IMU, accelerometer_bias=1e-2, mounting=0.0, encoder=0.0, encoder_offset=0.0)
     ground = GroundNoise(
         kinematics=place, turning=TURNING, creep=CREEP, sinking=CREEP, rocking=TURNING, light=1.0, model=0.0
     )
     R, v, p = start[1:10].reshape(3, 3), start[10:13], start[13:16]
     y, Y = log.sole(0)
-    stand = Stand(R.copy(), np.vstack((v, p, p + y @ R.T)), R @ Y, np.zeros(3), np.zeros(3), np.zeros(1))
+    stand = Stand(R.copy(), np.vstack((v, p, p + y @ R.T)), R @ Y, np.zeros(3), np.zeros(3), np.zeros(AXES))
     filter_ = InvariantFilter(stand, sensors, ground, float(np.median(np.diff(time))))
     filter_.P[TURN, TURN] = START[0] ** 2 * np.eye(3)
     filter_.P[VELOCITY, VELOCITY] = START[1] ** 2 * np.eye(3)
     filter_.standing = [False, False]
-    J = np.zeros((2, 6, 1))
+    J = np.zeros((2, 6, AXES))
     found = np.empty((len(time), 16))
     for i in range(len(time)):
         if i:

@@ -62,8 +62,8 @@ class SupportRegion:
         self.edge_count[0] = len(self._edges)
         self.edges[: len(self._edges)] = self._edges
 
-    def project(self, x: float, y: float) -> tuple[float, float]:
-        """The point of the region nearest to (x, y)."""
+    def project(self, x: float, y: float, beyond: float = 0.0) -> tuple[float, float]:
+        """The point nearest to (x, y) that is no farther than `beyond` from the region [m]."""
         for ex, ey, ux, uy, _ in self._edges:
             if not (x - ex) * uy - (y - ey) * ux <= 0.0:
                 break
@@ -76,7 +76,9 @@ class SupportRegion:
             distance = (x - px) ** 2 + (y - py) ** 2
             if distance < least:
                 nearest, least = (px, py), distance
-        return nearest
+        px, py = nearest
+        share = min(1.0, beyond / max(math.sqrt(least), 1e-9))
+        return px + share * (x - px), py + share * (y - py)
 
 
 _Edge = Sequence[float]
@@ -94,7 +96,9 @@ def com_acceleration(
     """CoM acceleration that tracks the reference.
 
     Horizontal: with ξ = c + c'/ω and e = ξ - ξ_ref, the pendulum's commanded point is p = p_ref + k e, moved so that
-    the ZMP p + o with the reference's offset o lies in the support region, and
+    the ZMP p + o with the reference's offset o lies in the support region, or up to `beyond_catching` beyond it while a
+    step catches the body: there it is a centroidal moment pivot (Popovic, Goswami and Herr, International Journal of
+    Robotics Research 2005), the force passes the CoM at a distance, and the trunk turns. Then
     c'' = c''_ref + λ (c - c_ref - p + p_ref).
     That is c'' = λ (c - p) for a reference of one instant; that of a control tick has its state at the begin and all
     else in the middle. On the reference this returns the reference's own acceleration. Since ξ' = (λ/ω)(ξ - p) for
@@ -117,7 +121,9 @@ def com_acceleration(
     px, py = reference.zmp.tolist()
     offset_x, offset_y = reference.zmp_offset.tolist()
     zmp_x, zmp_y = region.project(
-        px + offset_x + gains.dcm * (dx + vx / reference.omega), py + offset_y + gains.dcm * (dy + vy / reference.omega)
+        px + offset_x + gains.dcm * (dx + vx / reference.omega),
+        py + offset_y + gains.dcm * (dy + vy / reference.omega),
+        gains.beyond_catching if reference.catching else 0.0,
     )
     ax, ay, planned = reference.com_acceleration.tolist()
     return (

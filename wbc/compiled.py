@@ -169,7 +169,7 @@ class CompiledTick:
         kernels: the library.
         terms: as kernels take them.
         reference: likewise.
-        numbers: memory of that, as ``WbcReference.numbers``, shape (54,) [SI].
+        numbers: memory of that, as ``WbcReference.numbers``, shape (55,) [SI].
     """
 
     def __init__(self, terms: CompiledTerms) -> None:
@@ -179,7 +179,7 @@ class CompiledTick:
     def refer(self, reference: WbcReference) -> None:
         """Take the reference of this tick, which no kernel has made."""
         r = reference
-        rest = (*_NUMBERS(r), *r.load_share, *r.roll, r.swing_foot, r.rolling_foot)
+        rest = (*_NUMBERS(r), *r.load_share, *r.roll, r.swing_foot, r.rolling_foot, r.catching)
         parts = (*_VECTORS(r), r.swing_rotation.ravel(), r.ground_normal.ravel(), rest)
         np.concatenate(parts, out=self.numbers)
 

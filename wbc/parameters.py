@@ -26,6 +26,11 @@ class BalanceGains:
     polygon_share: float = number(
         0.95, "-", "share of the support polygon that the commanded ZMP may use", positive=True, most=1.0
     )
+    beyond_catching: float = number(
+        0.07,
+        "m",
+        "how far beyond that it may lie while a step is adapted to catch the body, whose hips then turn the trunk",
+    )
 
     def __post_init__(self) -> None:
         check(self, "wbc", "balance")

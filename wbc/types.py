@@ -132,7 +132,7 @@ class WbcReference:
             sole as if it lay flat.
         roll: (pitch, rate, acceleration) of that foot, heel up positive [rad, rad/s, rad/s^2].
         catching: whether the next footstep is being adapted to catch the body, but on stairs and blocks.
-        numbers: the kernels' struct ``Reference`` that says the same, shape (54,) [SI]; None where no kernel made it.
+        numbers: the kernels' struct ``Reference`` that says the same, shape (55,) [SI]; None where no kernel made it.
     """
 
     com: Array

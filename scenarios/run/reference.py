@@ -100,6 +100,7 @@ class ReferenceMaker:
             roll_start=0.0,
             roll_end=0.0,
             roll_angle=0.0,
+            catching=0,
             reference=reference,
         )
         return kernel.kernels.bind("plan_reference_fill", self._bound)
@@ -154,7 +155,7 @@ class ReferenceMaker:
             self._landing[:] = plan.footsteps[0].normal
         # The kernel knows no clock but the time.
         self._scaled = None if roll is None or roll.scaling is None or roll.scaling.steady else roll
-        bound.rolling_foot = -1
+        bound.rolling_foot, bound.catching = -1, int(self._catching)
         if roll is not None and self._scaled is None:
             bound.rolling_foot, bound.roll_start, bound.roll_end = int(roll.foot), roll.start, roll.end
             bound.roll_angle = roll.angle

@@ -103,6 +103,7 @@ typedef struct {
     double roll[3];
     double swing_foot;
     double rolling_foot;
+    double catching;
 } Reference;
 
 /* Where a task writes: its own rows of the stack, scaled, and its target, not scaled. */
@@ -120,6 +121,7 @@ typedef struct {
     const Bench *bench;
     const double *edges;
     const int64_t *edge_count;
+    double beyond;
     double dcm;
     double height_stiffness;
     double height_damping;
@@ -512,6 +514,7 @@ typedef struct {
     double roll_start;
     double roll_end;
     double roll_angle;
+    int64_t catching;
     Reference *reference;
 } PlanReference;
 

@@ -169,6 +169,7 @@ int64_t plan_reference_fill(const PlanReference *plan, double now, double middle
         memset(reference->roll, 0, sizeof reference->roll);
     reference->swing_foot = (double)swing_foot;
     reference->rolling_foot = (double)rolling_foot;
+    reference->catching = (double)plan->catching;
     return rolling_foot;
 }
 

@@ -14,7 +14,7 @@ static void scaled_row(const Bench *bench, int row, const double *jacobian) {
 }
 
 /* Counterpart of `SupportRegion.project`; an edge is start, unit direction and length. */
-static void project(const CentreOfMass *task, double x, double y, double *out) {
+static void project(const CentreOfMass *task, double x, double y, double beyond, double *out) {
     const int64_t count = *task->edge_count;
     int inside = 1;
     for (int64_t i = 0; i < count && inside; i++) {
@@ -36,6 +36,9 @@ static void project(const CentreOfMass *task, double x, double y, double *out) {
             least = distance;
         }
     }
+    const double share = fmin(1.0, beyond / fmax(sqrt(least), 1e-9));
+    out[0] += share * (x - out[0]);
+    out[1] += share * (y - out[1]);
 }
 
 void task_centre_of_mass(const CentreOfMass *task) {
@@ -55,7 +58,7 @@ void task_centre_of_mass(const CentreOfMass *task) {
         point[i] = wanted->zmp[i] + wanted->zmp_offset[i];
         aim[i] = point[i] + task->dcm * (error[i] + rate / wanted->omega);
     }
-    project(task, aim[0], aim[1], zmp);
+    project(task, aim[0], aim[1], wanted->catching != 0.0 ? task->beyond : 0.0, zmp);
     for (int i = 0; i < 2; i++)
         bench->target[i] = wanted->com_acceleration[i] + wanted->stiffness * (point[i] + error[i] - zmp[i]);
     bench->target[2] = wanted->com_acceleration[2] - task->height_stiffness * (terms->com[2] - wanted->com[2]) -

@@ -9,6 +9,7 @@ import pytest
 import surefoot
 from surefoot.native.library import VARIABLE, Library, library
 from surefoot.wbc.controller import WholeBodyController
+from surefoot.wbc.parameters import BalanceGains
 from surefoot.wbc.types import FootSensing, RobotState, WbcReference, WbcReport
 
 NEAR, NEARLY = 1e-11, 1e-9
@@ -72,6 +73,7 @@ class Twins:
         self._count("held by inequalities", plain.iterations > 0)
         self._count("rolling", reference.rolling_foot >= 0)
         self._count("ankle at its stop", swing._turned >= 0)
+        self._count("ZMP beyond the soles", self._beyond(reference))
         self._count("one foot", plain.active[0] != plain.active[1])
         self._count("force", bool(plain.load.force.any()))
         self._count("weight", plain.load.mass_scale != 1.0)
@@ -83,6 +85,13 @@ class Twins:
             found = far(getattr(one, name), getattr(other, name))
             if not found <= most:
                 self.unlike[name] = max(self.unlike.get(name, 0.0), found)
+
+    def _beyond(self, reference: WbcReference) -> bool:
+        """Whether the law of the CoM asks for a ZMP beyond the soles, and may have it."""
+        terms, region, gains = self._plain.terms, self._plain._region, BalanceGains()
+        com, rate = terms.com - reference.com, terms.com_velocity - reference.com_velocity
+        aim = reference.zmp + reference.zmp_offset + gains.dcm * (com + rate / reference.omega)[:2]
+        return reference.catching and region.project(*aim) != region.project(*aim, gains.beyond_catching)
 
     def _count(self, name: str, there: bool) -> None:
         self.seen[name] = self.seen.get(name, 0) + there

@@ -96,7 +96,7 @@ def sample():
 
 
 def reference():
-    return WbcReference.of_numbers(np.arange(54.0), (True, True), 0.5, -1, 1, 0.25, -1)
+    return WbcReference.of_numbers(np.arange(55.0), (True, True), 0.5, -1, 1, 0.25, -1)
 
 
 @pytest.mark.parametrize("make", [sample, reference])

@@ -5,9 +5,11 @@ import pytest
 pytestmark = pytest.mark.unit
 
 PUSH = {"pushes": [{"time": 0.6, "duration": 0.3, "force": [60.0, 40.0, 0.0]}], "errors.payload.mass": 10.0}
+HARD = {"pushes": [{"time": 0.9, "duration": 0.1, "force": [300.0, 300.0, 0.0]}], "gait.initial_stand": 0.4}
 WALKS = {
     "walk": ("walk", 2.0, {}, {"one foot", "held by inequalities"}),
     "pushed": ("walk", 1.2, PUSH, {"one foot", "force", "weight"}),
+    "caught": ("walk", 1.4, HARD, {"one foot", "ZMP beyond the soles"}),
     "stairs": ("stairs-up", 3.0, {}, {"one foot", "ankle at its stop"}),
     "fast": ("walk-fast", 2.2, {}, {"rolling", "held by inequalities"}),
     "sensed": (

@@ -49,6 +49,9 @@ def test_projection_is_the_nearest_point(shape, rng):
             expected = np.linalg.norm(point - nearest_by_sampling(vertices, point))
             assert np.linalg.norm(point - found) == pytest.approx(expected, abs=1e-4)
             assert ((found - vertices) * normals).sum(axis=1).max() <= 1e-12
+        onward = point - found
+        beyond = found + onward * min(1.0, 0.05 / max(np.hypot(*onward), 1e-9))
+        np.testing.assert_allclose(made.project(*point, 0.05), beyond, atol=1e-12)
     assert inside_count > 0
 
 
@@ -108,6 +111,22 @@ def test_a_large_error_leaves_the_zmp_on_the_border(references):
     com = np.array([0.3, 0.0, 1.0])
     found = com_acceleration(references[0](), com, np.zeros(3), made, BalanceGains())
     assert com[0] - found[0] / 9.81 == pytest.approx(vertices[:, 0].max())
+
+
+@pytest.mark.parametrize("way", [(0.3, 0.0), (0.0, -0.3), (0.2, 0.25)])
+def test_while_a_step_catches_the_body_it_may_lie_beyond_the_border(references, way):
+    """As far as is allowed, on the way to where the law without a region has it."""
+    made, _ = region(feet=((0.0, 0.0), (0.0, 0.0)))
+    com, gains = np.array([*way, 1.0]), BalanceGains(beyond_catching=0.05)
+    found = [
+        com - np.array(com_acceleration(references[0](catching=catching), com, np.zeros(3), made, gains)) / 9.81
+        for catching in (False, True)
+    ]
+    beyond, onward = (found[1] - found[0])[:2], gains.dcm * np.array(way) - found[0][:2]
+    np.testing.assert_allclose(beyond, 0.05 * onward / np.hypot(*onward), atol=1e-12)
+    near = np.array([0.5 * SQUARE, 0.0, 1.0]) / gains.dcm
+    a, b = (com_acceleration(references[0](catching=how), near, np.zeros(3), made, gains) for how in (False, True))
+    assert a == b
 
 
 def test_the_height_law_is_a_spring_and_a_damper(moving):

@@ -132,7 +132,8 @@ def test_height_momentum_heading_and_posture_count_otherwise_while_a_step_catche
     robot, state, references, loaded, monkeypatch, kernels
 ):
     monkeypatch.setenv("SUREFOOT_NATIVE", kernels)
-    controller, weights, seen = robot.controller(), TaskWeights(), []
+    within = WbcParameters(balance=BalanceGains(beyond_catching=0.0))  # which changes what the CoM is to do
+    controller, weights, seen = robot.controller(within), TaskWeights(), []
     for catching in (False, True, False):
         terms = controller.observe(state)
         qp = controller.build(
@@ -144,6 +145,7 @@ def test_height_momentum_heading_and_posture_count_otherwise_while_a_step_catche
     more = np.ones(len(target))
     more[2] = np.sqrt(weights.com_vertical_catching / weights.com_vertical)
     more[3:6] = np.sqrt(weights.angular_momentum_catching / weights.angular_momentum)
+    more[[6, 7, 9, 10]] = np.sqrt(weights.upright_catching / weights.orientation)
     more[[8, 11]] = np.sqrt(weights.turning_catching / weights.orientation)
     np.testing.assert_allclose(caught, more[:, None] * rows, rtol=1e-12)
     np.testing.assert_allclose(aim, more * target, rtol=1e-12)

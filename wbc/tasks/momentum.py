@@ -48,6 +48,7 @@ class CentreOfMass:
             bench=bench,
             edges=region.edges,
             edge_count=region.edge_count,
+            beyond=gains.beyond_catching,
             dcm=gains.dcm,
             height_stiffness=gains.height_stiffness,
             height_damping=gains.height_damping,

@@ -27,6 +27,11 @@ class TaskWeights:
         0.2, "s^4/m^4", "the same while a step is adapted to catch the body, whose arms and trunk then bear its swing"
     )
     orientation: float = number(1.0, "s^4", "angular acceleration of pelvis and torso")
+    upright_catching: float = number(
+        0.1,
+        "s^4",
+        "the same about the horizontal axes while a step is adapted to catch the body, which its hips may then lean",
+    )
     turning_catching: float = number(
         0.01,
         "s^4",

@@ -89,14 +89,17 @@ class _Upright:
 
     While a step catches the body its heading counts for less. What a push beside the CoM and a leg that is swung hard
     turn, one sole holds by friction alone, the better the harder it is pressed down. So it was cheap to jump, and to
-    tilt and miss the landing as well. The steps after it turn the body back.
+    tilt and miss the landing as well. The steps after it turn the body back. Its uprightness counts for less, too: the
+    trunk is the flywheel by which the ground pushes the body back harder than a CoP in the sole does (Pratt, Carff,
+    Drakunov and Goswami, Capture point: a step toward humanoid push recovery, Humanoids 2006).
     """
 
     size = 3
 
     def __init__(self, weights: TaskWeights, gains: TaskGains) -> None:
         self.weight = weights.orientation
-        self.catching_weight = np.array([weights.orientation, weights.orientation, weights.turning_catching])
+        upright, turning = weights.upright_catching, weights.turning_catching
+        self.catching_weight = np.array([upright, upright, turning])
         self._gains = gains.orientation
         self._desired = np.eye(3)
 

@@ -61,7 +61,7 @@ def test_samples_and_references_are_those_of_plain_python(kernels, plans):
             assert_alike(whole_body_reference(plan, until), reference, WbcReference)
             assert_alike(now, compiled.sample(times[0]), PlanSample)
             if reference.numbers is not None:
-                assert reference.numbers[-1] == reference.rolling_foot
+                assert (*reference.numbers[-2:],) == (reference.rolling_foot, reference.catching)
                 rolled += reference.rolling_foot >= 0
     assert bool(rolled) == any(plan.roll is not None for plan in plans)
 

@@ -25,11 +25,11 @@ def fallen(out, seed, profile=PROFILES["default"]):
 
 
 def test_who_is_pushed_over_gives_way(tmp_path):
-    """How a body hits its stops depends on every tick before it, so that is a mean over seeds of the sensors."""
+    """Torques are spared, and joints go to their stops no faster: how fast is a mean over seeds of the sensors."""
     profile = PROFILES["default"]
     deaf = replace(profile.parameters.recovery, fall_margin=math.inf)
     rigid = replace(profile, parameters=replace(profile.parameters, recovery=deaf))
-    kept = []
+    fast = []
     for seed in SEEDS:
         given, stiff = fallen(tmp_path / "given", seed), fallen(tmp_path / "stiff", seed, rigid)
         assert given["fell"]
@@ -37,8 +37,7 @@ def test_who_is_pushed_over_gives_way(tmp_path):
         assert given["capture_margin_min"] < 0.0
         assert stiff["fell"]
         assert stiff["fall_warning"] is None
-        kept.append(given["joint_limit_margin_min"] - stiff["joint_limit_margin_min"])
-        assert given["torque_at_limit_fraction"] < 0.5 * stiff["torque_at_limit_fraction"]
-        assert given["joint_speed_ratio_max"] < 0.5 * stiff["joint_speed_ratio_max"]
-    assert min(kept) > 0.0
-    assert sum(kept) / len(kept) > 0.2
+        assert given["joint_limit_margin_min"] > -0.1
+        assert given["torque_at_limit_fraction"] < 0.2 * stiff["torque_at_limit_fraction"]
+        fast.append(given["joint_speed_ratio_max"] - stiff["joint_speed_ratio_max"])
+    assert sum(fast) / len(fast) < -0.1

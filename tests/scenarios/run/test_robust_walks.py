@@ -27,8 +27,8 @@ def walked(seed, settings):
         return not simulation.fell, simulation.look().plan.phase
 
 
-# Of the last, a sole stands on an edge after the walk, and both slip in the estimate.
-@pytest.mark.parametrize("seed", [38, 68, 43])
+# Of the third, a sole stands on an edge after the walk, and both slip in the estimate.
+@pytest.mark.parametrize("seed", [38, 68, 43, 76])
 def test_walks_on_tiles_with_loads_and_masses_that_it_is_not_told(seed):
     assert walked(seed, GOOD)[0]
 
@@ -40,7 +40,7 @@ def test_with_heights_that_are_followed_no_farther_than_2_mm_it_falls(monkeypatc
         return over if abs(over) <= search.most_unsure else 0.0
 
     monkeypatch.setattr(GroundSearch, "astray", near)
-    assert not walked(68, GOOD)[0]
+    assert not walked(76, GOOD)[0]
 
 
 def test_it_stands_over_its_feet_and_not_over_where_they_once_landed(monkeypatch):

@@ -20,7 +20,7 @@ GAIN = 1.0
 """Of the velocity towards a place over the distance from it, and of the yaw rate over the angle [1/s]."""
 
 FASTEST = (0.4, 0.3, 0.8)
-"""Forward, sideways [m/s], and yaw rate [rad/s]. At 0.2 m/s sideways a place is up to 6.7 s away, and a slot has 5 s."""
+"""Forward, sideways [m/s], and yaw rate [rad/s]. By 0.2 m/s sideways far places take longer than 5 s."""
 
 COMMAND_RATE = 10
 """At which the walk is told its velocity [Hz]."""

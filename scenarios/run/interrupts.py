@@ -1,7 +1,9 @@
 """Ctrl-C, and the signals by which others end a program: none of them may leave a log half closed."""
 
+import math
 import signal
 import threading
+import time
 from collections.abc import Iterator
 from contextlib import contextmanager
 from types import FrameType
@@ -10,6 +12,9 @@ SIGNALS = (signal.SIGINT, signal.SIGTERM, *((signal.SIGHUP,) if hasattr(signal, 
 
 _PATIENCE = 3
 """How many signals are held back before one is obeyed wherever the program is."""
+
+_HANGING = 2.0
+"""How long a signal waits for the loop to look before it is obeyed wherever the loop hangs [s]."""
 
 _received: list[int] = []
 
@@ -36,7 +41,7 @@ def _obey(number: int, _: FrameType | None) -> None:
 
 
 class Interrupts:
-    """Signals that are held back but where `delivered` lets them through.
+    """Signals that are held back.
 
     Attributes:
         count: how many there were.
@@ -45,24 +50,41 @@ class Interrupts:
     def __init__(self) -> None:
         self.count = 0
         self._open = False
+        self._again: threading.Timer | None = None
+        self._obeyed = math.inf
+
+    def look(self) -> None:
+        """Raise `Interrupted` for what was held back: called where nothing is half done."""
+        if self.count:
+            raise Interrupted
 
     @contextmanager
-    def delivered(self) -> Iterator[None]:
-        """Raise `Interrupted` in this context, at once for what was held back."""
+    def looked_for(self) -> Iterator[None]:
+        """Whatever runs in this context looks every now and then; if it hangs, `Interrupted` is raised where it does.
+
+        In the midst of its work it may leave a message half added or a chunk unwritten, so this is the last resort.
+        """
         self._open = True
         try:
-            if self.count:
-                raise Interrupted
+            self.look()
             yield
         finally:
             self._open = False
+            if self._again is not None:
+                self._again.cancel()
 
     def note(self, number: int, _: FrameType | None) -> None:
         """Handle a signal."""
         self.count += 1
         _received.append(number)
-        if self._open or self.count > _PATIENCE:
+        if self.count > _PATIENCE or (self._open and time.monotonic() >= self._obeyed):
             raise Interrupted
+        if self._open and self._again is None:
+            self._obeyed = time.monotonic() + _HANGING
+            main = threading.main_thread().ident or 0
+            self._again = threading.Timer(_HANGING, signal.pthread_kill, (main, number))
+            self._again.daemon = True
+            self._again.start()
 
 
 @contextmanager

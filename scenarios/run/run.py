@@ -298,14 +298,16 @@ def _watched(
     def note(progress: Progress) -> None:
         nonlocal last
         last = progress
+        interrupts.look()
         if on_progress is not None:
             on_progress(progress)
 
     try:
-        with interrupts.delivered():
+        with interrupts.looked_for():
             end = simulate(walk, writer, note)
+            interrupts.look()
     except (KeyboardInterrupt, Exception) as error:
-        # A signal that comes while a compiled part converts an argument is told by that part as a wrong argument.
+        # A signal that is raised while a compiled part converts an argument is told as a wrong argument.
         if interrupts.count == 0 and not isinstance(error, KeyboardInterrupt):
             if not isinstance(error, PartError):
                 if isinstance(error, ScenarioError | SetupError):

@@ -2,6 +2,7 @@
 
 import json
 import signal
+import time
 from concurrent.futures import ThreadPoolExecutor
 
 import pytest
@@ -9,6 +10,7 @@ import yaml
 
 from surefoot.scenarios.errors import LogError, ScenarioError
 from surefoot.scenarios.log import read
+from surefoot.scenarios.run import interrupts
 from surefoot.scenarios.run.run import run_scenario
 
 pytestmark = pytest.mark.unit
@@ -41,15 +43,33 @@ def test_the_same_run_gives_the_same_log(tmp_path, robot, motion, two_steps):
 
 
 @pytest.mark.usefixtures("heeding")
-def test_a_signal_that_a_compiled_part_takes_for_a_wrong_argument_is_a_signal(tmp_path, robot, motion, two_steps):
-    whole = motion(duration=0.5)
+def test_a_signal_waits_until_nothing_is_half_done(tmp_path, robot, motion, two_steps):
+    done = []
 
     def simulate(walk, writer, on_progress):
-        whole(walk, writer, on_progress)
+        signal.raise_signal(signal.SIGINT)
+        done.append("a message")
+        motion()(walk, writer, on_progress)
+        done.append("the walk")
+
+    result = run_scenario(two_steps, tmp_path, None, simulate, robot)
+    assert (result.interrupted, done) == (True, ["a message"])
+    assert read(result.log).metadata["end"]["kind"] == "interrupted"
+
+
+@pytest.mark.usefixtures("heeding")
+@pytest.mark.parametrize("told", [None, TypeError("incompatible function arguments")])
+def test_a_part_that_hangs_does_not_hold_a_signal_back(tmp_path, robot, motion, two_steps, monkeypatch, told):
+    """A compiled part tells a signal that comes while it converts an argument as a wrong argument."""
+    monkeypatch.setattr(interrupts, "_HANGING", 0.1)
+
+    def simulate(walk, writer, on_progress):
+        motion(duration=0.5)(walk, writer, on_progress)
+        signal.raise_signal(signal.SIGINT)
         try:
-            signal.raise_signal(signal.SIGINT)
-        except KeyboardInterrupt:
-            raise TypeError("incompatible function arguments") from None
+            time.sleep(60.0)
+        except KeyboardInterrupt as signalled:
+            raise told or signalled from None
 
     result = run_scenario(two_steps, tmp_path, None, simulate, robot)
     assert result.interrupted

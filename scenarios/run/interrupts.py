@@ -54,15 +54,15 @@ class Interrupts:
         self._obeyed = math.inf
 
     def look(self) -> None:
-        """Raise `Interrupted` for what was held back: called where nothing is half done."""
+        """Raise `Interrupted` if a signal was held back. A loop calls it between two ticks."""
         if self.count:
             raise Interrupted
 
     @contextmanager
     def looked_for(self) -> Iterator[None]:
-        """Whatever runs in this context looks every now and then; if it hangs, `Interrupted` is raised where it does.
+        """Expect the loop in this context to call `look`; a signal that waits too long raises `Interrupted` at once.
 
-        In the midst of its work it may leave a message half added or a chunk unwritten, so this is the last resort.
+        That is the last resort: it may leave a message half added or a chunk unwritten.
         """
         self._open = True
         try:

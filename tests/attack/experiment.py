@@ -62,6 +62,7 @@ BODIES = {
     "body-stand": BODY + STAND + "duration: 0.5\n",
     "body-walk": BODY + f"gait: {{steps: 2, step_length: 0.2, {PACE}}}\nduration: 2.0\n",
     "body-pushed": BODY + STAND + "duration: 0.7\npushes: [{time: 0.2, impulse: 0.05}]\n",
+    "body-caught": BODY + STAND + "duration: 1.0\npushes: [{time: 0.1, duration: 0.05, impulse: 0.4}]\n",
     "body-stairs": BODY
     + f"terrain: {{kind: stairs, count: 1, riser: 0.05}}\ngait: {{steps: 2, {LOW}}}\nduration: 2.5\n",
     "body-loaded": BODY.replace("0.11}", "0.11, payload_mass: 2.0}")

@@ -23,6 +23,7 @@ WITHOUT_OCCASION = {
     "motors.torque_speed": "a bound of the torques, which they may stay within",
     "wbc.second_solver": "acts when the first one fails",
     "wbc.weights.swing": "acts on a foot that swings",
+    **dict.fromkeys((key for key in keys() if key.endswith("_catching")), "acts while a step catches the body"),
     **dict.fromkeys(
         (f"wbc.schedule.{name}" for name in ("felt_force", "felt_ticks", "early_progress", "early_cap")),
         "a threshold, which contacts may stay clear of",
@@ -112,6 +113,14 @@ def test_no_key_of_the_schema_is_silent(experiments, base):
             silent.append((key, value))
     assert seen > 20
     assert silent == []
+
+
+@pytest.mark.physics
+def test_numbers_of_catching_are_felt_where_a_step_catches_the_body(experiments):
+    experiment = experiments("body-caught")
+    trials = [(key, value) for key, value in experiment.trials() if key.endswith("_catching")]
+    assert len(trials) >= 6
+    assert {experiment.outcome(key, value) for key, value in trials} == {"felt"}
 
 
 PUSH = "pushes=[{time: 2.9, force: [10, 0, 0], duration: %s}]"

@@ -166,6 +166,7 @@ typedef struct {
     double ahead;
     double yielding;
     double turned_back;
+    double resting;
     int64_t *turned;
 } SwingFoot;
 

@@ -203,8 +203,10 @@ static void see_from_ankle(const SwingFoot *task, int64_t foot, const double *R,
     }
 }
 
-/* Takes a share of what turns about an axis out of the angular rows and their target. */
-static void yield(const Bench *bench, const double *axis, double share, double *turn) {
+/* Takes a share of what turns about a joint's axis out of the angular rows and their target.
+   While a step catches the body the joint is to rest instead. */
+static void yield(const SwingFoot *task, int64_t column, const double *axis, double share, double *turn) {
+    const Bench *bench = task->bench;
     double *rows = bench->rows + 3 * bench->variables, along = 0.0;
     for (int64_t j = 0; j < bench->terms->nv; j++) {
         double part = 0.0;
@@ -212,7 +214,12 @@ static void yield(const Bench *bench, const double *axis, double share, double *
         for (int i = 0; i < 3; i++) rows[bench->variables * i + j] -= share * axis[i] * part;
     }
     for (int i = 0; i < 3; i++) along += axis[i] * turn[i];
-    for (int i = 0; i < 3; i++) turn[i] -= share * axis[i] * along;
+    const double counted = bench->reference->catching ? task->resting : 0.0;
+    const double resting = counted * -2.0 * bench->terms->v[column] / task->ahead;
+    for (int i = 0; i < 3; i++) {
+        rows[bench->variables * i + column] += bench->scale[3 + i] * counted * share * axis[i];
+        turn[i] += share * axis[i] * (resting - along);
+    }
 }
 
 /* `AnkleStops` has the last two joints of a leg, or the last one. */
@@ -236,9 +243,10 @@ void task_swing_foot(const SwingFoot *task) {
     const int rolls = foot == (int64_t)reference->rolling_foot;
     for (int i = 0; i < 6; i++) scaled_row(bench, i, terms->sole_jacobian + terms->nv * (6 * foot + i));
 
+    const int64_t *columns = task->ankle_columns + task->ankle_joints * foot;
     double axes[MOST_ANKLE_JOINTS][3], shares[MOST_ANKLE_JOINTS], most = 0.0;
     for (int64_t n = 0; n < task->ankle_joints; n++) {
-        shares[n] = yielding_share(task, foot, task->ankle_columns[task->ankle_joints * foot + n], axes[n]);
+        shares[n] = yielding_share(task, foot, columns[n], axes[n]);
         most = fmax(most, shares[n]);
     }
     double wanted[3], ahead[3], turning[3], *linear = bench->target, *turn = bench->target + 3;
@@ -266,7 +274,7 @@ void task_swing_foot(const SwingFoot *task) {
     if (most > 0.0) *task->turned = foot;
     if (*task->turned == foot && !rolls) see_from_ankle(task, foot, R, linear);
     for (int64_t n = 0; n < task->ankle_joints; n++)
-        if (shares[n] > 0.0) yield(bench, axes[n], shares[n], turn);
+        if (shares[n] > 0.0) yield(task, columns[n], axes[n], shares[n], turn);
 }
 
 /* Counterpart of `ArmSwing.offset`: how far the left arm is swung back, and its rate. */

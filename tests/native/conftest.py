@@ -73,6 +73,7 @@ class Twins:
         self._count("held by inequalities", plain.iterations > 0)
         self._count("rolling", reference.rolling_foot >= 0)
         self._count("ankle at its stop", swing._turned >= 0)
+        self._count("ankle to rest", swing._turned >= 0 and reference.catching)
         self._count("ZMP beyond the soles", self._beyond(reference))
         self._count("one foot", plain.active[0] != plain.active[1])
         self._count("force", bool(plain.load.force.any()))

@@ -49,12 +49,13 @@ def test_an_ankle_in_the_middle_of_its_range_turns_the_foot(body: Body) -> None:
 def test_at_its_end_it_yields_about_its_own_axis_and_only_towards_the_end(body: Body) -> None:
     terms = terms_at(body, 0.0)
     stops = AnkleStops(body.model, body.frames, body.limits)
-    [(axis, share)] = stops.yielding(terms, 0, pitched(terms, 0.1))
+    [(column, axis, share)] = stops.yielding(terms, 0, pitched(terms, 0.1))
+    assert column == 6 + body.robot.joint_names.index(ANKLE)
     np.testing.assert_allclose(axis, [0.0, 1.0, 0.0], atol=1e-9)
     assert share == pytest.approx(1.0)
     assert stops.yielding(terms, 0, pitched(terms, -0.1)) == []
     # One that keeps to its target does, lest its shank push the end of the range ahead of it.
-    assert [share for _, share in stops.yielding(terms, 0, pitched(terms, 0.0))] == [pytest.approx(1.0)]
+    assert [share for *_, share in stops.yielding(terms, 0, pitched(terms, 0.0))] == [pytest.approx(1.0)]
     assert stops.yielding(terms, 1, terms.contact_rotation[1] @ pin.utils.rotate("y", 0.1)) == []
 
 
@@ -63,7 +64,7 @@ def test_it_yields_the_more_the_nearer_it_will_be(body: Body) -> None:
     shares = []
     for speed in (0.0, 0.5, 1.0):
         terms = terms_at(body, 0.5 * YIELDING, speed)
-        shares.append(sum(share for _, share in stops.yielding(terms, 0, pitched(terms, 0.1))))
+        shares.append(sum(share for *_, share in stops.yielding(terms, 0, pitched(terms, 0.1))))
     assert shares[0] == pytest.approx(0.5)
     assert shares == sorted(shares) and shares[-1] == pytest.approx(1.0)
 
@@ -101,6 +102,27 @@ def test_a_foot_that_yields_is_seen_from_its_ankle(body: Body, references) -> No
     np.testing.assert_allclose(of_ankle[:3, column], 0.0, atol=1e-9)
     motion = np.linalg.lstsq(of_sole, wanted, rcond=None)[0]
     np.testing.assert_allclose(of_ankle[:3] @ motion, asked[:3], atol=1e-8)
+
+
+@pytest.mark.parametrize("speed", [0.0, 0.4])
+def test_while_a_step_catches_the_body_an_ankle_that_yields_is_to_rest(body: Body, references, speed: float) -> None:
+    """About its axis one joint alone is asked for, and no row is left empty that the QP could turn the foot by."""
+    terms, column = terms_at(body, 0.0, speed), 6 + body.robot.joint_names.index(ANKLE)
+    reference = references[1](
+        swing_foot=0, swing_position=terms.sole_position[0].copy(), swing_rotation=pitched(terms, 0.1),
+        swing_angular_velocity=np.zeros(3), swing_angular_acceleration=np.zeros(3), catching=True,
+    )  # fmt: skip
+    stops = AnkleStops(body.model, body.frames, body.limits)
+    [(_, axis, share)] = stops.yielding(terms, 0, reference.swing_rotation)
+    rows, target = rows_and_target(body, body.limits, terms, reference)
+    asked = axis @ rows[3:]
+    assert share == pytest.approx(1.0) and asked[column] > 0.1
+    np.testing.assert_allclose(np.delete(asked, column), 0.0, atol=1e-9)
+    assert axis @ target[3:] == pytest.approx(-2.0 * speed / stops.ahead * asked[column])
+    # Otherwise it is free: a fast walk brings ankles to their ends in each step.
+    rows, target = rows_and_target(body, body.limits, terms, replace(reference, catching=False))
+    np.testing.assert_allclose(axis @ rows[3:], 0.0, atol=1e-9)
+    assert axis @ target[3:] == pytest.approx(0.0)
 
 
 @pytest.mark.parametrize(("hung", "length"), [(0.02, 1.0), (0.5, 1.0), (0.5, 0.5)])

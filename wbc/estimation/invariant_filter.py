@@ -98,9 +98,9 @@ class InvariantFilter:
         self.P[np.diag_indices(n)] = spread**2
 
     def begin(self, y: Array, Y: Array, J: Array, normals: Array, tilt: float) -> None:
-        """Attitude and height from soles that are level on the ground, which heading and place of the world are of.
+        """Attitude and height from soles that are level on the ground.
 
-        An offset that is found later then turns the IMU and not the way that the soles go.
+        They give the world's heading and place, too. An offset found later turns the IMU, not the way of the soles.
 
         Args:
             y: sole centres in the frame of the IMU, shape (2, 3) [m].

@@ -21,6 +21,12 @@ YIELDING = 0.1
 _TURNED_BACK = 0.05
 """How far beyond its target such a foot has to be turned that it turns back at full strength [rad]."""
 
+_RESTING = 0.3
+"""Share by which the joint of such a foot is to rest while a step catches the body [-].
+
+At 1 its foot is level later, and marching robots survive less; in a fast walk ankles come to their ends in each step.
+"""
+
 _LIFTED = 0.004
 """Most that such a foot is lifted, for what its toe or heel hangs lower, on the reference robot [m]."""
 
@@ -49,15 +55,15 @@ class AnkleStops:
         self.lower, self.upper, self.ahead = limits.lower, limits.upper, 2.0 * limits.position_horizon
         self._lower, self._upper = np.asarray(self.lower).tolist(), np.asarray(self.upper).tolist()
 
-    def yielding(self, terms: RobotTerms, k: int, desired: Array) -> list[tuple[Array, float]]:
-        """Axes in the frame of sole k about which it is not to turn any further, and the share of it [-].
+    def yielding(self, terms: RobotTerms, k: int, desired: Array) -> list[tuple[int, Array, float]]:
+        """Joints that are not to turn sole k any further: column, axis in the frame of the sole, and share of it [-].
 
         Args:
             terms: of the state.
             k: the foot.
             desired: its orientation, shape (3, 3).
         """
-        found = []
+        found: list[tuple[int, Array, float]] = []
         for column in self.columns[k]:
             position, velocity = terms.q.item(column + 1), terms.v.item(column)
             coming = position + self.ahead * velocity
@@ -70,7 +76,7 @@ class AnkleStops:
             # A foot that keeps to its target may ask for more of the ankle all the same, since its shank turns.
             share = (1.0 - max(0.0, near) / YIELDING) * min(max(1.0 + onward / _TURNED_BACK, 0.0), 1.0)
             if share > 0.0:
-                found.append((axis, share))
+                found.append((column, axis, share))
         return found
 
 
@@ -99,8 +105,10 @@ class SwingFoot:
 
     A foot that leaves the ground rolling is seen from its toe edge (see ``RobotTerms.shift_foot``). One that cannot be
     as level as it should (see `AnkleStops`) is from then on seen from its ankle: a foot that turns about it leaves the
-    shank where it was planned to be, and with it the momentum of the leg that the planner counts on. It is lifted by a
-    few millimetres of what its toe or heel hangs lower; all of that would take the shank off its way again.
+    shank where it was planned to be, and with it the momentum of the leg that the planner counts on. While a step
+    catches the body, the joint that has come to its end is to rest in place of the turning that is given up: if nothing
+    were asked, the QP would turn the foot as a flywheel for the trunk. The foot is lifted by a few millimetres of what
+    its toe or heel hangs lower; all of that would take the shank off its way again.
     """
 
     name, size = "swing foot", 6
@@ -143,7 +151,7 @@ class SwingFoot:
         wanted = self._linear(terms, reference, k)
         if yielding:
             hangs = self._toe * abs(R[2, 0] - reference.swing_rotation[2, 0])
-            wanted[2] += self._gains[0] * max(share for _, share in yielding) * min(hangs, self._lifted)
+            wanted[2] += self._gains[0] * max(share for *_, share in yielding) * min(hangs, self._lifted)
         x, y, z = wanted.dot(R).tolist()
         turning = damping * reference.swing_angular_velocity
         turning += reference.swing_angular_acceleration
@@ -158,10 +166,13 @@ class SwingFoot:
         if self._turned == k and k != reference.rolling_foot and self._stops:
             linear = self._of_ankle(terms, reference, k, linear, self._stops.ankles[k])
             rows[:3, :-12] -= scale[:3] * (pin.skew(self._stops.ankles[k]) @ terms.sole_jacobian[k, 3:])
-        for axis, share in yielding:
+        for column, axis, share in yielding:
             kept = np.eye(3) - share * np.outer(axis, axis)
             rows[3:] = kept @ rows[3:]
-            turn = tuple((kept @ turn).tolist())
+            counted = _RESTING * share if reference.catching and self._stops else 0.0
+            rows[3:, column] += counted * scale[3:, 0] * axis
+            resting = -2.0 * terms.v[column] / self._stops.ahead if self._stops else 0.0
+            turn = tuple((kept @ turn + counted * resting * axis).tolist())
         return (*linear, *turn)
 
     def compiled(self, tick: CompiledTick, bench: Bound) -> Callable[[], None]:
@@ -182,6 +193,7 @@ class SwingFoot:
             ahead=stops.ahead if stops else 0.0,
             yielding=YIELDING,
             turned_back=_TURNED_BACK,
+            resting=_RESTING,
             turned=np.array([-1], dtype=np.int64),
         )
 

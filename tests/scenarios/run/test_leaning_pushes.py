@@ -7,11 +7,11 @@ import surefoot
 pytestmark = pytest.mark.physics
 
 PUSHES = [
-    (3, "single", 0.67, 0.74, -2.09),
     (3, "single", 0.1, 0.74, 0.69),
     (3, "double", 0.29, 0.62, 1.0),
-    (3, "single", 0.49, 0.78, 2.1),
-    (4, "single", 0.69, 0.72, -0.6),
+    (4, "single", 0.69, 0.71, 1.01),
+    (3, "single", 0.72, 0.79, -2.2),
+    (4, "double", 0.45, 0.76, 2.48),
 ]
 """Step, phase, share of it, impulse and direction [-, N·s/kg, rad]."""
 

@@ -219,7 +219,7 @@ class RecoveryParameters:
     shift_weight: float = quantity(0.02, "1/m^2")
     time_weight: float = quantity(0.38, "-")
     stretch_weight: float = quantity(1.0, "1/m^2")
-    swing_weight: float = quantity(10.0, "1/m^2")
+    swing_weight: float = quantity(40.0, "1/m^2")
     cross_factor: float = quantity(3.0, "-")
     least_saving: float = quantity(0.001, "-")
     cop_share: float = quantity(0.8, "-")

@@ -2,7 +2,7 @@
 
 from surefoot.values import dataclass
 from surefoot.wbc.parameters import ContactParameters
-from surefoot.wbc.types import FootSensing, WbcReference
+from surefoot.wbc.types import NONE_TOUCHES, FootSensing, WbcReference
 
 
 @dataclass(frozen=True, slots=True)
@@ -29,6 +29,8 @@ class ContactSchedule:
     - A swing foot that feels the ground after ``early_progress`` becomes active at once and stays so, with a small load
       until its planned touchdown, whether or not it feels it: lifting and landing again would only shake the ZMP. The
       plan's clock does not move, but for a step that catches the body.
+    - A foot that comes to the ground before the next tick counts as one that feels it: what is decided now acts until
+      then, and would go on swinging a foot that stands.
     - A foot is released when the plan lifts it, unless it would be the last contact.
     - A foot that the plan rolls keeps its toe edge on the ground, while the other foot carries as well.
     - Allowed loads grow after touchdown and shrink before lift-off, so that no contact appears or ends with a jump in
@@ -62,6 +64,8 @@ class ContactSchedule:
             ticks[0] = ticks[0] + 1 if left > self._least else 0
             ticks[1] = ticks[1] + 1 if right > self._least else 0
             felt = (ticks[0] >= self._ticks, ticks[1] >= self._ticks)
+        if sensing.touching is not NONE_TOUCHES:
+            felt = (felt[0] or sensing.touching[0], felt[1] or sensing.touching[1])
         if active != planned or felt[0] > active[0] or felt[1] > active[1]:
             self._active = active = self._held(reference, felt)
         rolling = -1

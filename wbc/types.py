@@ -51,6 +51,9 @@ class RobotState:
     v: Array
 
 
+NONE_TOUCHES = (False, False)
+
+
 @dataclass(frozen=True, slots=True)
 class FootSensing:
     """What the feet feel.
@@ -62,6 +65,7 @@ class FootSensing:
         load_deviation: standard deviations of the force and of the moment that momentum and wrenches give for a load,
             zero for the truth, infinite where they give none [N, N·m].
         wrench_age: time since the wrenches acted, by latency and filters; zero for the truth [s].
+        touching: soles that nothing is felt of yet, and that come to the ground before the next tick, (left, right).
     """
 
     normal_force: tuple[float, float]
@@ -69,6 +73,7 @@ class FootSensing:
     contact: tuple[bool, bool] | None = None
     load_deviation: tuple[float, float] = (0.0, 0.0)
     wrench_age: float = 0.0
+    touching: tuple[bool, bool] = NONE_TOUCHES
 
 
 _put = object.__setattr__

@@ -48,14 +48,15 @@ class Path:
 def start_footholds(gait: GaitParameters, feet: FeetState, terrain: Terrain) -> tuple[Path, tuple[Footstep, Footstep]]:
     """Where the path begins, and the two start feet, the one that moves first in front.
 
-    It starts midway between the feet with their mean heading, or where the terrain says; its heading is unwrapped from
-    the right foot's.
+    It starts midway between the feet with their mean heading and their width, or where the terrain says; its heading is
+    unwrapped from the right foot's.
     """
-    middle, right = 0.5 * (feet.position[Foot.LEFT, :2] + feet.position[Foot.RIGHT, :2]), float(feet.yaw[Foot.RIGHT])
-    yaw = right + 0.5 * wrap_angle(float(feet.yaw[Foot.LEFT]) - right)
+    (left, right), yaw = feet.position[[Foot.LEFT, Foot.RIGHT], :2], float(feet.yaw[Foot.RIGHT])
+    turn = 0.5 * wrap_angle(float(feet.yaw[Foot.LEFT]) - yaw)
+    path = Path(0.5 * (left + right), yaw + turn, 0.0, float((left - right) @ frame_rotation(yaw + turn)[:, 1]))
     if terrain.path_start is not None:
-        middle, yaw = np.array(terrain.path_start[:2]), right + wrap_angle(terrain.path_start[2] - right)
-    path = Path(middle, yaw, 0.0, gait.step_width)
+        x, y, heading = terrain.path_start
+        path = Path(np.array((x, y)), yaw + wrap_angle(heading - yaw), 0.0, gait.step_width)
     rows = (gait.step_foot(-1), gait.step_foot(0))
     position = feet.position[list(rows)]
     normals = terrain.normals(position[:, :2])

@@ -112,8 +112,10 @@ def check_reach(number: int, place: Footstep, parameters: PlannerParameters) -> 
         ParameterError: it is out of reach; its key is ("footsteps", number - 1, "ahead" or "beside").
     """
     low, high = reach_box(parameters, 1.0)
+    # The stride to it was admitted with one such tolerance, and a place in the world is rounded beyond that.
+    rounding = 2.0 * LANDING_ROUNDING
     for axis, (name, way) in enumerate((("ahead", float(place.position[0])), ("beside", place.beside))):
-        if not low[axis] - LANDING_ROUNDING <= way <= high[axis] + LANDING_ROUNDING:
+        if not low[axis] - rounding <= way <= high[axis] + rounding:
             ahead = "ahead of" if name == "ahead" else name
             what = f"footstep {number} would land {way:.3f} m {ahead} its stance foot"
             key = ("footsteps", number - 1, name)

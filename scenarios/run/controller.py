@@ -31,7 +31,7 @@ from surefoot.wbc.estimation.parameters import SensorNoise
 from surefoot.wbc.estimation.torques import TorqueWrench
 from surefoot.wbc.falling import GivingWay
 from surefoot.wbc.model import RobotTerms
-from surefoot.wbc.types import Array, RobotState, WbcReport
+from surefoot.wbc.types import NONE_TOUCHES, Array, RobotState, WbcReport
 from surefoot.wbc.zmp import measured_zmp
 
 if TYPE_CHECKING:
@@ -197,7 +197,8 @@ class Controller:
             return self._command
         if self._output.holds:
             self._next = self._output.after(now)
-        sensing = foot_sensing(self.estimate, self.wrench, self._estimates, self._torques)
+        touching = self._touching() if self._output.holds else NONE_TOUCHES
+        sensing = foot_sensing(self.estimate, self.wrench, self._estimates, self._torques, touching)
         fails = self._faults is not None and self._faults.active("qp_failure", planning.tick(now))
         if self.whole_body.driven is not None:
             self._tell(self.whole_body.driven, driven_joints)
@@ -231,6 +232,20 @@ class Controller:
         if not self.terms.is_finite:
             raise RunFault(f"the measured state is not finite at {now:.3f} s")
         self.state = state
+
+    def _touching(self) -> tuple[bool, bool]:
+        """Which sole comes to the ground while the command holds that is to be made, (left, right).
+
+        Within 20 ms a foot lands and stands. Commands that swung it on all the while pushed the robot off its plan.
+        """
+        plan, terms = self.planning.plan, self.terms
+        if plan.swing is None:
+            return NONE_TOUCHES
+        foot = int(plan.swing.foot)
+        height = float(terms.sole_position[foot, 2] - plan.footsteps[0].position[2])
+        speed = float(terms.sole_rotation[foot, 2] @ terms.sole_velocity[foot, :3])
+        touches = speed < 0.0 and height + speed * self._output.period < 0.0
+        return touches and foot == 0, touches and foot == 1
 
     def _tell(self, driven: DrivenRows, told: JointCommand | None) -> None:
         """Tell the whole-body controller what drives the joints that are not its own."""

@@ -24,7 +24,7 @@ from surefoot.wbc.estimation.estimator import SensedState
 from surefoot.wbc.estimation.kinematics import Footing, ImuMount
 from surefoot.wbc.estimation.parameters import ContactDetection, EstimatorParameters, GroundNoise, SensorNoise
 from surefoot.wbc.estimation.torques import TorqueWrench
-from surefoot.wbc.types import Array, FootSensing, WbcReference, WbcReport
+from surefoot.wbc.types import NONE_TOUCHES, Array, FootSensing, WbcReference, WbcReport
 
 _OPTIONS = ("sensing", "options")
 
@@ -171,7 +171,13 @@ class Senses:
             self._told(Planned(report.acceleration.copy(), report.torque.copy(), report.active, reference.rolling_foot))
 
 
-def foot_sensing(estimate: Estimate, wrench: Array, wanted: bool, inferred: TorqueWrench | None = None) -> FootSensing:
+def foot_sensing(
+    estimate: Estimate,
+    wrench: Array,
+    wanted: bool,
+    inferred: TorqueWrench | None = None,
+    touching: tuple[bool, bool] = NONE_TOUCHES,
+) -> FootSensing:
     """What the feet feel.
 
     Args:
@@ -180,10 +186,11 @@ def foot_sensing(estimate: Estimate, wrench: Array, wanted: bool, inferred: Torq
         wanted: whether a lasting force is to be found.
         inferred: what makes these wrenches of the joints' torques, for an estimate that tells none; None of wrenches
             that are felt.
+        touching: see `FootSensing`.
     """
     made, age, sure = _OpenSensing(), estimate.wrench_age, estimate.deviation
     made.normal_force, made.wrench = (wrench.item(2), wrench.item(8)), wrench if wanted else None
-    made.contact, made.load_deviation = estimate.contact, (0.0, 0.0)
+    made.contact, made.load_deviation, made.touching = estimate.contact, (0.0, 0.0), touching
     if inferred is not None:
         made.load_deviation, age = inferred.deviation, age + inferred.late
     if sure is not None:

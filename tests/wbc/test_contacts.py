@@ -53,6 +53,16 @@ def test_early_touchdown_makes_a_light_contact(schedule):
     assert state.force_cap[1] == ContactParameters().early_cap
 
 
+def test_a_foot_that_comes_to_the_ground_before_the_next_tick_is_a_contact_once_it_may_land(schedule):
+    coming = FootSensing((900.0, 0.0), touching=(False, True))
+    schedule.update(swinging(0.0), FootSensing((900.0, 0.0)))
+    assert schedule.update(swinging(0.2), coming).active == (True, False)
+    assert schedule.update(swinging(0.9), FootSensing((900.0, 0.0))).active == (True, False)
+    assert schedule.update(swinging(0.9), coming).active == (True, True)
+    # It stays one: nothing may be felt of it for a tick.
+    assert schedule.update(swinging(0.95), FootSensing((900.0, 0.0))).active == (True, True)
+
+
 def test_a_scuff_in_early_swing_is_no_contact(schedule):
     schedule.update(swinging(0.0), FootSensing((900.0, 0.0)))
     for _ in range(5):

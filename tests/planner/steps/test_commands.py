@@ -7,7 +7,7 @@ from hypothesis import given, settings
 from hypothesis import strategies as st
 
 from surefoot.errors import ParameterError
-from surefoot.planner.geometry import seen_from
+from surefoot.planner.geometry import frame_rotation, seen_from
 from surefoot.planner.ground.terrain import flat
 from surefoot.planner.parameters import PlannerParameters
 from surefoot.planner.steps.commands import (
@@ -197,3 +197,19 @@ def test_any_velocity_command_within_limits_gives_a_sound_walk(schedule, data):
     assert np.diff(plan.samples.index + plan.samples.fraction).max(initial=0.0) <= 1 / 8 + 1e-12
     assert np.abs(np.diff(plan.load_left)).max(initial=0.0) <= 1 / 8 + 1e-12
     assert plan.samples.index[-1] == len(plan.schedule.support_points) - 1
+
+
+def test_the_fastest_steps_are_laid_wherever_in_the_world_they_are():
+    """They are just within reach, and a place a kilometre away is rounded."""
+    rng, parameters = np.random.default_rng(7), PlannerParameters()
+    region = StepRegion(parameters.reach_length, parameters.reach_width, (0.22, 0.11))
+    for twist in rng.uniform(-2.0, 2.0, (300, 3)).tolist():
+        stride = region.fitted(fastest(Twist(*twist), PERIOD, 0.2, region).stride(PERIOD, 0.2))
+        yaw = rng.uniform(-np.pi, np.pi)
+        for foot in Foot:
+            stance, place = Footstep(foot.other, rng.uniform(-1e3, 1e3, 3), yaw), stride.landing(foot)
+            position = stance.position + np.append(frame_rotation(yaw) @ place.position[:2], 0.0)
+            seen = seen_from(stance, Footstep(foot, position, yaw + place.yaw))
+            check_reach(1, seen, parameters)
+            with pytest.raises(ParameterError, match="it must be"):
+                check_reach(1, Footstep(foot, seen.position * (1.0, 0.0, 1.0), seen.yaw), parameters)

@@ -55,6 +55,14 @@ def test_a_change_of_width_leaves_the_stance_foot_alone(stand):
         np.testing.assert_allclose(ways[0], ways[1], atol=1e-12)
 
 
+@pytest.mark.parametrize("width", [0.15, 0.2, 0.26])
+def test_the_first_step_lands_its_own_width_from_its_stance_foot_however_wide_the_robot_stood(stand, width):
+    gait = GaitParameters(steps=1, step_width=0.2, bouts=(Bout(1.0, (Twist(0.1, 0.05, 0.0, 0.2),)),))
+    steps = plan_footsteps(gait, stand(width), flat())
+    place = seen_from(steps[1], steps[2])
+    assert place.beside == pytest.approx(0.2 + 0.05 * steps[2].foot.side)
+
+
 def test_support_points_of_a_stop_lie_between_the_feet(schedule):
     bout = Bout(1.0, (Twist(0.2, width=0.2), Twist(width=0.2)))
     whole = schedule(GaitParameters(steps=4, bouts=(bout, bout))).schedule

@@ -1,0 +1,34 @@
+"""Position targets at 50 Hz: a foot that lands while a command holds counts as one that stands."""
+
+import pytest
+
+import surefoot
+from surefoot.scenarios.run.controller import Controller
+from surefoot.scenarios.setup.load import load
+from surefoot.wbc.types import NONE_TOUCHES
+
+pytestmark = pytest.mark.physics
+
+G1 = {"robot": "g1", "sized_for": "humanoid100"}
+HELD = {"control.output": "position", "control.output_rate": 50}
+
+
+def stands(seed, **keys):
+    scenario = load("walk", {**G1, **HELD, "seed": seed, **keys})
+    with surefoot.Simulation(scenario) as simulation:
+        while not simulation.done:
+            simulation.advance()
+        return simulation.end.kind == "completed"
+
+
+SLABS = {"errors.ground_noise": 0.01}
+
+
+@pytest.mark.parametrize("seed", [1, 2, 3, 4])
+def test_g1_walks_on_targets_over_slabs_that_are_higher_or_lower_than_believed(seed):
+    assert stands(seed, **SLABS)
+
+
+def test_it_falls_there_where_a_foot_stands_only_once_it_is_felt(monkeypatch):
+    monkeypatch.setattr(Controller, "_touching", lambda _: NONE_TOUCHES)
+    assert sum(stands(seed, **SLABS) for seed in (1, 2, 3, 4)) <= 2

@@ -62,7 +62,9 @@ class ContactParameters:
     """
 
     felt_force: float = number(8.0, "N", "normal force above which a foot feels the ground")
-    felt_ticks: int = number(2, "-", "consecutive control ticks of that force before it counts", positive=True)
+    felt_ticks: int = number(
+        2, "-", "consecutive control ticks, at the usual rate, of that force before it counts", positive=True
+    )
     early_progress: float = number(0.6, "-", "share of its swing from which a swing foot may land", most=1.0)
     early_cap: float = number(50.0, "N", "load allowed on a foot that landed before its time")
     loading_time: float = number(

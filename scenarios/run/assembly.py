@@ -13,12 +13,13 @@ from surefoot.guard import Guard, MisfitError, shown
 from surefoot.models.pinocchio import limb_shapes
 from surefoot.models.types import RobotDescription
 from surefoot.scenarios.file.control import ControlSettings
-from surefoot.scenarios.file.schema import Scenario
+from surefoot.scenarios.file.schema import Rates, Scenario
 from surefoot.scenarios.run.driven import driven_joints
 from surefoot.scenarios.run.sensed import Senses
 from surefoot.scenarios.run.sensing import ESTIMATORS, Estimator, SensorEstimator
 from surefoot.scenarios.setup.load import load
 from surefoot.scenarios.setup.parts import TASK, guarded
+from surefoot.scenarios.setup.sized import clock
 from surefoot.scenarios.setup.stance import Body
 from surefoot.scenarios.setup.walk import Walk, resolve
 from surefoot.values import dataclass
@@ -116,9 +117,10 @@ def whole_body_of(walk: Walk, body: Body, posture: Array, parts: Parts) -> Whole
     """
     robot = walk.robot
     rate, parameters = walk.control.output_rate or walk.rates.control, walk.controller
-    if rate != walk.rates.control:
-        # A foot feels for a time, not for a number of commands.
-        ticks = max(1, round(parameters.schedule.felt_ticks * rate / walk.rates.control))
+    usual = clock(Rates(), walk.size.time).control
+    if rate != usual:
+        # A foot feels for a time, not for a number of ticks.
+        ticks = max(1, round(parameters.schedule.felt_ticks * rate / usual))
         parameters = replace(parameters, schedule=replace(parameters.schedule, felt_ticks=ticks))
     driven = driven_joints(walk.control, robot)
     shoulders = robot.joint_indices(robot.roles.arm_swing or ())

@@ -7,11 +7,11 @@ import surefoot
 pytestmark = pytest.mark.physics
 
 PUSHES = [
-    (3, "single", 0.1, 0.74, 0.69),
-    (3, "double", 0.29, 0.62, 1.0),
-    (4, "single", 0.69, 0.71, 1.01),
-    (3, "single", 0.72, 0.79, -2.2),
-    (4, "double", 0.45, 0.76, 2.48),
+    (3, "single", 0.43, 0.7, 1.11),
+    (4, "single", 0.56, 0.74, 0.79),
+    (4, "single", 0.67, 0.73, 1.04),
+    (3, "single", 0.18, 0.73, 0.66),
+    (3, "single", 0.19, 0.69, 0.82),
 ]
 """Step, phase, share of it, impulse and direction [-, N·s/kg, rad]."""
 

@@ -184,25 +184,25 @@ class WalkingPlanner:
         if not all(map(math.isfinite, measured)):
             raise ValueError(f"The measured CoM or feet are not finite at {state.time:g} s.")
         execution, time = self._execution, state.time
-        execution.advance(feet, partial(self._dcm, state))
+        dcm, see = partial(self._dcm, state), partial(self._sight, state)
+        execution.advance(feet, dcm)
         self._obey(time)
         execution.fix_imminent(time, feet, 0.0 if self._plan is None else self._plan.balance.planned)
-        support, local, window = self._sight(state)
+        sight = see()
+        support, local, window = self._recovery.landing(feet, dcm, see, sight) if execution.adapted else sight
         if self._recovery.steps_out(local, window):
-            support, local, window = self._sight(state)
+            support, local, window = see()
         # Online constraints generator: the box comes with the reference, the reach of the feet here.
         unsure = self._unsure(state, window)
-        if execution.adapted and self._recovery.steps_no_more(local, support, window, unsure):
-            support, local, window = self._sight(state)
         step = StepProblem.of(time, execution, feet, support.frame)
         balance = self._recovery.balance(step, local, support, window, self._plan, unsure)
         if self._recovery.goes_again(time, feet, local, support, window, balance, unsure):
-            support, local, window = self._sight(state)
+            support, local, window = see()
             step = StepProblem.of(time, execution, feet, support.frame)
             balance = self._recovery.balance(step, local, support, window, self._plan, unsure)
         adjusted = self._recovery.adjusted(step, local, window, unsure)
         if adjusted is not None and adjusted.more and self._recovery.adds_steps(balance.planned):
-            support, local, window = self._sight(state)
+            support, local, window = see()
             step = StepProblem.of(time, execution, feet, support.frame)
             adjusted = self._recovery.adjusted(step, local, window, unsure)
         left = execution.time_left

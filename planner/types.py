@@ -151,12 +151,14 @@ class FeetState:
         yaw: sole headings, shape (2,) [rad].
         contact: which feet feel the ground, (left, right).
         height_deviation: standard deviation of the height of one sole over the other, zero for the truth [m].
+        arriving: which feet come to the ground in so short a time that they may be taken as landed, (left, right).
     """
 
     position: Array
     yaw: Array
     contact: tuple[bool, bool]
     height_deviation: float = 0.0
+    arriving: tuple[bool, bool] = (False, False)
 
 
 class SolverStatus(IntEnum):
@@ -181,7 +183,7 @@ class PlanStatus:
         infeasible: the profile's hard constraints had no solution; it was softened by the slack told here.
         age: number of ticks since the last plan in which both axes were solved; 0 for a fresh one.
         late_touchdown: ticks for which the phase clock has waited for the touchdown.
-        early_touchdown: the swing foot landed before its time; its foothold is fixed, the clock is not moved.
+        early_touchdown: the swing foot has landed before its time; its foothold is fixed, single support goes on.
         falling: no step will save the body any more, as far as the planner can tell.
     """
 

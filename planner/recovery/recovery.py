@@ -1,5 +1,8 @@
 """Recovery: what is made of the steps to come where the CoP alone does not hold the body."""
 
+from collections.abc import Callable
+from copy import copy
+
 import numpy as np
 
 from surefoot.planner.geometry import frame_rotation, signed_distance
@@ -8,14 +11,18 @@ from surefoot.planner.recovery.capture_margin import CaptureMargin, PlannedMargi
 from surefoot.planner.recovery.step_adjustment import StepAdjustment, StepBounds, StepProblem
 from surefoot.planner.references.window import Window
 from surefoot.planner.references.zmp_reference import Support
-from surefoot.planner.steps.adaptation import with_step_in_place, with_steps_repeated
+from surefoot.planner.steps.adaptation import Dcm, with_step_in_place, with_steps_repeated
 from surefoot.planner.steps.execution import Execution
+from surefoot.planner.steps.foresight import ended, going_again
 from surefoot.planner.steps.step import room_left
 from surefoot.planner.swing.step_region import Shifts, reachable_shifts, shifts_within, unshifted
 from surefoot.planner.types import Array, Balance, FeetState, Foot, PhaseKind
 from surefoot.values import maker
 
 _a_balance = maker(Balance)
+
+Sight = tuple[Support, Array, Window]
+"""What carries the robot, CoM position, velocity and acceleration in that plan frame, shape (2, 3), and references."""
 
 
 class Recovery:
@@ -37,6 +44,34 @@ class Recovery:
         if legs is not None and self._movable is not None:
             self.adjustment = StepAdjustment(legs, p, self._planned.outlook, self._movable.told)
         self._seen: tuple[Array, Window, Array, Array] | None = None
+
+    def planned(self, local: Array, window: Window) -> float:
+        """How far the DCM is inside what the CoP captures with steps as planned [m]; arguments as of `balance`."""
+        return self._planned.margin(self._capture_point(local, window)[1], window)
+
+    def landing(self, feet: FeetState, dcm: Callable[[], Dcm | None], see: Callable[[], Sight], sight: Sight) -> Sight:
+        """Let single support of a step that catches the body end with its touchdown, and tell what is seen then.
+
+        It ends where the CoP captures more at once, from both feet, than after the wait for the planned time. A DCM
+        that has gone too far goes farther while the foot waits. One that is short of the foot would need a next step
+        to catch it, and that step another one.
+
+        Args:
+            feet: the measured feet.
+            dcm: tells the DCM in the world frame.
+            see: tells what carries the robot, its CoM in the plan frame, and the references, as the execution is.
+            sight: what it tells now.
+        """
+        execution = self._execution
+        if not execution.may_end(feet, dcm):
+            return sight
+        waiting, margin = copy(execution), self.planned(*sight[1:])
+        execution.adopt(ended(execution, feet))
+        sight = see()
+        if self.planned(*sight[1:]) <= margin:
+            execution.adopt(waiting)
+            sight = see()
+        return sight
 
     def steps_out(self, local: Array, window: Window) -> bool:
         """Insert a step of a robot that stands and would fall, or stands astride; says whether."""
@@ -61,35 +96,6 @@ class Recovery:
         if standing and abs(error[1]) > numbers.tolerance:
             foot = Foot.RIGHT if error[1] > 0.0 else Foot.LEFT
         execution.follow(with_step_in_place(schedule, now, foot))
-        return True
-
-    def steps_no_more(self, local: Array, support: Support, window: Window, unsure: float = 0.0) -> bool:
-        """Leave out inserted steps on the spot that both feet make needless where they are now; says whether.
-
-        A foot that lands early ends its single support with the DCM not yet where the next step needs it. So each such
-        step would ask for another one, for ever.
-
-        Args:
-            local: as of `balance`.
-            support: likewise.
-            window: likewise.
-            unsure: likewise.
-        """
-        execution, numbers = self._execution, self._parameters.recovery
-        if execution.phase.kind is not PhaseKind.DOUBLE or not execution.schedule.stands:
-            return False
-        schedule, landed = execution.schedule, execution.landed
-        later = schedule.after(landed)
-        # A step with which a robot that stood steps out has a stop before it.
-        if not later or later[0].stop is not None or not all(step.inserted for step in later):
-            return False
-        here, usual = schedule.apart(landed)
-        if float(np.hypot(*(here - usual))) > numbers.apart:
-            return False
-        dcm = self._capture_point(local, window)[1]
-        if signed_distance(support.outer, support.origin + support.rotation @ dcm) < numbers.tolerance + unsure:
-            return False
-        execution.follow(schedule.until(landed, stands=True))
         return True
 
     def adds_steps(self, margin: float) -> bool:
@@ -140,7 +146,7 @@ class Recovery:
         foot = schedule.step(execution.landed).place.foot
         if not feet.contact[foot] or foot.side * float(places[1][1]) <= -float(schedule.ground.half_size[1]):
             return False
-        other = execution.going_again()
+        other = going_again(execution)
         stance = other.schedule.step(other.landed).place
         rotation, origin = frame = frame_rotation(stance.yaw), stance.position[:2]
         step = StepProblem.of(time, other, feet, frame)

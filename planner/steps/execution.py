@@ -2,7 +2,6 @@
 
 import math
 from collections.abc import Callable
-from copy import copy
 from dataclasses import replace
 
 import numpy as np
@@ -44,9 +43,9 @@ class Execution:
     """Goes through a schedule one sample per tick.
 
     A touchdown that is late holds the clock at the end of single support; an early one fixes its footstep where it was
-    felt and does not move the clock (moving it was measured to cost 17 to 28 mm of DCM error). A step that catches the
-    body ends its single support with its touchdown, early or not: by waiting the DCM error would grow by more. A foot
-    that lands short of the DCM on its own side goes on, where it may get there: its single support begins anew.
+    felt and does not move the clock (moving it was measured to cost 17 to 28 mm of DCM error). Single support of a step
+    that catches the body may end with its touchdown (see `Recovery.landing`). A foot that lands short of the DCM on its
+    own side goes on, where it may get there: its single support begins anew.
 
     Args:
         schedule: the steps in sight.
@@ -163,10 +162,8 @@ class Execution:
             if over and not contact and self.waited < self._patience:
                 self.waited += 1
                 return
-            if felt and not over and self.adapted and self._times:
-                clock, over = clock.showing(phase.end), True
             if over:
-                self._land(feet.position[swing], clock.now)
+                self.land(feet.position[swing], clock.now)
             elif felt:
                 self.early = True
                 self.fix(feet.position[swing])
@@ -248,7 +245,8 @@ class Execution:
         self.clock, self.swing, self.waited = clock.showing(self.phase.start), None, 0
         self.early = self.fixed = False
 
-    def _land(self, position: Array, now: float) -> None:
+    def land(self, position: Array, now: float) -> None:
+        """Go on with the next foot, shape (3,) [m], at an instant of the clock [samples]."""
         self.schedule = self.foresight.forgotten(self.schedule, now)
         self.fix(position)
         self.landed += 1
@@ -256,6 +254,16 @@ class Execution:
             schedule = adaptation.with_heel_lifted(self.schedule, self.landed, self.legs.radius)
             self.schedule = schedule if self._wide else adaptation.aligned(schedule, self.landed)
         self.waited, self.early, self.fixed, self.adapted = 0, False, False, False
+
+    def may_end(self, feet: FeetState, dcm: Callable[[], adaptation.Dcm | None]) -> bool:
+        """Whether the foot of a step that catches has landed early, or is about to; arguments as of `advance`."""
+        phase, swing = self.phase, self.phase.swing_foot
+        if swing is None or not (self.adapted and self._times and self.fixed):
+            return False
+        past = 2.0 * (self.clock.now - phase.start) > phase.samples
+        if not past or not (self.early or feet.arriving[swing]):
+            return False
+        return not adaptation.lands_short(self.schedule, self.landed, feet, dcm(), self.legs)
 
     @property
     def may_go_again(self) -> bool:
@@ -267,15 +275,6 @@ class Execution:
         # A plan in which it stands lies between its steps, so that it is seen to land.
         stood = phase.kind is PhaseKind.SINGLE or now > phase.start + CLOCK_ROUNDING
         return self.swing is None and stood and not rolls and self.schedule.step(self.landed + 1).stop is None
-
-    def going_again(self) -> "Execution":
-        """The execution in which the foot that landed last makes the next step as well, and the weight goes back."""
-        other, phase, schedule = copy(self), self.phase, adaptation.with_foot_again(self.schedule, self.landed)
-        gone = 1.0 if phase.kind is PhaseKind.SINGLE else (self.clock.now - phase.start) / phase.samples
-        step = schedule.step(self.landed)
-        other.clock = self.clock.showing(step.touchdown + (1.0 - gone) * step.double)
-        other.follow(schedule)
-        return other
 
     def adopt(self, other: "Execution") -> None:
         """Go on as another one, which was made of this one in this tick."""

@@ -92,7 +92,7 @@ class Controller:
         self._estimates = walk.sensing.force_estimate
         self._toe = 0.5 * walk.robot.sole_length if walk.gait.heel_off else 0.0
         self._giving_way = None if walk.control.give_way is False else GivingWay(body.limits, walk.size)
-        self._landed, self._load = (True, True), NO_LOAD
+        self._landed, self._arriving, self._load = (True, True), NONE_TOUCHES, NO_LOAD
         self._landing: Landing | None = None
         self._stands = False
         self._begin, self._now = math.nan, -math.inf
@@ -120,7 +120,8 @@ class Controller:
                 whole_body_of(self.walk, self.body, self.posture, self._parts),
                 senses_of(self.walk, self._parts),
             )
-            self._landed, self._load, self._torques = (True, True), NO_LOAD, None
+            self._landed, self._arriving = (True, True), NONE_TOUCHES
+            self._load, self._torques = NO_LOAD, None
         self._begin, self._now, self._next = math.nan, -math.inf, -math.inf
         self._landing, self._stands = None, q is not None
         if q is not None:
@@ -197,7 +198,8 @@ class Controller:
             return self._command
         if self._output.holds:
             self._next = self._output.after(now)
-        touching = self._touching() if self._output.holds else NONE_TOUCHES
+        soon = self._output.holds or self._arriving is not NONE_TOUCHES
+        touching = self._touching() if soon else NONE_TOUCHES
         sensing = foot_sensing(self.estimate, self.wrench, self._estimates, self._torques, touching)
         fails = self._faults is not None and self._faults.active("qp_failure", planning.tick(now))
         if self.whole_body.driven is not None:
@@ -234,18 +236,26 @@ class Controller:
         self.state = state
 
     def _touching(self) -> tuple[bool, bool]:
-        """Which sole comes to the ground while the command holds that is to be made, (left, right).
+        """Which sole counts as one that stands before anything is felt of it, (left, right).
 
-        Within 20 ms a foot lands and stands. Commands that swung it on all the while pushed the robot off its plan.
+        Within a command that is held a foot lands and stands. Commands that swung it on all the while pushed the robot
+        off its plan. A foot with which the planner has ended a single support is as good as on the ground.
         """
+        arriving, self._arriving = self._arriving, NONE_TOUCHES
+        if self.planning.plan.swing is None:
+            return arriving
+        return self._comes_down(self._output.period) if self._output.holds else NONE_TOUCHES
+
+    def _comes_down(self, time: float) -> tuple[bool, bool]:
+        """Which sole comes to the planned ground in no more than so long [s], (left, right)."""
         plan, terms = self.planning.plan, self.terms
         if plan.swing is None:
             return NONE_TOUCHES
         foot = int(plan.swing.foot)
         height = float(terms.sole_position[foot, 2] - plan.footsteps[0].position[2])
         speed = float(terms.sole_rotation[foot, 2] @ terms.sole_velocity[foot, :3])
-        touches = speed < 0.0 and height + speed * self._output.period < 0.0
-        return touches and foot == 0, touches and foot == 1
+        comes = speed < 0.0 and height + speed * time < 0.0
+        return comes and foot == 0, comes and foot == 1
 
     def _tell(self, driven: DrivenRows, told: JointCommand | None) -> None:
         """Tell the whole-body controller what drives the joints that are not its own."""
@@ -279,7 +289,10 @@ class Controller:
             soles, yaw = terms.level_soles(self._toe), np.arctan2(R[:, 1, 0], R[:, 0, 0])
             zmp = np.array(measured_zmp(wrench, terms.sole_position, R))
         state = CentroidalState(self._now, terms.com.copy(), terms.com_velocity.copy(), self._lasting())
-        feet = FeetState(soles, yaw, self._landed)
+        if False in self._landed and self.planning.plan.balance.catching:
+            arrives = self._output.period + self.planning.planner.parameters.freeze_catching
+            self._arriving = self._comes_down(arrives)
+        feet = FeetState(soles, yaw, self._landed, arriving=self._arriving)
         if self.estimate.deviation is not None:
             state, feet = unsure(self.estimate.deviation, state, feet)
         return state, zmp[:2], feet

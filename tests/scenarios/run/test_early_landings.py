@@ -1,0 +1,74 @@
+"""A small robot that walks is pushed hard; single supports of the steps that catch it end as their feet land."""
+
+import pytest
+
+import surefoot
+from surefoot.planner.steps.execution import Execution
+from surefoot.planner.types import PhaseKind
+from surefoot.scenarios.run.controller import Controller
+from surefoot.wbc.types import NONE_TOUCHES
+
+pytestmark = pytest.mark.physics
+
+PUSHES = [
+    (fraction, impulse, direction)
+    for fraction, middle, direction in ((0.53, 0.74, 0.17), (0.31, 0.73, -0.13), (0.65, 0.68, 0.07))
+    for impulse in (middle - 0.02, middle + 0.02)
+]
+"""Share of the third single support, impulse and direction [-, N·s/kg, rad]."""
+
+
+def falls():
+    """How many of the pushes fell it."""
+    fallen = 0
+    for fraction, impulse, direction in PUSHES:
+        push = {
+            "step": 3,
+            "phase": "single",
+            "fraction": fraction,
+            "impulse": impulse,
+            "direction": direction,
+            "duration": 0.1,
+        }
+        keys = {"robot": "g1", "sensing.source": "truth", "criteria": {"fell": False}, "duration": 6.5}
+        with surefoot.Simulation(surefoot.load("walk", {**keys, "pushes": [push]})) as simulation:
+            while not (simulation.done or simulation.fell):
+                simulation.step()
+            fallen += simulation.fell
+    return fallen
+
+
+def test_a_step_that_catches_ends_with_its_touchdown():
+    assert falls() <= 1
+
+
+def test_steps_that_always_wait_for_their_time_let_it_fall(monkeypatch):
+    """Negative control."""
+    monkeypatch.setattr(Execution, "may_end", lambda *_: False)
+    assert falls() >= 5
+
+
+def ended_early():
+    """Of double supports that begin before their time: which feet are held from their first tick on."""
+    push = {"step": 3, "phase": "single", "fraction": 0.53, "impulse": 0.7, "direction": 0.17, "duration": 0.1}
+    keys = {"robot": "g1", "sensing.source": "truth", "criteria": {"fell": False}, "duration": 6.5}
+    before, held = None, []
+    with surefoot.Simulation(surefoot.load("walk", {**keys, "pushes": [push]})) as simulation:
+        while not (simulation.done or simulation.fell):
+            tick = simulation.step()
+            swung = before is not None and before.kind is PhaseKind.SINGLE and before.left > 0.03
+            if swung and tick.plan.phase.kind is PhaseKind.DOUBLE:
+                held.append(tick.report.active)
+            before = tick.plan.phase
+    return held
+
+
+def test_a_foot_that_the_planner_takes_as_landed_is_held_at_once():
+    held = ended_early()
+    assert held and all(all(feet) for feet in held)
+
+
+def test_of_what_nobody_tells_the_foot_is_held_once_it_is_felt(monkeypatch):
+    """Negative control."""
+    monkeypatch.setattr(Controller, "_touching", lambda _: NONE_TOUCHES)
+    assert not all(all(feet) for feet in ended_early())

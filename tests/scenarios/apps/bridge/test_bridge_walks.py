@@ -18,9 +18,11 @@ PUSHES = (
     "{time: 0.3, duration: 0.1, force: [20, 0, 0]}",
 )
 PUSHED = ("--set", f"pushes=[{', '.join(PUSHES)}]")
+HARD = "{step: 1, phase: single, fraction: 0.5, duration: 0.1, impulse: 0.4, direction: 0.3}"
 ROBOTS = {
     "humanoid100": (),
     "g1 by its sensors": ("--robot", "g1", "--set", "sensing.source=ekf", "--set", "sensing.preset=good"),
+    "g1 that catches itself": ("--robot", "g1", "--set", f"pushes=[{HARD}]", "--set", "gait.steps=3"),
     "position targets": ("--set", "control.output=position", "--set", "control.output_rate=50"),
 }
 
@@ -31,6 +33,7 @@ ROBOTS = {
         ("humanoid100", "1"),
         pytest.param("position targets", "1", marks=pytest.mark.long),
         ("g1 by its sensors", "1"),
+        ("g1 that catches itself", "1"),
         pytest.param("g1 by its sensors", "0", marks=pytest.mark.long),
     ],
 )

@@ -65,7 +65,7 @@ class FootSensing:
         load_deviation: standard deviations of the force and of the moment that momentum and wrenches give for a load,
             zero for the truth, infinite where they give none [N, N·m].
         wrench_age: time since the wrenches acted, by latency and filters; zero for the truth [s].
-        touching: soles that nothing is felt of yet, and that come to the ground before the next tick, (left, right).
+        touching: soles that nothing is felt of yet, and that are about to come to the ground, (left, right).
     """
 
     normal_force: tuple[float, float]

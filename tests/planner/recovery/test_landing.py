@@ -16,8 +16,8 @@ T = P.sample_time
 LEGS = LegReach(0.36, 0.2, 0.115, 0.12, 0.24, (60.0, 50.0))
 GAIT = GaitParameters(initial_stand=0.0, single_support=0.6, double_support=0.2)
 
-EARLY, LATE = 30, 47
-"""Ticks at which the body is pushed: in mid-swing, and when the footstep has been decided."""
+EARLY = 30
+"""Tick in mid-swing at which the body is pushed."""
 
 
 def walked(kicks, arrives=None):

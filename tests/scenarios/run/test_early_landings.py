@@ -18,20 +18,19 @@ PUSHES = [
 """Share of the third single support, impulse and direction [-, N·s/kg, rad]."""
 
 
+def pushed(fraction, impulse, direction):
+    """A walk that is pushed so; arguments as in `PUSHES`."""
+    push = {"step": 3, "phase": "single", "fraction": fraction, "duration": 0.1}
+    push |= {"impulse": impulse, "direction": direction}
+    keys = {"robot": "g1", "sensing.source": "truth", "criteria": {"fell": False}, "duration": 6.5}
+    return surefoot.Simulation(surefoot.load("walk", {**keys, "pushes": [push]}))
+
+
 def falls():
     """How many of the pushes fell it."""
     fallen = 0
     for fraction, impulse, direction in PUSHES:
-        push = {
-            "step": 3,
-            "phase": "single",
-            "fraction": fraction,
-            "impulse": impulse,
-            "direction": direction,
-            "duration": 0.1,
-        }
-        keys = {"robot": "g1", "sensing.source": "truth", "criteria": {"fell": False}, "duration": 6.5}
-        with surefoot.Simulation(surefoot.load("walk", {**keys, "pushes": [push]})) as simulation:
+        with pushed(fraction, impulse, direction) as simulation:
             while not (simulation.done or simulation.fell):
                 simulation.step()
             fallen += simulation.fell
@@ -50,10 +49,8 @@ def test_steps_that_always_wait_for_their_time_let_it_fall(monkeypatch):
 
 def ended_early():
     """Of double supports that begin before their time: which feet are held from their first tick on."""
-    push = {"step": 3, "phase": "single", "fraction": 0.53, "impulse": 0.7, "direction": 0.17, "duration": 0.1}
-    keys = {"robot": "g1", "sensing.source": "truth", "criteria": {"fell": False}, "duration": 6.5}
     before, held = None, []
-    with surefoot.Simulation(surefoot.load("walk", {**keys, "pushes": [push]})) as simulation:
+    with pushed(0.53, 0.7, 0.17) as simulation:
         while not (simulation.done or simulation.fell):
             tick = simulation.step()
             swung = before is not None and before.kind is PhaseKind.SINGLE and before.left > 0.03

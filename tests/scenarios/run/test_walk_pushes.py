@@ -33,9 +33,9 @@ def test_a_long_step_does_not_throw_it_as_it_lands(direction):
     assert not any(dropped for fell, dropped in runs if not fell)
 
 
-def test_with_a_heel_rolled_in_no_time_and_soles_held_at_any_price_it_is_thrown(monkeypatch):
+def test_with_a_heel_rolled_in_no_time_and_soles_held_at_any_price_the_qp_drops_all_limits(monkeypatch):
     """Negative control."""
     monkeypatch.setattr(FootRoll, "hardest", lambda roll, begin, end: 0.0)
     held = property(lambda solver: False, lambda solver, value: None)
     monkeypatch.setattr(solvers.Daqp, "_lets_go", held, raising=False)
-    assert sum(pushed(impulse, 0.25)[0] for impulse in (0.67, 0.7, 0.73)) >= 2
+    assert all(pushed(impulse, 0.25)[1] for impulse in (0.67, 0.7, 0.73))

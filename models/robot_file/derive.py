@@ -28,6 +28,9 @@ HANGING, _WIDER, _WIDEST = 0.12, 0.05, 0.8
 _CLEAR = 0.01
 """Distance that upright shanks keep, of humanoid100; that of others goes with their leg [m]."""
 
+_FREE = 0.04
+"""Distance of hanging arms from thighs and trunk, over the leg's length: a push at the trunk swings them [-]."""
+
 _NEAR = 0.005
 """Distance in the posture, over the leg's length, below which links may overlap for good [-]."""
 
@@ -134,7 +137,7 @@ class _Deriver:
         posture, aside = rest(self.model), HANGING
         if not self.upper.arms:
             return posture
-        near = _NEAR * self.leg_length
+        near = _FREE * self.leg_length
         others = {1, self.upper.torso, *(leg.joints[leg.knee - 1] for leg in self.legs)}
         arms = {joint for arm in self.upper.arms for joint in arm[2:]}
         hulls = {joint: hull for joint, hull in self.hulls.items() if joint in others | arms}

@@ -130,7 +130,7 @@ def shank_spacing(data: pin.Data, legs: tuple[Leg, Leg], hulls: dict[int, Hull],
 
 
 def limbs(legs: tuple[Leg, Leg], upper: Upper, hulls: dict[int, Hull]) -> list[tuple[int, int]]:
-    """Pairs of joints whose bodies can meet in walking: thighs and shanks of both legs, lower arms and thighs."""
+    """Pairs of joints whose bodies can meet: thighs and shanks of both legs, lower arms and thighs, arms and trunk."""
     thighs, shanks = ([leg.joints[leg.knee + offset] for leg in legs] for offset in (-1, 0))
     pairs = [(thighs[0], thighs[1]), (shanks[0], shanks[1]), (thighs[0], shanks[1]), (thighs[1], shanks[0])]
     for arm, thigh in zip(upper.arms, thighs, strict=False):
@@ -138,6 +138,7 @@ def limbs(legs: tuple[Leg, Leg], upper: Upper, hulls: dict[int, Hull]) -> list[t
         if lower:
             largest = max(lower, key=lambda joint: float(np.prod(np.ptp(hulls[joint].vertices, axis=0))))
             pairs += [(joint, thigh) for joint in sorted({lower[-1], largest})]
+        pairs += [(upper.torso, joint) for joint in arm[2:] if joint in hulls and upper.torso in hulls]
     return pairs
 
 

@@ -63,6 +63,20 @@ def test_a_foot_that_comes_to_the_ground_before_the_next_tick_is_a_contact_once_
     assert schedule.update(swinging(0.95), FootSensing((900.0, 0.0))).active == (True, True)
 
 
+def test_load_grows_only_once_the_foot_is_felt(schedule):
+    """A foot that counts as landed while it is in the air carries nothing: the other foot has to carry the robot."""
+    landed, cap = reference(lifting_foot=0, time_to_switch=0.5), ContactParameters().early_cap
+    schedule.update(swinging(0.0), FootSensing((900.0, 0.0)))
+    state = schedule.update(landed, FootSensing((900.0, 0.0), touching=(False, True)))
+    assert state.active == (True, True)
+    for _ in range(10):
+        assert schedule.update(landed, FootSensing((900.0, 0.0))).force_cap == (3 * WEIGHT, cap)
+    caps = [schedule.update(landed, FootSensing((900.0, 60.0))).force_cap[1] for _ in range(5)]
+    assert caps[0] == cap < caps[-1]
+    # Nor does the load go back where the foot lifts for a tick.
+    assert schedule.update(landed, FootSensing((900.0, 0.0))).force_cap[1] > caps[-1]
+
+
 def test_a_scuff_in_early_swing_is_no_contact(schedule):
     schedule.update(swinging(0.0), FootSensing((900.0, 0.0)))
     for _ in range(5):

@@ -113,7 +113,7 @@ def test_without_arms_the_heaviest_body_is_the_torso(tmp_path) -> None:
 
 
 def test_arms_hang_free_of_the_body(tmp_path, shipped) -> None:
-    """Hands below shoulders, and nothing touches in the posture."""
+    """Hands below shoulders, and nothing touches in the posture. G1's go farther aside, past its wide trunk."""
     arms = {
         "biped": ("left_arm", "left_forearm"),
         "talos": ("arm_left_2_link", "arm_left_7_link"),
@@ -127,7 +127,23 @@ def test_arms_hang_free_of_the_body(tmp_path, shipped) -> None:
         touching = [[model.geom(geom).name for geom in contact.geom] for contact in data.contact]
         assert not touching
         shoulder, hand = (data.body(name).xpos for name in arms[robot.name])
-        assert hand[2] < shoulder[2] - 0.9 * np.linalg.norm(hand - shoulder)
+        assert hand[2] < shoulder[2] - (0.8 if robot.name == "g1" else 0.9) * np.linalg.norm(hand - shoulder)
+
+
+def test_arms_that_hang_have_room_to_swing(shipped) -> None:
+    """A push at the trunk swings them, and they are kept from it; those of G1 used to hang 4 mm beside it."""
+    for name, trunk, arm in (("g1", "torso_link", "shoulder_yaw_link"), ("talos", "torso_2_link", "3_link")):
+        robot = shipped[name]
+        model = mujoco.MjModel.from_xml_string(robot.mjcf)
+        data = mujoco.MjData(model)
+        data.qpos[7:] = robot.nominal_joint_positions
+        mujoco.mj_kinematics(model, data)
+        for side in ("left", "right"):
+            upper = f"{side}_{arm}" if name == "g1" else f"arm_{side}_{arm}"
+            shapes = f"{trunk}_shape", f"{upper}_shape"
+            gap = mujoco.mj_geomDistance(model, data, *(model.geom(shape).id for shape in shapes), 1.0, None)
+            assert gap > 0.025
+            assert shapes in robot.kept_apart
 
 
 def test_each_leg_is_kept_from_thigh_shank_and_sole_of_the_other_one(tmp_path) -> None:

@@ -77,8 +77,8 @@ def test_a_lasting_force_is_found_and_walked_with_from_sensors(direction, phase,
 @pytest.mark.physics
 def test_a_force_that_is_walked_with_moves_steps_much_farther_without_the_estimate(tmp_path):
     """Steps alone then catch a body that leans the wrong way, one after the other."""
-    told = walk(tmp_path, "walk", *NATURAL, pulled(40, "left")).verdict
-    untold = walk(tmp_path, "walk", *NATURAL, pulled(40, "left"), OFF).verdict
+    told = walk(tmp_path, "walk", *NATURAL, pulled(45, "left")).verdict
+    untold = walk(tmp_path, "walk", *NATURAL, pulled(45, "left"), OFF).verdict
     assert told.reasons == ()
     assert untold.metrics["step_shift"] > 0.3 > 2.0 * told.metrics["step_shift"]
 

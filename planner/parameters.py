@@ -203,7 +203,6 @@ class RecoveryParameters:
         longer: by how much the margin lets a single support last longer [s].
         most_steps: steps that the margin counts with; the sum over more of them has converged [-].
         fall_margin: how far outside the capture margin the DCM is of a robot that will fall [m].
-        fall_ticks: plans on end for which it is; one alone may be noise of the measurement [-].
         sole_gap: least distance of soles side by side [m].
         across: how far beyond its stance foot a foot may land, with the thighs apart [m].
         clear: gap of soles one ahead of the other from which on the foot may cross [m].
@@ -236,8 +235,7 @@ class RecoveryParameters:
     margin_times: tuple[float, ...] = quantity((0.0, 0.1, 0.2, 0.3, 0.4, 0.5, 0.7, 1.0), "-")
     longer: float = quantity(0.2, "s")
     most_steps: int = 5
-    fall_margin: float = quantity(0.02, "m")
-    fall_ticks: int = 5
+    fall_margin: float = quantity(0.15, "m")
     sole_gap: float = quantity(0.01, "m")
     across: float = quantity(0.12, "m")
     clear: float = quantity(0.02, "m")

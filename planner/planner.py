@@ -218,7 +218,7 @@ class WalkingPlanner:
         catching = execution.catching
         if free[0] or catching:
             shift = shifts[0] if free[0] else balance.shift
-            balance = Balance(balance.planned, balance.movable, shift, balance.delay, balance.outside, catching)
+            balance = Balance(balance.planned, balance.movable, shift, balance.delay, balance.lost, catching)
         if execution.phase.swing_foot is not None:
             execution.swing_to(footsteps[0], time, feet, motion.solver is SolverStatus.HELD)
         self._plan = self._world_plan(time, support, window, local, motion, footsteps, balance)
@@ -334,7 +334,7 @@ class WalkingPlanner:
         return known[2], known[3]
 
     def _status(self, motion: Motion, balance: Balance) -> PlanStatus:
-        age, warned = 0, self._plan is not None and self._plan.status.falling
+        age, told = 0, self._plan is not None and self._plan.status.falling
         if motion.solver is SolverStatus.HELD:
             age = (self._plan.status.age if self._plan is not None else 0) + 1
         return _a_status(
@@ -345,5 +345,5 @@ class WalkingPlanner:
             age=age,
             late_touchdown=self._execution.waited,
             early_touchdown=self._execution.early,
-            falling=warned or balance.outside >= self.parameters.recovery.fall_ticks,
+            falling=told or balance.lost,
         )

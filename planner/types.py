@@ -207,7 +207,7 @@ class Balance:
         movable: the same where the steps to come may be moved as far as legs, and what may be adapted, let them [m].
         shift: by how much the next landing is moved from where it nominally is, world frame, shape (2,) [m].
         delay: how much later than nominally it is made to come [s].
-        outside: plans on end in which the DCM has been farther outside `movable` than a robot that can be saved.
+        lost: the DCM is farther outside `movable` than that of a robot that can be saved.
         catching: place or time of the next landing are being adapted, but on stairs and blocks.
     """
 
@@ -215,7 +215,7 @@ class Balance:
     movable: float = math.nan
     shift: Array = field(default_factory=lambda: np.full(2, math.nan))
     delay: float = math.nan
-    outside: int = 0
+    lost: bool = False
     catching: bool = False
 
 

@@ -192,11 +192,10 @@ class Recovery:
             movable = max(planned, float(self._movable.margins(com, dcm, omega, step, steps, fixed)[-1]))
         kept = last is not None and last.phase.landed == execution.landed
         shift, delay = (last.balance.shift, last.balance.delay) if last is not None and kept else (np.zeros(2), 0.0)
-        outside = 0 if last is None else last.balance.outside
-        # Steps that a law moves of its own accord may save more than the margin says.
-        if self._movable is not None or not execution.adapts:
-            outside = outside + 1 if movable < -p.recovery.fall_margin else 0
-        return _a_balance(planned - unsure, movable - unsure, shift, delay, outside)
+        # Hips save many that are less far out. Steps that a law moves of its own accord may save more than that.
+        sure = self._movable is not None or not execution.adapts
+        lost = sure and movable < -p.recovery.fall_margin
+        return _a_balance(planned - unsure, movable - unsure, shift, delay, lost)
 
     def adjusted(
         self, step: StepProblem | None, local: Array, window: Window, unsure: float = 0.0

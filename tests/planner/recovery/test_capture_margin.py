@@ -311,15 +311,14 @@ def test_who_falls_was_outside_before(stand):
     assert min(plan.balance.movable for plan in made if plan.time < fallen - 0.1) < -0.03
 
 
-def test_a_fall_is_told_after_some_plans_on_end_outside_and_stays_told(stand):
+def test_a_fall_is_told_by_a_plan_far_outside_and_stays_told(stand):
     numbers = P.recovery
     _, made, fallen = plans(stand, aside=-1.4)
-    outside, told, run = [plan.balance.movable < -numbers.fall_margin for plan in made], False, 0
-    for plan, out in zip(made, outside, strict=True):
-        run = run + 1 if out else 0
-        told |= run >= numbers.fall_ticks
+    told = False
+    for plan in made:
+        assert plan.balance.lost == (plan.balance.movable < -numbers.fall_margin)
+        told |= plan.balance.lost
         assert plan.status.falling is told
-        assert plan.balance.outside == run
     assert next(plan.time for plan in made if plan.status.falling) < fallen
     _, made, _ = plans(stand, 0.4)
     assert not any(plan.status.falling for plan in made)

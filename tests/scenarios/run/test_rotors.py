@@ -1,0 +1,44 @@
+"""What the rotors of its motors give a small robot that is pushed as it marches, from good sensors at 250 Hz."""
+
+from pathlib import Path
+
+import pytest
+
+import surefoot
+from surefoot.models import registry
+from surefoot.scenarios.run.planning import RunFault
+from surefoot.scenarios.study.campaigns.campaign import read_campaign
+
+pytestmark = pytest.mark.physics
+
+SEEDS = range(6)
+
+
+def falls(robot):
+    """Of marches with a push forward in mid-swing, those that fall or blow up, of six seeds of the sensors."""
+    march = read_campaign("march-ladder").spec.set
+    push = {**march["pushes"][0], "impulse": 0.4}
+    keys = {**march, "robot": robot, "sensing.source": "ekf", "sensing.preset": "good", "pushes": [push]}
+    fallen = 0
+    for seed in SEEDS:
+        with surefoot.Simulation(surefoot.load("walk", {**keys, "seed": seed})) as simulation:
+            try:
+                while not (simulation.done or simulation.fell):
+                    simulation.step()
+            except RunFault:
+                fallen += 1
+            else:
+                fallen += simulation.fell
+    return fallen
+
+
+def test_feet_that_touch_with_an_edge_do_not_flip_over():
+    assert falls("g1") == 0
+
+
+def test_without_rotors_they_do(tmp_path):
+    """Negative control: the ankle then turns the foot about its length with 0.0003 kg·m²."""
+    text = (Path(registry.__file__).parent / "robots" / "g1.yaml").read_text(encoding="utf-8")
+    bare = tmp_path / "bare.yaml"
+    bare.write_text(text.split("# Rotors")[0].replace("name: g1", "name: bare"), encoding="utf-8")
+    assert falls(str(bare)) >= 2

@@ -33,8 +33,8 @@ class ContactSchedule:
       that stands. So does one with which the planner has ended a single support.
     - A foot is released when the plan lifts it, unless it would be the last contact.
     - A foot that the plan rolls keeps its toe edge on the ground, while the other foot carries as well.
-    - Allowed loads grow once a foot is felt and shrink before lift-off, so that no contact appears or ends with a jump
-      in force. A foot that counts as landed before it is felt bears nothing yet: the robot would fall onto it.
+    - Allowed loads grow after touchdown and shrink before lift-off, so that no contact appears or ends with a jump in
+      force. A foot that counts as landed before it is felt bears nothing yet, or the robot would fall onto it.
 
     Attributes:
         weight: of the robot, as it is now known [N].
@@ -49,6 +49,7 @@ class ContactSchedule:
         self._least, self._ticks = parameters.felt_force, parameters.felt_ticks
         self._ticks_felt = [self._ticks, self._ticks]
         self._loading = [1.0, 1.0]
+        self._awaited = NONE_TOUCHES
         self._last = ContactState(self._active, self._active, (3.0 * weight, 3.0 * weight))
         self._found: tuple[object, ...] = ()
 
@@ -59,19 +60,21 @@ class ContactSchedule:
         """
         felt, active, planned = sensing.contact, self._active, reference.planned_contact
         if felt is None:
-            left, right = sensing.normal_force
+            on_left, on_right = sensing.normal_force
             ticks = self._ticks_felt
-            ticks[0] = ticks[0] + 1 if left > self._least else 0
-            ticks[1] = ticks[1] + 1 if right > self._least else 0
+            ticks[0] = ticks[0] + 1 if on_left > self._least else 0
+            ticks[1] = ticks[1] + 1 if on_right > self._least else 0
             felt = (ticks[0] >= self._ticks, ticks[1] >= self._ticks)
-        loaded = felt
-        if sensing.touching is not NONE_TOUCHES:
-            felt = (felt[0] or sensing.touching[0], felt[1] or sensing.touching[1])
+        touching, awaited = sensing.touching, self._awaited
+        if touching is not NONE_TOUCHES or awaited is not NONE_TOUCHES:
+            left, right = ((touching[k] or awaited[k]) and not felt[k] for k in (0, 1))
+            self._awaited = (left, right) if left or right else NONE_TOUCHES
+            felt = (felt[0] or touching[0], felt[1] or touching[1])
         if active != planned or felt[0] > active[0] or felt[1] > active[1]:
             self._active = active = self._held(reference, felt)
         rolling = -1
         if active[0] and active[1]:
-            cap, rolling = self._caps(reference, loaded), reference.rolling_foot
+            cap, rolling = self._caps(reference), reference.rolling_foot
         else:
             cap = (3.0 * self.weight, 0.0) if active[0] else (0.0, 3.0 * self.weight)
         found = active, felt, cap, rolling
@@ -92,14 +95,14 @@ class ContactSchedule:
                 held[k] = False
         return held[0], held[1]
 
-    def _caps(self, reference: WbcReference, loaded: tuple[bool, bool]) -> tuple[float, float]:
-        """Loads that both feet may take while both are held, of which these are loaded already [N]."""
+    def _caps(self, reference: WbcReference) -> tuple[float, float]:
+        """Loads that both feet may take while both are held [N]."""
         parameters, most, caps = self._parameters, 3.0 * self.weight, [0.0, 0.0]
         for k in (0, 1):
-            if not reference.planned_contact[k]:
+            if self._awaited[k] or not reference.planned_contact[k]:
                 caps[k] = parameters.early_cap
                 continue
-            if self._loading[k] < 1.0 and (self._loading[k] > 0.0 or loaded[k]):
+            if self._loading[k] < 1.0:
                 self._loading[k] = min(1.0, self._loading[k] + self._period / parameters.loading_time)
             cap = parameters.early_cap + self._loading[k] * (most - parameters.early_cap)
             if reference.lifting_foot == k and self._loading[1 - k] >= 1.0:

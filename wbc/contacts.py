@@ -60,15 +60,15 @@ class ContactSchedule:
         """
         felt, active, planned = sensing.contact, self._active, reference.planned_contact
         if felt is None:
-            on_left, on_right = sensing.normal_force
+            left, right = sensing.normal_force
             ticks = self._ticks_felt
-            ticks[0] = ticks[0] + 1 if on_left > self._least else 0
-            ticks[1] = ticks[1] + 1 if on_right > self._least else 0
+            ticks[0] = ticks[0] + 1 if left > self._least else 0
+            ticks[1] = ticks[1] + 1 if right > self._least else 0
             felt = (ticks[0] >= self._ticks, ticks[1] >= self._ticks)
         touching, awaited = sensing.touching, self._awaited
         if touching is not NONE_TOUCHES or awaited is not NONE_TOUCHES:
-            left, right = ((touching[k] or awaited[k]) and not felt[k] for k in (0, 1))
-            self._awaited = (left, right) if left or right else NONE_TOUCHES
+            one, other = ((touching[k] or awaited[k]) and not felt[k] for k in (0, 1))
+            self._awaited = (one, other) if one or other else NONE_TOUCHES
             felt = (felt[0] or touching[0], felt[1] or touching[1])
         if active != planned or felt[0] > active[0] or felt[1] > active[1]:
             self._active = active = self._held(reference, felt)

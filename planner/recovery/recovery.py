@@ -193,8 +193,8 @@ class Recovery:
         kept = last is not None and last.phase.landed == execution.landed
         shift, delay = (last.balance.shift, last.balance.delay) if last is not None and kept else (np.zeros(2), 0.0)
         # Hips save many that are less far out. Steps that a law moves of its own accord may save more than that.
-        sure = self._movable is not None or not execution.adapts
-        lost = sure and movable < -p.recovery.fall_margin
+        told = self._movable is not None or not execution.adapts
+        lost = told and movable < -p.recovery.fall_margin
         return _a_balance(planned - unsure, movable - unsure, shift, delay, lost)
 
     def adjusted(

@@ -42,10 +42,10 @@ _TOLD = 3
 class Execution:
     """Goes through a schedule one sample per tick.
 
-    A touchdown that is late holds the clock at the end of single support; an early one fixes its footstep where it was
-    felt and does not move the clock (moving it was measured to cost 17 to 28 mm of DCM error). Single support of a step
-    that catches the body may end with its touchdown (see `Recovery.landing`). A foot that lands short of the DCM on its
-    own side goes on, where it may get there: its single support begins anew.
+    A touchdown that is late holds the clock at the end of single support. An early one fixes its footstep where it was
+    felt. It does not move the clock: that was measured to cost 17 to 28 mm of DCM error. Single support of a step that
+    catches the body may end with its touchdown (see `Recovery.landing`). A foot that lands short of the DCM on its own
+    side goes on, where it may get there: its single support begins anew.
 
     Args:
         schedule: the steps in sight.

@@ -280,10 +280,9 @@ class StepAdjustment:
         if cost[way, best] == np.inf:
             return None
         place, least, most = places[way, best], low[best], high[best]
-        if not way:
-            # Beside its stance foot it lands with the DCM well inside the next box, or as near to that as it comes.
-            left = np.maximum(numbers.landing_share * held, held / numbers.cop_share - numbers.landing_spare) / gain
-            least, most = np.maximum(least, wanted[best] - left), np.minimum(most, wanted[best] + left)
+        # It lands with the DCM well inside the next box, or as near to that as it comes.
+        left = np.maximum(numbers.landing_share * held, held / numbers.cop_share - numbers.landing_spare) / gain
+        least, most = np.maximum(least, wanted[best] - left), np.minimum(most, wanted[best] + left)
         box = legs.around(place, hips[best], boxes[way], legs.radius)
         box[0], box[1] = np.maximum(box[0], np.minimum(least, place)), np.minimum(box[1], np.maximum(most, place))
         return StepBounds(float(double[best] if step.double else single[best]), box, bool(second[way, best].any()))

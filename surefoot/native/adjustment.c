@@ -200,11 +200,9 @@ static int64_t cheapest(const Adjustment *program, const Bounded *bounded, int64
         const double place = choice.place[i], held = bounded->held[i], other = choice.place[1 - i] - choice.hips[1 - i];
         const double most = sqrt(fmax(radius * radius - other * other, 0.0));
         double low = choice.low[i], high = choice.high[i];
-        if (way == 0) {
-            const double left = fmax(program->landing_share * held, held / program->cop_share - program->landing_spare);
-            low = fmax(low, choice.wanted[i] - left / bounded->gain);
-            high = fmin(high, choice.wanted[i] + left / bounded->gain);
-        }
+        const double left = fmax(program->landing_share * held, held / program->cop_share - program->landing_spare);
+        low = fmax(low, choice.wanted[i] - left / bounded->gain);
+        high = fmin(high, choice.wanted[i] + left / bounded->gain);
         const double least = fmin(fmax(boxes[way].low[i], choice.hips[i] - most), place);
         const double greatest = fmax(fmin(boxes[way].high[i], choice.hips[i] + most), place);
         program->result[1 + i] = fmax(least, fmin(low, place));

@@ -1,6 +1,7 @@
 """The walking planner: the four modules of the paper, put together once per tick."""
 
 import math
+from copy import copy
 from dataclasses import replace
 from functools import partial
 
@@ -15,7 +16,7 @@ from surefoot.planner.laws.profiles import PROFILES, Profile
 from surefoot.planner.model.jerk import WorldMotion
 from surefoot.planner.parameters import PlannerParameters
 from surefoot.planner.plan import WalkPlan
-from surefoot.planner.recovery.recovery import Recovery
+from surefoot.planner.recovery.recovery import Recovery, Sight
 from surefoot.planner.recovery.step_adjustment import StepBounds, StepProblem
 from surefoot.planner.references.com_height import HeightProfile, SmoothHeight
 from surefoot.planner.references.window import ReferencePreview, Window
@@ -196,7 +197,7 @@ class WalkingPlanner:
         unsure = self._unsure(state, window)
         step = StepProblem.of(time, execution, feet, support.frame)
         balance = self._recovery.balance(step, local, support, window, self._plan, unsure)
-        if self._recovery.goes_again(time, feet, local, support, window, balance, unsure):
+        if self._recovery.goes_again(time, feet, see, (support, local, window), step, balance, unsure):
             support, local, window = see()
             step = StepProblem.of(time, execution, feet, support.frame)
             balance = self._recovery.balance(step, local, support, window, self._plan, unsure)
@@ -243,13 +244,17 @@ class WalkingPlanner:
             return 0.0
         return 2.0 * math.hypot(com, velocity / float(window.omega[0]))
 
-    def _sight(self, state: CentroidalState) -> tuple[Support, Array, Window]:
-        """What carries the robot now, its CoM in that plan frame, and the references from now on."""
-        support = self._preview.support(self._execution)
+    def _sight(self, state: CentroidalState, other: Execution | None = None) -> Sight:
+        """What carries the robot now, its CoM in that plan frame, and the references from now on.
+
+        Of another execution it is what would be seen: the preview goes on from what it has seen of its own.
+        """
+        execution, preview = (self._execution, self._preview) if other is None else (other, copy(self._preview))
+        support = preview.support(execution)
         # Position and velocity as measured, acceleration as the last plan had it for now.
         bend = _STILL if self._plan is None else self._plan.com_acceleration[1]
         local = self._world.local(state.com, state.com_velocity, bend, support.frame)
-        return support, local, self._window(state, support, local)
+        return support, local, preview.window(execution, support, local[:, 0], state.time, state.lasting)
 
     def _window(self, state: CentroidalState, support: Support, local: Array) -> Window:
         """References from now on, as the clock goes."""

@@ -185,7 +185,7 @@ class CompiledAdjustment:
     ) -> None:
         numbers = parameters.recovery
         self._step, self._outlook = step or CompiledStep(kernels, legs), outlook or CompiledOutlook(kernels, parameters)
-        self._result, self.count = np.zeros(6), self._outlook.count
+        self._result, self.count = np.zeros(7), self._outlook.count
         names = (
             "shift_weight", "second_weight", "time_weight", "stretch_weight", "swing_weight", "cross_factor",
             "least_saving", "cop_share", "landing_share", "landing_spare", "tolerance", "unheld_share", "stand_share",
@@ -207,11 +207,11 @@ class CompiledAdjustment:
 
     def solve(
         self, com: Array, dcm: Array, window: Window, step: "StepProblem", unsure: float
-    ) -> tuple[float, Array, bool] | None:
-        """See `StepAdjustment.solve`: time left, box, and whether there is more to catch."""
+    ) -> tuple[float, Array, bool, float] | None:
+        """See `StepAdjustment.solve`: time left, box, whether there is more to catch, and cost."""
         self._step.tell(com, dcm, float(window.omega[0]), step)
         self._outlook.tell(window)
         if not self._run(unsure):
             return None
-        left, *box, more = self._result.tolist()
-        return left, np.array(box).reshape(2, 2), bool(more)
+        left, *box, more, cost = self._result.tolist()
+        return left, np.array(box).reshape(2, 2), bool(more), cost

@@ -1,7 +1,6 @@
 """Recovery: what is made of the steps to come where the CoP alone does not hold the body."""
 
 from collections.abc import Callable
-from copy import copy
 
 import numpy as np
 
@@ -23,6 +22,9 @@ _a_balance = maker(Balance)
 
 Sight = tuple[Support, Array, Window]
 """What carries the robot, CoM position, velocity and acceleration in that plan frame, shape (2, 3), and references."""
+
+See = Callable[..., Sight]
+"""Tells what is seen: as the execution is, or as another one would be that is its argument."""
 
 
 class Recovery:
@@ -49,7 +51,7 @@ class Recovery:
         """How far the DCM is inside what the CoP captures with steps as planned [m]; arguments as of `balance`."""
         return self._planned.margin(self._capture_point(local, window)[1], window)
 
-    def landing(self, feet: FeetState, dcm: Callable[[], Dcm | None], see: Callable[[], Sight], sight: Sight) -> Sight:
+    def landing(self, feet: FeetState, dcm: Callable[[], Dcm | None], see: See, sight: Sight) -> Sight:
         """Let single support of a step that catches the body end with its touchdown, and tell what is seen then.
 
         It ends where the CoP captures more at once, from both feet, than after the wait for the planned time. A DCM
@@ -59,19 +61,17 @@ class Recovery:
         Args:
             feet: the measured feet.
             dcm: tells the DCM in the world frame.
-            see: tells what carries the robot, its CoM in the plan frame, and the references, as the execution is.
-            sight: what it tells now.
+            see: tells what is seen, be it of another execution.
+            sight: of this one.
         """
         execution = self._execution
         if not execution.may_end(feet, dcm):
             return sight
-        waiting, margin = copy(execution), self.planned(*sight[1:])
-        execution.adopt(ended(execution, feet))
-        sight = see()
-        if self.planned(*sight[1:]) <= margin:
-            execution.adopt(waiting)
-            sight = see()
-        return sight
+        other = ended(execution, feet)
+        if self.planned(*see(other)[1:]) <= self.planned(*sight[1:]):
+            return sight
+        execution.adopt(other)
+        return see()
 
     def steps_out(self, local: Array, window: Window) -> bool:
         """Insert a step of a robot that stands and would fall, or stands astride; says whether."""
@@ -120,26 +120,27 @@ class Recovery:
         self,
         time: float,
         feet: FeetState,
-        local: Array,
-        support: Support,
-        window: Window,
+        see: See,
+        sight: Sight,
+        step: StepProblem | None,
         balance: Balance,
         unsure: float = 0.0,
     ) -> bool:
-        """Let the foot that landed last make the next step as well, where that captures clearly more; says whether.
+        """Let the foot that landed last make the next step as well, where that is the better step; says whether.
 
-        The DCM is past its inner edge, and the other foot would have to cross it. Steps alternate on from there.
+        The DCM is past its inner edge, and the other foot would have to cross it. It captures clearly more so, and the
+        program of the next step costs less. Steps alternate on from there.
 
         Args:
             time: now [s].
             feet: the measured feet.
-            local: as of `balance`.
-            support: likewise.
-            window: likewise.
-            balance: of the steps in the order in which they are.
+            see: as of `landing`.
+            sight: likewise.
+            step: that lands next, of the steps in the order in which they are.
+            balance: likewise.
             unsure: as of `balance`.
         """
-        execution, numbers = self._execution, self._parameters.recovery
+        execution, numbers, (support, local, window) = self._execution, self._parameters.recovery, sight
         if self._movable is None or balance.planned + unsure > -numbers.tolerance or not execution.may_go_again:
             return False
         places, schedule = self._capture_point(local, window), execution.schedule
@@ -149,15 +150,24 @@ class Recovery:
         other = going_again(execution)
         stance = other.schedule.step(other.landed).place
         rotation, origin = frame = frame_rotation(stance.yaw), stance.position[:2]
-        step = StepProblem.of(time, other, feet, frame)
-        if step is None:
+        again = StepProblem.of(time, other, feet, frame)
+        if again is None:
             return False
         com, dcm = ((support.origin + support.rotation @ place - origin) @ rotation for place in places)
-        margins = self._movable.margins(com, dcm, float(window.omega[0]), step, self._counted(other))
+        margins = self._movable.margins(com, dcm, float(window.omega[0]), again, self._counted(other))
         if margins[-1] < balance.movable + unsure + numbers.tolerance:
+            return False
+        if self._cost(again, *see(other)[1:], unsure) >= self._cost(step, local, window, unsure):
             return False
         execution.adopt(other)
         return True
+
+    def _cost(self, step: StepProblem | None, local: Array, window: Window, unsure: float) -> float:
+        """What the step that lands next costs; infinite for one that has no place to land [-]."""
+        if self.adjustment is None or step is None:
+            return np.inf
+        found = self.adjustment.solve(*self._capture_point(local, window), window, step, unsure)
+        return np.inf if found is None else found.cost
 
     def _counted(self, execution: Execution) -> int:
         """Steps that the margin counts with."""

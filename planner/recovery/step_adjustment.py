@@ -149,11 +149,13 @@ class StepBounds:
         left: time until the present phase is to end [s].
         box: lower and upper corner of where it may land from its stance foot, shape (2, 2) [m].
         more: whether the step after it has something to catch, too.
+        cost: of it [-].
     """
 
     left: float
     box: Array
     more: bool
+    cost: float
 
 
 class StepAdjustment:
@@ -285,7 +287,7 @@ class StepAdjustment:
         least, most = np.maximum(least, wanted[best] - left), np.minimum(most, wanted[best] + left)
         box = legs.around(place, hips[best], boxes[way], legs.radius)
         box[0], box[1] = np.maximum(box[0], np.minimum(least, place)), np.minimum(box[1], np.maximum(most, place))
-        return StepBounds(float(double[best] if step.double else single[best]), box, bool(second[way, best].any()))
+        return StepBounds(float(double[best] if step.double else single[best]), box, bool(second[way, best].any()), float(cost[way, best]))
 
 
 def _landing(

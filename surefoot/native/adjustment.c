@@ -195,6 +195,7 @@ static int64_t cheapest(const Adjustment *program, const Bounded *bounded, int64
     choose(program, bounded, boxes + way, at[0], at[1], &choice);
     program->result[0] = step->double_left != 0.0 ? at[0] : at[1];
     program->result[5] = choice.second[0] != 0.0 || choice.second[1] != 0.0;
+    program->result[6] = choice.cost;
     const double radius = program->legs->radius;
     for (int i = 0; i < 2; i++) {
         const double place = choice.place[i], held = bounded->held[i], other = choice.place[1 - i] - choice.hips[1 - i];

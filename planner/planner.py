@@ -197,7 +197,7 @@ class WalkingPlanner:
         unsure = self._unsure(state, window)
         step = StepProblem.of(time, execution, feet, support.frame)
         balance = self._recovery.balance(step, local, support, window, self._plan, unsure)
-        if self._recovery.goes_again(time, feet, see, (support, local, window), step, balance, unsure):
+        if self._recovery.goes_again(time, feet, see, (support, local, window), balance, unsure):
             support, local, window = see()
             step = StepProblem.of(time, execution, feet, support.frame)
             balance = self._recovery.balance(step, local, support, window, self._plan, unsure)
@@ -208,7 +208,7 @@ class WalkingPlanner:
             adjusted = self._recovery.adjusted(step, local, window, unsure)
         left = execution.time_left
         if adjusted is not None and execution.end_in(adjusted.left, time):
-            window = self._window(state, support, local)
+            window = self._preview.window(execution, support, local[:, 0], time, state.lasting)
             balance = replace(balance, delay=balance.delay + (execution.time_left - left))
         free = execution.free
         problem = self._problem(local, support, window, step, adjusted, free)
@@ -255,10 +255,6 @@ class WalkingPlanner:
         bend = _STILL if self._plan is None else self._plan.com_acceleration[1]
         local = self._world.local(state.com, state.com_velocity, bend, support.frame)
         return support, local, preview.window(execution, support, local[:, 0], state.time, state.lasting)
-
-    def _window(self, state: CentroidalState, support: Support, local: Array) -> Window:
-        """References from now on, as the clock goes."""
-        return self._preview.window(self._execution, support, local[:, 0], state.time, state.lasting)
 
     def _world_plan(
         self,

@@ -122,26 +122,26 @@ class Recovery:
         feet: FeetState,
         see: See,
         sight: Sight,
-        step: StepProblem | None,
         balance: Balance,
         unsure: float = 0.0,
     ) -> bool:
-        """Let the foot that landed last make the next step as well, where that is the better step; says whether.
+        """Let the foot that landed last make the next step as well, where that captures clearly more; says whether.
 
-        The DCM is past its inner edge, and the other foot would have to cross it. It captures clearly more so, and the
-        program of the next step costs less. Steps alternate on from there.
+        The DCM is past its inner edge, and the other foot would have to cross it. The weight has to go back meanwhile,
+        in which the DCM goes on: ahead, that may be more than the steps after it catch. Steps alternate on from there.
 
         Args:
             time: now [s].
             feet: the measured feet.
             see: as of `landing`.
             sight: likewise.
-            step: that lands next, of the steps in the order in which they are.
-            balance: likewise.
+            balance: of the steps in the order in which they are.
             unsure: as of `balance`.
         """
         execution, numbers, (support, local, window) = self._execution, self._parameters.recovery, sight
-        if self._movable is None or balance.planned + unsure > -numbers.tolerance or not execution.may_go_again:
+        if self._movable is None or self.adjustment is None or not execution.may_go_again:
+            return False
+        if balance.planned + unsure > -numbers.tolerance:
             return False
         places, schedule = self._capture_point(local, window), execution.schedule
         foot = schedule.step(execution.landed).place.foot
@@ -157,17 +157,12 @@ class Recovery:
         margins = self._movable.margins(com, dcm, float(window.omega[0]), again, self._counted(other))
         if margins[-1] < balance.movable + unsure + numbers.tolerance:
             return False
-        if self._cost(again, *see(other)[1:], unsure) >= self._cost(step, local, window, unsure):
+        _, local, window = see(other)
+        found = self.adjustment.solve(*self._capture_point(local, window), window, again, unsure)
+        if found is not None and found.cost > numbers.again_cost:
             return False
         execution.adopt(other)
         return True
-
-    def _cost(self, step: StepProblem | None, local: Array, window: Window, unsure: float) -> float:
-        """What the step that lands next costs; infinite for one that has no place to land [-]."""
-        if self.adjustment is None or step is None:
-            return np.inf
-        found = self.adjustment.solve(*self._capture_point(local, window), window, step, unsure)
-        return np.inf if found is None else found.cost
 
     def _counted(self, execution: Execution) -> int:
         """Steps that the margin counts with."""

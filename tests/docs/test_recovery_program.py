@@ -58,7 +58,7 @@ def times_of(nominal, least):
 
 
 def solved(case):
-    """End of the present phase, the box, and whether s is more than 0; None where nothing is solved."""
+    """End of the present phase, the box, whether s is more than 0, and the cost; None where nothing is solved."""
     step, reference = case.step, case.window.driving
     lift, land = round(step.double / DT), round((step.double + step.single) / DT)
     bounded = [integral(reference.point, at) for at in (0, lift, land)]
@@ -73,17 +73,16 @@ def solved(case):
     singles = [step.single] if only else times_of(step.single, max(N.least_single, step.shortest))
     h = N.cop_share * a
     found = []
-    for number, box in enumerate(legs.allowed(side, step.face, step.crosses)):
+    for box in legs.allowed(side, step.face, step.crosses):
         here = [priced(case, legs, box, pair, bounded, (g, h, m)) for pair in product(doubles, singles)]
         best = min(here, key=lambda one: one[0])
         best = best if best[0] < here[0][0] - N.least_saving else here[0]
-        found.append((best[0], number, box, best))
-    _, number, box, (_, time, p, wanted, hip, low, high, more) = min(found, key=lambda one: one[0])
-    if number == 0:
-        spare = np.maximum(N.landing_share * h, a - N.landing_spare) / g
-        low, high = np.maximum(low, wanted - spare), np.minimum(high, wanted + spare)
+        found.append((best[0], box, best))
+    cost, box, (_, time, p, wanted, hip, low, high, more) = min(found, key=lambda one: one[0])
+    spare = np.maximum(N.landing_share * h, a - N.landing_spare) / g
+    low, high = np.maximum(low, wanted - spare), np.minimum(high, wanted + spare)
     ends = legs.around(p, hip, box, legs.radius)
-    return time, np.maximum(ends[0], np.minimum(low, p)), np.minimum(ends[1], np.maximum(high, p)), more
+    return time, np.maximum(ends[0], np.minimum(low, p)), np.minimum(ends[1], np.maximum(high, p)), more, cost
 
 
 def priced(case, legs, box, times, bounded, means):
@@ -177,8 +176,9 @@ def agree(found, told):
     """Whether they are the same, but for what the code sums up by samples and the page integrates."""
     if found is None or told is None:
         return found is told
-    time, low, high, more = told
-    return abs(found.left - time) < 1e-9 and found.more == more and np.abs(found.box - (low, high)).max() < 2e-3
+    time, low, high, more, cost = told
+    same = abs(found.left - time) < 1e-9 and found.more == more and np.abs(found.box - (low, high)).max() < 2e-3
+    return same and found.cost == pytest.approx(cost, rel=0.02, abs=1e-3)
 
 
 @pytest.mark.parametrize("seed", range(4))

@@ -33,6 +33,31 @@ def test_a_long_step_does_not_throw_it_as_it_lands(direction):
     assert not any(dropped for fell, dropped in runs if not fell)
 
 
+NEVER, ALWAYS = 1e-6, 1e6
+"""Values of `again_cost` with which no foot that has landed steps again, and with which every one may [-]."""
+
+
+def falls_in_double_support(direction, fraction, again_cost):
+    """How many of three pushes after its fourth step it falls of; `again_cost` lets its foot step again, or not."""
+    fallen = 0
+    for impulse in (0.45, 0.5, 0.55):
+        push = {"step": 5, "phase": "double", "fraction": fraction, "duration": 0.1}
+        push |= {"impulse": impulse, "direction": direction}
+        keys = {"robot": "g1", "gait.steps": 8, "pushes": [push], "criteria": {"fell": False}}
+        keys |= {"sensing.source": "truth", "planner.recovery.again_cost": again_cost}
+        fallen += surefoot.run(surefoot.load("walk", keys)).verdict.metrics["fell"] > 0
+    return fallen
+
+
+def test_a_foot_that_landed_steps_again_after_a_push_aside_and_not_after_one_ahead():
+    """To the right as the right foot has landed, and forward right."""
+    aside, ahead = (-1.33, 0.05), (-0.785, 0.5)
+    assert falls_in_double_support(*aside, None) == falls_in_double_support(*ahead, None) == 0
+    # Negative controls.
+    assert falls_in_double_support(*aside, NEVER) >= 2
+    assert falls_in_double_support(*ahead, ALWAYS) >= 2
+
+
 def test_with_a_heel_rolled_in_no_time_and_soles_held_at_any_price_the_qp_drops_all_limits(monkeypatch):
     """Negative control."""
     monkeypatch.setattr(FootRoll, "hardest", lambda roll, begin, end: 0.0)

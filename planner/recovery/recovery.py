@@ -139,9 +139,9 @@ class Recovery:
             unsure: as of `balance`.
         """
         execution, numbers, (support, local, window) = self._execution, self._parameters.recovery, sight
-        if self._movable is None or self.adjustment is None or not execution.may_go_again:
+        if balance.planned + unsure > -numbers.tolerance or self._movable is None or self.adjustment is None:
             return False
-        if balance.planned + unsure > -numbers.tolerance:
+        if not execution.may_go_again:
             return False
         places, schedule = self._capture_point(local, window), execution.schedule
         foot = schedule.step(execution.landed).place.foot

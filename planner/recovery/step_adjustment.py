@@ -287,7 +287,8 @@ class StepAdjustment:
         least, most = np.maximum(least, wanted[best] - left), np.minimum(most, wanted[best] + left)
         box = legs.around(place, hips[best], boxes[way], legs.radius)
         box[0], box[1] = np.maximum(box[0], np.minimum(least, place)), np.minimum(box[1], np.maximum(most, place))
-        return StepBounds(float(double[best] if step.double else single[best]), box, bool(second[way, best].any()), float(cost[way, best]))
+        left, more = double if step.double else single, second[way, best].any()
+        return StepBounds(float(left[best]), box, bool(more), float(cost[way, best]))
 
 
 def _landing(

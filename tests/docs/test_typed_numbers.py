@@ -154,6 +154,7 @@ TYPED = {
     ("docs/paper.md", "Planner profiles"): (1, "what the paper gives"),
     ("docs/paper.md", "Errata, with their evidence"): (5, "what the paper gives"),
     ("docs/paper.md", "The experiments"): (1, "what is walked"),
+    ("docs/recovery.md", "From the solution to the plan"): (3, "how a number was chosen, of the walks of its time"),
     ("docs/recovery.md", "When nothing is left"): (6, "how a number was chosen, of the walks of its time"),
     ("docs/replay.md", "What is drawn"): (1, "how a path is drawn"),
     ("docs/robot-files.md", "What is derived"): (2, "how a model is read"),

@@ -30,8 +30,8 @@ STOOD = {**TRUTH, "pushes": [{"time": 0.2, "duration": 0.1, "force": [0, 320, 0]
 FORCED = {**SOON, "pushes": [{"time": 0.6, "duration": 0.5, "force": [60.0, 40.0, 0.0]}]}
 WALKS = {
     "walk": ("walk", 2.5, SOON, {"steady"}),
-    "aside": ("walk", 2.9, ASIDE, {"steady", "scaled", "adapted", "bent", "height in transition"}),
-    "lowered": ("walk", 3.2, HARD, {"adapted", "bent", "lowered", "height in transition"}),
+    "aside": ("walk", 2.9, ASIDE, {"steady", "adapted", "bent", "height in transition"}),
+    "lowered": ("walk", 3.2, HARD, {"scaled", "adapted", "bent", "lowered", "height in transition"}),
     "stood": ("stand", 1.6, STOOD, {"steady"}),
     "forced": ("walk", 1.6, FORCED, {"steady", "lasting force"}),
     "stairs": ("stairs-up", 3.6, SOON, {"steady"}),

@@ -200,7 +200,7 @@ def test_the_program_of_the_page_is_that_of_the_code(seed):
 @pytest.fixture(scope="module")
 def told():
     """Cases with what the page makes of them."""
-    rng = np.random.default_rng(1)
+    rng = np.random.default_rng(2)
     cases = [drawn(rng) for _ in range(200)]
     return [(case, solved(case)) for case in cases]
 

@@ -194,7 +194,7 @@ class RecoveryParameters:
         tolerance: DCM error beyond what the CoP holds at which a step is adjusted, or in a stand its foot chosen [m].
         unheld_share: the same of feet whose CoP cannot be moved at will, as a share of the ZMP box [-].
         stand_share: share of the ZMP box of a stand that holds a DCM error without any step [-].
-        again_cost: greatest cost of a next step that is made by the foot that has just landed [-].
+        again_cost: cost of its next step above which the foot that has just landed does not step again [-].
         time_changes: changes of the times left that are tried, close where a swing's reach grows fast [s].
         least_double: time left of a double support below which none is cut; the load has to go over [s].
         least_single: time left of a single support below which none is cut; a foot has to lift and land [s].

@@ -51,6 +51,8 @@ HEEL_OFF = ("speed_mean", "cost_of_transport", "knee_angle_mean", "knee_torque_r
 HIDDEN = ("cop_ratio_p99", "step_shift", "ghost_force_max")
 WITHOUT = (*(f"com_estimation_error_rms.{axis}" for axis in range(3)), "estimation_drift", "ghost_force_max")
 ROUGH = ("speed_mean", "cop_ratio_p99", "torque_ratio_max")
+PUSHED, PUNCHED = ("pushes.0.impulse", "status"), ("pushes.0.impulse", "pushes.0.elevation", "pushes.0.body", "status")
+_GOOD = ("sensing.source=ekf", "sensing.preset=good")
 
 
 def _of_page(name: str, *columns: str) -> Made:
@@ -66,6 +68,10 @@ MADE = {
     ),
     "push-map-pendulum": Made("push-map", ("fidelity=pendulum", _NATURAL), 1),
     "push-map": Made("push-map", ("fidelity=full", _NATURAL, _ENDS, "phase=[SS 0.5]"), 1),
+    "random-pushes": Made("random-pushes", columns=PUSHED),
+    "random-pushes-g1": Made("random-pushes", ("robot=g1",), columns=PUSHED),
+    "random-pushes-g1-good": Made("random-pushes", ("robot=g1", *_GOOD), columns=PUSHED),
+    "random-punches": Made("random-punches", columns=PUNCHED),
     "recovery-numbers": Made("recovery-numbers"),
     "abilities": Made("docs/campaigns/abilities.yaml"),
     "profiles": _of_page("profiles", "profile", "fidelity", *_PLANNED),

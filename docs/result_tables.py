@@ -1,8 +1,9 @@
 """Tables of pages that follow from the results in docs/results, which `measured.py` keeps."""
 
 import json
+import math
 import re
-from collections.abc import Callable, Sequence
+from collections.abc import Callable, Iterator, Sequence
 from functools import partial
 from itertools import groupby
 from pathlib import Path
@@ -110,6 +111,27 @@ def _measured(runs: Sequence[dict[str, str]], metric: str) -> str:
             values = [OWN[metric].scale * float(run[column]) for run in runs]
             cells.append(" to ".join(dict.fromkeys(f"{end:.3g}" for end in (min(values), max(values)))))
     return ", ".join(cells)
+
+
+def random_table() -> str:
+    """How many of the pushes and punches that were drawn are survived, weak ones and strong ones."""
+    lines = [
+        ["humanoid100", "the truth", "torso", *_survived(rows("random-pushes"))],
+        ["G1", "the truth", "torso", *_survived(rows("random-pushes-g1"))],
+        ["G1", "`good` sensors", "torso", *_survived(rows("random-pushes-g1-good"))],
+    ]
+    punches = rows("random-punches")
+    arms = [row for row in punches if re.search("shoulder|elbow|wrist", row["pushes.0.body"])]
+    upward = [row for row in punches if float(row["pushes.0.elevation"]) >= math.pi / 4]
+    told = {"any link": punches, "of these, arms": arms, "of these, upward by 45° or more": upward}
+    lines += [["G1", "`good` sensors", link, *_survived(some)] for link, some in told.items()]
+    return table(["robot", "walked from", "pushed", "below 0.5 N·s/kg", "0.5 N·s/kg or more"], lines)
+
+
+def _survived(some: Sequence[dict[str, str]]) -> Iterator[str]:
+    for strong in (False, True):
+        runs = [row["status"] for row in some if (float(row["pushes.0.impulse"]) >= 0.5) is strong]
+        yield f"{runs.count('pass')} of {len(runs)}"
 
 
 def fastest_table() -> str:
@@ -237,6 +259,7 @@ TABLES: dict[str, tuple[str, Callable[[], str]]] = {
     "push-map-pendulum": ("campaigns.md", partial(push_table, "push-map-pendulum")),
     "push-map": ("campaigns.md", partial(push_table, "push-map")),
     "push-gains": ("campaigns.md", partial(gains_table, "push-map-pendulum")),
+    "random": ("campaigns.md", random_table),
     "recovery-numbers": ("recovery-results.md", numbers_table),
     "abilities": ("recovery-results.md", partial(search_table, "abilities")),
     "profiles-walk": (
@@ -269,6 +292,7 @@ TABLES: dict[str, tuple[str, Callable[[], str]]] = {
             ("criteria", "scenarios.md"),
             ("public-humanoids", "robots.md"),
             ("robustness", "campaigns.md"),
+            ("mechanisms", "recovery-results.md"),
         )
     },
     "startup": ("benchmarks.md", startup_table),

@@ -14,12 +14,14 @@ class ContactState:
         felt: loaded, as the feet feel it.
         force_cap: largest normal force the QP may ask of each [N].
         rolling: index of the foot of which only the toe edge is in contact, -1 for none.
+        landing: held before anything is felt of it, so that it is to come to rest softly.
     """
 
     active: tuple[bool, bool]
     felt: tuple[bool, bool]
     force_cap: tuple[float, float]
     rolling: int = -1
+    landing: tuple[bool, bool] = (False, False)
 
 
 class ContactSchedule:
@@ -72,12 +74,13 @@ class ContactSchedule:
             felt = (felt[0] or touching[0], felt[1] or touching[1])
         if active != planned or felt[0] > active[0] or felt[1] > active[1]:
             self._active = active = self._held(reference, felt)
-        rolling = -1
+        rolling, landing = -1, NONE_TOUCHES
         if active[0] and active[1]:
             cap, rolling = self._caps(reference), reference.rolling_foot
+            landing = self._awaited
         else:
             cap = (3.0 * self.weight, 0.0) if active[0] else (0.0, 3.0 * self.weight)
-        found = active, felt, cap, rolling
+        found = active, felt, cap, rolling, landing
         if found != self._found:
             self._found, self._last = found, ContactState(*found)
         return self._last

@@ -129,10 +129,10 @@ class WholeBodyController:
         self._contacts: ContactState | None = None
         swings = arm_joints and parameters.arm_swing and not (driven is not None and driven[list(arm_joints)].any())
         arms = ArmSwing(arm_joints, parameters.arm_swing, arm_back) if arm_joints and swings else None
-        weights, gains, toe = parameters.weights, parameters.gains, sole.half_length
+        weights, gains, edges = parameters.weights, parameters.gains, (sole.half_length, sole.half_width)
         balance, waist = parameters.balance, self.terms.waist
         default = default_tasks(
-            weights, gains, balance, self._region, toe, size.length, *stops, waist=waist, leaning=leaning
+            weights, gains, balance, self._region, edges, size.length, *stops, waist=waist, leaning=leaning
         )
         diagonal = (
             Regularisation(weights, size.length),
@@ -144,7 +144,7 @@ class WholeBodyController:
         self._observer = LoadObserver(self.terms.mass, control_period, size, self.terms.compiled)
         self.driven = None if driven is None or not driven.any() else DrivenRows(self.layout, driven, control_period)
         fixed = None if self.driven is None else self.driven.fixed
-        self._limits, self._toe = limits, toe
+        self._limits, self._toe = limits, sole.half_length
         self._seen: list[tuple[int, Array]] = []
         self._reader = AnswerReader(self.qp, self.layout, self.tasks, limits.torque, control_period, size, self._tick)
         if self._tick is not None:
@@ -218,8 +218,9 @@ class WholeBodyController:
                 tick.numbers[...] = reference.numbers
             if reference.catching is not self.tasks.catching or not self.tasks.is_alone:
                 self.tasks.write_others(terms, reference)
-            (left, right), (left_cap, right_cap) = contacts.active, contacts.force_cap
-            due = self._write_compiled(left, right, contacts.rolling, left_cap, right_cap)
+            # For kernels 1 is a foot that is held, 2 one that comes to rest as well.
+            left, right = (held + lands for held, lands in zip(contacts.active, contacts.landing, strict=True))
+            due = self._write_compiled(left, right, contacts.rolling, *contacts.force_cap)
             if due or not gaps.is_clear:
                 gaps.write_due(due, terms.data, terms.v, self._gap_rows, self._gap_lower, UNBOUNDED)
         if self.driven is not None:

@@ -17,7 +17,8 @@ from surefoot.wbc.types import Array
 class HardConstraints:
     """Writes all rows and bounds of the QP.
 
-    Active contact: J q̈ + J' v = -d J v + levelling; inactive contact: w = 0. Six rows each, so that the QP keeps its
+    Active contact: J q̈ + J' v = -d J v + levelling; inactive contact: w = 0. A foot that lands
+    before it is felt goes on down along its normal. Six rows each, so that the QP keeps its
     shape. A leaning foot (see `surefoot.wbc.leaning`) is free to turn about its line, where its moment is zero.
     Floating base: M_b q̈ + h_b = Σ J_bᵀ w (first six rows of the equations of motion).
     Torque: τ = M_a q̈ + h_a - Σ J_aᵀ w within the limits, with the torque itself eliminated.
@@ -79,6 +80,8 @@ class HardConstraints:
             reference=tick.reference,
             variables=len(qp.g),
             damping=self._gains.damping,
+            softening=self._gains.softening,
+            sinking=self._gains.sinking,
             levelling=self._gains.levelling,
             leaning=int(leaning),
             free_row=FREE,
@@ -156,6 +159,9 @@ class HardConstraints:
     ) -> None:
         target, levelling = self._target, self._gains.levelling
         np.multiply(terms.sole_velocity, -self._gains.damping, out=target)
+        for k in (0, 1):
+            if contacts.landing[k]:
+                target[k, 2] = -self._gains.softening * (terms.sole_velocity[k, 2] + self._gains.sinking)
         target -= terms.sole_bias
         # Rotation vector, in the sole frame, that turns the sole's normal to the ground's.
         normal = np.matmul(ground_normal[:, None, :], terms.contact_rotation)[:, 0]

@@ -45,6 +45,8 @@ class ContactGains:
     """
 
     damping: float = number(20.0, "1/s", "decay of a sole's remaining velocity")
+    softening: float = number(50.0, "1/s", "decay to `sinking` of the speed at which a sole lands that is not felt yet")
+    sinking: float = number(0.1, "m/s", "speed at which such a sole goes on down until it is felt")
     levelling: float = number(
         100.0, "1/s^2", "stiffness that turns an active sole flat on the ground of its planned normal"
     )

@@ -282,11 +282,12 @@ class StepAdjustment:
         if cost[way, best] == np.inf:
             return None
         place, least, most = places[way, best], low[best], high[best]
-        if not way or np.isinf(step.face).all():
-            # It lands with the DCM well inside the next box, or as near to that as it comes. From a face on which it
-            # has to stay a foot does not get that far across; the law then weighs it against the CoP.
-            left = np.maximum(numbers.landing_share * held, held / numbers.cop_share - numbers.landing_spare) / gain
-            least, most = np.maximum(least, wanted[best] - left), np.minimum(most, wanted[best] + left)
+        # It lands with the DCM well inside the next box, or as near to that as it comes. One that crosses, and does not
+        # get that far across, the law weighs against the CoP.
+        left = np.maximum(numbers.landing_share * held, held / numbers.cop_share - numbers.landing_spare) / gain
+        free = (wanted[best] < boxes[way, 0]) | (wanted[best] > boxes[way, 1]) if way else np.zeros(2, dtype=bool)
+        least = np.where(free, least, np.maximum(least, wanted[best] - left))
+        most = np.where(free, most, np.minimum(most, wanted[best] + left))
         box = legs.around(place, hips[best], boxes[way], legs.radius)
         box[0], box[1] = np.maximum(box[0], np.minimum(least, place)), np.minimum(box[1], np.maximum(most, place))
         left, more = double if step.double else single, second[way, best].any()

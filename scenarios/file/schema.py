@@ -273,6 +273,7 @@ class PushSettings(Group):
     direction: Angle | None = key(
         None, "where the impulse points on the ground, from the world's x axis to the left, null: 0"
     )
+    elevation: Angle | None = key(None, "how far the impulse points above the ground, null: 0")
     body: str | None = key(None, "body it acts on, at its centre of mass; null: the torso")
     live: Live = False
 

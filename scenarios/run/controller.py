@@ -246,8 +246,11 @@ class Controller:
             return arriving
         return self._comes_down(self._output.period) if self._output.holds else NONE_TOUCHES
 
-    def _comes_down(self, time: float) -> tuple[bool, bool]:
-        """Which sole comes to the planned ground in no more than so long [s], (left, right)."""
+    def _comes_down(self, time: float, due: bool = False) -> tuple[bool, bool]:
+        """Which sole comes to the planned ground in no more than so long [s], (left, right).
+
+        One that is due by then does so as well, however slowly it comes down now.
+        """
         plan, terms = self.planning.plan, self.terms
         if plan.swing is None:
             return NONE_TOUCHES
@@ -255,6 +258,7 @@ class Controller:
         height = float(terms.sole_position[foot, 2] - plan.footsteps[0].position[2])
         speed = float(terms.sole_rotation[foot, 2] @ terms.sole_velocity[foot, :3])
         comes = speed < 0.0 and height + speed * time < 0.0
+        comes = comes or (due and plan.swing.touchdown_time - self._now <= time)
         return comes and foot == 0, comes and foot == 1
 
     def _tell(self, driven: DrivenRows, told: JointCommand | None) -> None:
@@ -291,7 +295,7 @@ class Controller:
         state = CentroidalState(self._now, terms.com.copy(), terms.com_velocity.copy(), self._lasting())
         if False in self._landed and self.planning.plan.balance.catching:
             arrives = self._output.period + self.planning.planner.parameters.freeze_catching
-            self._arriving = self._comes_down(arrives)
+            self._arriving = self._comes_down(arrives, due=True)
         feet = FeetState(soles, yaw, self._landed, arriving=self._arriving)
         if self.estimate.deviation is not None:
             state, feet = unsure(self.estimate.deviation, state, feet)

@@ -103,10 +103,11 @@ def _pushes(walk: Walk) -> Iterator[Problem]:
             yield Problem((*key, "step"), what, f"give a step of at most {walk.asked_gait.steps}")
         if push.impulse is not None and push.force is not None:
             yield Problem((*key, "impulse"), "a push with both a force and an impulse", "give one of them")
-        elif push.impulse is None and push.direction is not None:
-            yield Problem(
-                (*key, "direction"), "a direction of a push without an impulse", "give impulse, or force alone"
-            )
+        elif push.impulse is None:
+            for angle in ("direction", "elevation"):
+                if getattr(push, angle) is not None:
+                    what = f"{angle} of a push without an impulse"
+                    yield Problem((*key, angle), what, "give impulse, or force alone")
 
 
 def _beliefs(walk: Walk) -> Iterator[Problem]:

@@ -187,8 +187,10 @@ def push_force(push: schema.PushSettings, mass: float) -> Array:
     """Force of a push, given directly or by its impulse per mass [kg], shape (3,) [N]."""
     if push.impulse is None:
         return np.array(push.force or np.zeros(3))
-    size, direction = mass * push.impulse / push.duration, push.direction or 0.0
-    return size * np.array([math.cos(direction), math.sin(direction), 0.0])
+    size = mass * push.impulse / push.duration
+    direction, elevation = push.direction or 0.0, push.elevation or 0.0
+    level = math.cos(elevation)
+    return size * np.array([level * math.cos(direction), level * math.sin(direction), math.sin(elevation)])
 
 
 def phase_of(gait: GaitParameters, step: int, phase: str) -> tuple[float, float]:

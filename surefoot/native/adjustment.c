@@ -197,16 +197,15 @@ static int64_t cheapest(const Adjustment *program, const Bounded *bounded, int64
     program->result[5] = choice.second[0] != 0.0 || choice.second[1] != 0.0;
     program->result[6] = choice.cost;
     const double radius = program->legs->radius;
-    int anywhere = 1;
-    for (int i = 0; i < 4; i++) anywhere = anywhere && isinf(step->face[i]);
     for (int i = 0; i < 2; i++) {
         const double place = choice.place[i], held = bounded->held[i], other = choice.place[1 - i] - choice.hips[1 - i];
         const double most = sqrt(fmax(radius * radius - other * other, 0.0));
         double low = choice.low[i], high = choice.high[i];
-        if (way == 0 || anywhere) {
+        const double wanted = choice.wanted[i];
+        if (way == 0 || (wanted >= boxes[way].low[i] && wanted <= boxes[way].high[i])) {
             const double left = fmax(program->landing_share * held, held / program->cop_share - program->landing_spare);
-            low = fmax(low, choice.wanted[i] - left / bounded->gain);
-            high = fmin(high, choice.wanted[i] + left / bounded->gain);
+            low = fmax(low, wanted - left / bounded->gain);
+            high = fmin(high, wanted + left / bounded->gain);
         }
         const double least = fmin(fmax(boxes[way].low[i], choice.hips[i] - most), place);
         const double greatest = fmax(fmin(boxes[way].high[i], choice.hips[i] + most), place);

@@ -157,6 +157,7 @@ typedef struct {
     double stiffness;
     double damping;
     double toe;
+    double side;
     double lifted;
     int64_t ankle_joints;
     const int64_t *ankle_columns;
@@ -224,6 +225,8 @@ typedef struct {
     const Reference *reference;
     int64_t variables;
     double damping;
+    double softening;
+    double sinking;
     double levelling;
     int64_t leaning;
     int64_t free_row;

@@ -15,7 +15,8 @@ static void motion(const HardRows *rows) {
     }
 }
 
-/* Counterpart of `HardConstraints._contacts` for one foot: its six equalities. */
+/* Counterpart of `HardConstraints._contacts` for one foot: its six equalities. It is held where active is not 0, and
+ * lands where that is 2. */
 static void contact(const HardRows *rows, int64_t foot, int active, int rolls) {
     const Terms *terms = rows->terms;
     const Reference *reference = rows->reference;
@@ -36,6 +37,10 @@ static void contact(const HardRows *rows, int64_t foot, int active, int rolls) {
         rotate_back(terms->contact_rotation + 9 * foot, reference->ground_normal + 3 * foot, normal);
         for (int i = 0; i < 6; i++)
             target[i] = terms->sole_velocity[first + i] * -rows->damping - terms->sole_bias[first + i];
+        if (active == 2) {
+            const double off = terms->sole_velocity[first + 2] + rows->sinking;
+            target[2] = -rows->softening * off - terms->sole_bias[first + 2];
+        }
         target[3] -= rows->levelling * normal[1];
         target[4] += rows->levelling * normal[0];
         if (rolls) target[4] += rows->damping * reference->roll[1] + reference->roll[2];
@@ -82,8 +87,8 @@ void hard_rows_write(const HardRows *rows, int64_t left, int64_t right, int64_t 
     const int64_t nv = rows->terms->nv;
     const int64_t held[2] = {left && rolling != 0, right && rolling != 1};
     motion(rows);
-    contact(rows, 0, left != 0, rolling == 0);
-    contact(rows, 1, right != 0, rolling == 1);
+    contact(rows, 0, (int)left, rolling == 0);
+    contact(rows, 1, (int)right, rolling == 1);
     rows->upper[nv + 2] = left_cap / unit;
     rows->upper[nv + 8] = right_cap / unit;
     joint_bounds(rows, held);

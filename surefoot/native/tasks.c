@@ -260,8 +260,10 @@ void task_swing_foot(const SwingFoot *task) {
             reference->swing_angular_acceleration[i] + task->damping * reference->swing_angular_velocity[i];
     }
     if (most > 0.0) {
-        const double hangs = task->toe * fabs(R[6] - reference->swing_rotation[6]);
-        wanted[2] += task->stiffness * most * fmin(hangs, task->lifted);
+        const double *level = reference->swing_rotation + 6;
+        const double beside = reference->catching != 0 ? task->side * fabs(R[7] - level[1]) : 0.0;
+        const double hangs = fmin(task->toe * fabs(R[6] - level[0]), task->lifted) + beside;
+        wanted[2] += task->stiffness * most * hangs;
     }
     rotate_back(R, wanted, linear);
     rotate_back(R, turning, ahead);

@@ -79,9 +79,10 @@ def solved(case):
         best = best if best[0] < here[0][0] - N.least_saving else here[0]
         found.append((best[0], number, box, best))
     cost, number, box, (_, time, p, wanted, hip, low, high, more) = min(found, key=lambda one: one[0])
-    if number == 0 or step.face is ANYWHERE:
-        spare = np.maximum(N.landing_share * h, a - N.landing_spare) / g
-        low, high = np.maximum(low, wanted - spare), np.minimum(high, wanted + spare)
+    spare = np.maximum(N.landing_share * h, a - N.landing_spare) / g
+    bounded = np.full(2, number == 0) | ((wanted >= box[0]) & (wanted <= box[1]))
+    low = np.where(bounded, np.maximum(low, wanted - spare), low)
+    high = np.where(bounded, np.minimum(high, wanted + spare), high)
     ends = legs.around(p, hip, box, legs.radius)
     return time, np.maximum(ends[0], np.minimum(low, p)), np.minimum(ends[1], np.maximum(high, p)), more, cost
 

@@ -79,7 +79,7 @@ def rows_and_target(
     body: Body, limits: JointLimits, terms: RobotTerms, reference: WbcReference
 ) -> tuple[np.ndarray, np.ndarray]:
     stops = AnkleStops(body.model, body.frames, limits)
-    task = SwingFoot(TaskWeights(), TaskGains(), 0.11, 1.0, stops)
+    task = SwingFoot(TaskWeights(), TaskGains(), (0.11, 0.055), 1.0, stops)
     rows = np.zeros((6, body.model.nv + 12))
     target = task.write(terms, reference, np.ones((6, 1)), rows)
     return rows[:, :-12], np.array(target)
@@ -125,27 +125,32 @@ def test_while_a_step_catches_the_body_an_ankle_that_yields_is_to_rest(body: Bod
     assert axis @ target[3:] == pytest.approx(0.0)
 
 
+@pytest.mark.parametrize(("rolled", "catching"), [(0.0, True), (0.2, True), (0.2, False)])
 @pytest.mark.parametrize(("hung", "length"), [(0.02, 1.0), (0.5, 1.0), (0.5, 0.5)])
-def test_a_foot_that_its_ankle_tilts_is_lifted_for_what_hangs_but_only_a_little(
-    body: Body, references, hung: float, length: float
+def test_a_foot_that_its_ankle_tilts_is_lifted_for_what_hangs_but_only_a_little_for_its_toe(
+    body: Body, references, hung: float, length: float, rolled: float, catching: bool
 ) -> None:
-    """By what its toe hangs lower than it should, four millimetres on a robot of this size at most."""
-    terms, toe = terms_at(body, 0.0), 0.11 * length
+    """By what its toe hangs lower than it should, four millimetres on a robot of this size at most.
+
+    While a step catches the body by all that its side edge hangs lower, too.
+    """
+    terms, toe, side = terms_at(body, 0.0), 0.11 * length, 0.055 * length
     R = terms.contact_rotation[0].copy()
-    # Against what is wanted, which is the way that the ankle still has, the sole is pitched by this angle.
+    # Against what is wanted, which is the way that the ankle still has, the sole is pitched and rolled by these angles.
+    turned = pin.utils.rotate("x", rolled) @ pin.utils.rotate("y", hung)
     reference = references[1](
-        swing_foot=0, swing_position=terms.sole_position[0].copy(), swing_rotation=R @ pin.utils.rotate("y", hung),
-        swing_angular_velocity=np.zeros(3), swing_angular_acceleration=np.zeros(3),
+        swing_foot=0, swing_position=terms.sole_position[0].copy(), swing_rotation=R @ turned,
+        swing_angular_velocity=np.zeros(3), swing_angular_acceleration=np.zeros(3), catching=catching,
     )  # fmt: skip
     wide = replace(body.limits, lower=body.limits.lower - 1.0, upper=body.limits.upper + 1.0)
     gains, targets = TaskGains(), []
     for limits in (wide, body.limits):
-        task = SwingFoot(TaskWeights(), gains, toe, length, AnkleStops(body.model, body.frames, limits))
+        task = SwingFoot(TaskWeights(), gains, (toe, side), length, AnkleStops(body.model, body.frames, limits))
         linear = np.array(task.write(terms, reference, np.ones((6, 1)), np.zeros((6, body.model.nv + 12)))[:3])
         targets.append(R @ linear)
     ankle = AnkleStops(body.model, body.frames, body.limits).ankles[0]
     of_ankle = gains.swing[0] * (reference.swing_rotation @ ankle - R @ ankle)
-    low = toe * abs(R[2, 0] - reference.swing_rotation[2, 0])
+    low, beside, _ = (toe, side, 0.0) * np.abs(R[2] - reference.swing_rotation[2])
     lifted = (targets[1] - targets[0] - of_ankle) / gains.swing[0]
-    assert low > 0.001
-    np.testing.assert_allclose(lifted, [0.0, 0.0, min(low, 0.004 * length)], atol=1e-9)
+    assert low > 0.001 and bool(beside > 0.004 * length) is (rolled > 0.0)
+    np.testing.assert_allclose(lifted, [0.0, 0.0, min(low, 0.004 * length) + catching * beside], atol=1e-9)

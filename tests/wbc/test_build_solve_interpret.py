@@ -1,12 +1,15 @@
 """The three parts of a tick, each by itself."""
 
+from dataclasses import replace
+
 import numpy as np
 import pytest
 
 from surefoot.wbc.contacts import ContactState
 from surefoot.wbc.ik import PostureTarget
+from surefoot.wbc.parameters import ContactGains
 from surefoot.wbc.qp import EQUALITY_ROWS, WRENCH_UNIT
-from surefoot.wbc.types import FootSensing, SolveStatus
+from surefoot.wbc.types import FootSensing, RobotState, SolveStatus
 
 pytestmark = pytest.mark.unit
 
@@ -67,6 +70,23 @@ def test_equations_of_motion_can_be_read_off_a_qp_without_a_solver(robot, state,
     force = terms.contact_jacobian.T @ (WRENCH_UNIT * x[robot.nv :])
     expected = terms.mass_matrix @ x[: robot.nv] + terms.bias - force
     np.testing.assert_allclose(qp.A[base] @ x - bound, expected[:6], atol=1e-8)
+
+
+@pytest.mark.parametrize("raised", [-0.4, 0.4])
+def test_a_foot_that_lands_goes_on_down_along_its_normal_at_a_speed_of_its_own(robot, state, references, raised):
+    """Its equality is J q̈ + J' v = -d J v; along the normal of a foot that lands it is -d (J v + its speed)."""
+    controller, gains, targets = robot.controller(), ContactGains(), {}
+    v = state.v.copy()
+    v[2] += raised
+    terms = controller.observe(RobotState(state.q, v))
+    for landing in (False, True):
+        contacts = replace(BOTH, landing=(False, landing))
+        qp = controller.build(terms, references[0](), contacts)
+        targets[landing] = qp.bounds_lower[qp.g.size :][6:12].copy()
+    speed = terms.sole_velocity[1, 2]
+    assert abs(speed) > 0.2 and bool(speed < 0.0) is (raised < 0.0)
+    more = gains.damping * speed - gains.softening * (speed + gains.sinking)
+    np.testing.assert_allclose(targets[True] - targets[False], [0.0, 0.0, more, 0.0, 0.0, 0.0], atol=1e-9)
 
 
 def test_a_rolling_foot_can_be_built_twice_from_one_state(robot, state, references):

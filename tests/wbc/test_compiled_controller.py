@@ -14,7 +14,7 @@ from surefoot.wbc.types import FootSensing
 pytestmark = pytest.mark.unit
 
 BOTH, LEFT = (ContactState((True, on), (True, on), (2943.0, 2943.0 * on)) for on in (True, False))
-ROLLING = replace(BOTH, rolling=1)
+ROLLING, LANDING = replace(BOTH, rolling=1), replace(BOTH, landing=(True, True))
 
 
 class Still:
@@ -75,7 +75,8 @@ def test_feet_that_roll_lean_or_swing_one_after_another(robot, pair, references,
     lifting = swinging(rolling_foot=1, roll=(0.3, 0.5, -0.4))
     stopped = swinging(swing_rotation=np.array([[0.6, 0.0, 0.8], [0.0, 1.0, 0.0], [-0.8, 0.0, 0.6]]))
     cases = [
-        (standing(), BOTH), (rolling, ROLLING), (lifting, LEFT), (swinging(), LEFT), (stopped, LEFT), (standing(), BOTH)
+        (standing(), BOTH), (rolling, ROLLING), (lifting, LEFT), (swinging(), LEFT), (stopped, LEFT),
+        (standing(), BOTH), (standing(), LANDING), (standing(), LANDING), (standing(), BOTH)
     ]  # fmt: skip
     held_alike(leans, pair(leans), cases, rng)
 

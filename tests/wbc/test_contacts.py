@@ -51,6 +51,7 @@ def test_early_touchdown_makes_a_light_contact(schedule):
         state = schedule.update(swinging(0.9), FootSensing((900.0, 60.0)))
     assert state.active == (True, True)
     assert state.force_cap[1] == ContactParameters().early_cap
+    assert state.landing == (False, False)  # it has come to rest already
 
 
 def test_a_foot_that_comes_to_the_ground_before_the_next_tick_is_a_contact_once_it_may_land(schedule):
@@ -70,9 +71,11 @@ def test_load_grows_only_once_the_foot_is_felt(schedule):
     state = schedule.update(landed, FootSensing((900.0, 0.0), touching=(False, True)))
     assert state.active == (True, True)
     for _ in range(10):
-        assert schedule.update(landed, FootSensing((900.0, 0.0))).force_cap == (3 * WEIGHT, cap)
+        state = schedule.update(landed, FootSensing((900.0, 0.0)))
+        assert (state.force_cap, state.landing) == ((3 * WEIGHT, cap), (False, True))
     caps = [schedule.update(landed, FootSensing((900.0, 60.0))).force_cap[1] for _ in range(5)]
     assert caps[0] == cap < caps[-1]
+    assert schedule.update(landed, FootSensing((900.0, 60.0))).landing == (False, False)
     # Nor does the load go back where the foot lifts for a tick.
     assert schedule.update(landed, FootSensing((900.0, 0.0))).force_cap[1] > caps[-1]
 

@@ -51,7 +51,7 @@ def asked(robot, state, references):
     region = SupportRegion(1.0, 1.0, 1.0)
     region.rebuild(terms.contact_position, terms.contact_rotation, (True, False))
     found = {}
-    for task in default_tasks(TaskWeights(), TaskGains(), BalanceGains(), region, TOE, 1.0):
+    for task in default_tasks(TaskWeights(), TaskGains(), BalanceGains(), region, (TOE, 0.05), 1.0):
         J = np.zeros((task.size, robot.nv + 12))
         a = np.array(tuple(task.write(terms, reference, np.ones((task.size, 1)), J)))
         found[task.name] = J, a
@@ -83,7 +83,7 @@ def test_a_unit_weight_makes_the_cost_that_of_its_jacobian(robot, asked, name):
     terms, reference, region, found = asked
     task = next(
         task
-        for task in default_tasks(TaskWeights(), TaskGains(), BalanceGains(), region, TOE, 1.0)
+        for task in default_tasks(TaskWeights(), TaskGains(), BalanceGains(), region, (TOE, 0.05), 1.0)
         if task.name == name
     )
     task.weight = 1.0
@@ -250,7 +250,7 @@ def test_a_rolling_foot_is_steered_by_its_toe_edge(robot, state, references):
     """The edge goes to that of the planned sole, and the pitch is damped towards the planned one."""
     terms, roll, (k, d) = robot.controller().observe(state), (0.3, 0.5, 2.0), TaskGains().swing
     terms.shift_foot(1, TOE, roll[0])
-    task = SwingFoot(TaskWeights(), TaskGains(), TOE, 1.0)
+    task = SwingFoot(TaskWeights(), TaskGains(), (TOE, 0.05), 1.0)
     targets = []
     for rolling in (1, -1):
         reference, J = references[1](rolling_foot=rolling, roll=roll), np.zeros((6, robot.nv + 12))

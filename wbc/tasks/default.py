@@ -14,7 +14,7 @@ def default_tasks(
     gains: TaskGains,
     balance: BalanceGains,
     region: SupportRegion,
-    toe: float,
+    edges: tuple[float, float],
     length: float,
     ankles: AnkleStops | None = None,
     hips: HipStops | None = None,
@@ -28,7 +28,7 @@ def default_tasks(
         gains: of the tasks.
         balance: gains of the CoM law.
         region: where the ZMP may lie; its owner keeps it up to date.
-        toe: toe edge from the sole's centre [m].
+        edges: toe edge and side edge from the sole's centre [m].
         length: size of the robot (see `surefoot.similarity`) [-].
         ankles: where they end; None for nowhere.
         hips: where they end; None for nowhere.
@@ -41,5 +41,5 @@ def default_tasks(
         CentreOfMass(weights, balance, region),
         AngularMomentum(weights, gains),
         *(trunk if waist else trunk[:1]),
-        SwingFoot(weights, gains, toe, length, ankles, leaning),
+        SwingFoot(weights, gains, edges, length, ankles, leaning),
     )

@@ -108,8 +108,9 @@ class SwingFoot:
     as level as it should (see `AnkleStops`) is from then on seen from its ankle: a foot that turns about it leaves the
     shank where it was planned to be, and with it the momentum of the leg that the planner counts on. While a step
     catches the body, the joint that has come to its end is to rest as well. Otherwise the QP would turn the foot as a
-    flywheel for the trunk. The foot is lifted by a few millimetres of what its toe or heel hangs lower; all of that
-    would take the shank off its way again.
+    flywheel for the trunk. It is then lifted by what its side edge hangs lower, lest that meets the ground before the
+    foot is at the end of its way, and at full speed. Of what its toe or heel hangs lower any is lifted by a few
+    millimetres; all of that would take the shank off its way again.
     """
 
     name, size = "swing foot", 6
@@ -118,7 +119,7 @@ class SwingFoot:
         self,
         weights: TaskWeights,
         gains: TaskGains,
-        toe: float,
+        edges: tuple[float, float],
         length: float,
         stops: AnkleStops | None = None,
         leaning: bool = False,
@@ -128,7 +129,7 @@ class SwingFoot:
         Args:
             weights: of the tasks.
             gains: of the tasks.
-            toe: toe edge from the sole's centre [m].
+            edges: toe edge and side edge from the sole's centre [m].
             length: size of the robot, by which rotations count [-].
             stops: where the ankles end; None for nowhere.
             leaning: whether the foot rolls as its leg does (see `surefoot.wbc.leaning`).
@@ -137,7 +138,7 @@ class SwingFoot:
         self.weight = weights.swing * np.repeat([1.0, length**2], 3)
         if leaning:
             self.weight[FREE] = 0.0
-        self._gains, self._toe, self._lifted = gains.swing, toe, _LIFTED * length
+        self._gains, (self._toe, self._side), self._lifted = gains.swing, edges, _LIFTED * length
 
     def write(self, terms: RobotTerms, reference: WbcReference, scale: Array, rows: Array) -> tuple[float, ...]:
         """See ``Task.write``."""
@@ -151,8 +152,9 @@ class SwingFoot:
         damping, R, velocity = self._gains[1], terms.contact_rotation[k], terms.sole_velocity[k]
         wanted = self._linear(terms, reference, k)
         if yielding:
-            hangs = self._toe * abs(R[2, 0] - reference.swing_rotation[2, 0])
-            wanted[2] += self._gains[0] * max(share for *_, share in yielding) * min(hangs, self._lifted)
+            forward, aside, _ = np.abs(R[2] - reference.swing_rotation[2]).tolist()
+            hangs = min(self._toe * forward, self._lifted) + (self._side * aside if reference.catching else 0.0)
+            wanted[2] += self._gains[0] * max(share for *_, share in yielding) * hangs
         x, y, z = wanted.dot(R).tolist()
         turning = damping * reference.swing_angular_velocity
         turning += reference.swing_angular_acceleration
@@ -187,6 +189,7 @@ class SwingFoot:
             stiffness=self._gains[0],
             damping=self._gains[1],
             toe=self._toe,
+            side=self._side,
             lifted=self._lifted,
             ankle_joints=len(stops.columns[0]) if stops else 0,
             ankle_columns=np.array(stops.columns if stops else [0], dtype=np.int64),

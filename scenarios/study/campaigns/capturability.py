@@ -46,12 +46,13 @@ _EVERY, _LATER = 0.02, 0.2
 def moment_of(log: Path, push: int) -> Moment | None:
     """The state of a run as a push begins, counted from 0; None where there is none of the kind that has a limit.
 
-    It has one on flat ground, before the last foot has landed.
+    It has one on flat ground, before the last foot has landed, where the push is level.
     """
     try:
         scenario = load(log)
         walk = resolve(scenario)
-        return _moment(scenario, walk, LogView(read(log)), push) if walk.ground.keys.kind == "flat" else None
+        level = walk.ground.keys.kind == "flat" and not scenario.pushes[push].elevation
+        return _moment(scenario, walk, LogView(read(log)), push) if level else None
     except (ScenarioError, SetupError, ParameterError, PluginError, LogError, MissingError, IndexError):
         return None
 

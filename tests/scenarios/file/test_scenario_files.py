@@ -92,7 +92,10 @@ CASES = {
         "f.yaml:1:47: a push with both a force and an impulse; give one of them"
     ),
     "pushes: [{time: 1, force: [1, 2, 0], direction: 1}]": (
-        "f.yaml:1:49: a direction of a push without an impulse; give impulse, or force alone"
+        "f.yaml:1:49: direction of a push without an impulse; give impulse, or force alone"
+    ),
+    "pushes: [{time: 1, force: [1, 2, 0], elevation: 1}]": (
+        "f.yaml:1:49: elevation of a push without an impulse; give impulse, or force alone"
     ),
     "pushes: [{time: 1, impulse: -1}]": "pushes.0.impulse",
     "pushes: [{time: 1, force: [1, 2]}]": "f.yaml:1:27: pushes.0.force lacks element 2; give '2'",

@@ -11,13 +11,13 @@ from surefoot.scenarios.study.campaigns.campaign import read_campaign
 
 pytestmark = pytest.mark.physics
 
-SEEDS = range(6)
+SEEDS = range(8)
 
 
 def falls(robot):
-    """Of marches with a push forward in mid-swing, those that fall or blow up, of six seeds of the sensors."""
+    """Of marches with a push forward in mid-swing, those that fall or blow up, of eight seeds of the sensors."""
     march = read_campaign("march-ladder").spec.set
-    push = {**march["pushes"][0], "impulse": 0.4}
+    push = {**march["pushes"][0], "impulse": 0.7}
     keys = {**march, "robot": robot, "sensing.source": "ekf", "sensing.preset": "good", "pushes": [push]}
     fallen = 0
     for seed in SEEDS:

@@ -33,6 +33,15 @@ def test_direction_is_anticlockwise_from_the_worlds_x_axis(angle):
     np.testing.assert_allclose(turned, 50.0 * np.array([math.cos(angle), math.sin(angle), 0.0]), atol=1e-12)
 
 
+@pytest.mark.parametrize("elevation", [-0.5 * math.pi, -0.4, 0.7])
+def test_elevation_lifts_the_impulse_from_the_ground_and_keeps_its_size(elevation):
+    lifted = force("pushes.0.direction=2.5", f"pushes.0.elevation={elevation!r}")
+    level = math.cos(elevation)
+    expected = np.array([level * math.cos(2.5), level * math.sin(2.5), math.sin(elevation)])
+    np.testing.assert_allclose(lifted, 50.0 * expected, atol=1e-12)
+    np.testing.assert_allclose(np.linalg.norm(lifted), 50.0)
+
+
 def test_a_push_by_its_force_may_be_given_an_impulse_in_its_place():
     settings = ("pushes.0.force=null", "pushes.0.impulse=0.1", "pushes.0.duration=0.1")
     (push,) = resolve(load("paper-push", settings)).pushes
@@ -51,6 +60,7 @@ def test_the_pendulum_changes_its_speed_by_the_impulse_whatever_it_weighs(tmp_pa
 
 
 def test_a_log_of_it_is_run_again_as_it_was(tmp_path):
-    run = run_scenario(load("walk", [PUSH, "fidelity=pendulum", "duration=1.8", "criteria={fell: false}"]), tmp_path)
+    short = ("fidelity=pendulum", "duration=1.8", "criteria={fell: false}", "pushes.0.elevation=-0.6")
+    run = run_scenario(load("walk", [PUSH, *short]), tmp_path)
     (push,) = load(run.log).pushes
-    assert (push.impulse, push.force) == (0.1, None)
+    assert (push.impulse, push.elevation, push.force) == (0.1, -0.6, None)

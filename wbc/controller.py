@@ -218,9 +218,9 @@ class WholeBodyController:
                 tick.numbers[...] = reference.numbers
             if reference.catching is not self.tasks.catching or not self.tasks.is_alone:
                 self.tasks.write_others(terms, reference)
-            # For kernels 1 is a foot that is held, 2 one that comes to rest as well.
-            left, right = (held + lands for held, lands in zip(contacts.active, contacts.landing, strict=True))
-            due = self._write_compiled(left, right, contacts.rolling, *contacts.force_cap)
+            # For kernels 1 is a foot that is held, 2 one that lands as well.
+            (left, right), (one, other) = contacts.active, contacts.landing
+            due = self._write_compiled(left + one, right + other, contacts.rolling, *contacts.force_cap)
             if due or not gaps.is_clear:
                 gaps.write_due(due, terms.data, terms.v, self._gap_rows, self._gap_lower, UNBOUNDED)
         if self.driven is not None:

@@ -180,6 +180,9 @@ def _without_body(walk: Walk) -> Iterator[Problem]:
         if push.force is not None and push.force[2] != 0.0:
             what = "a vertical push on a pendulum, whose height is prescribed"
             yield Problem(("pushes", index, "force"), what, "use fidelity full, or [x, y, 0]")
+        if push.elevation:
+            what = "an elevation of a push on a pendulum, whose height is prescribed"
+            yield Problem(("pushes", index, "elevation"), what, "use fidelity full, or no elevation")
 
 
 def _walk_problems(walk: Walk) -> Iterator[Problem]:

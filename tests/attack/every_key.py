@@ -82,6 +82,7 @@ TEXTS = {
     "tilted": """
         duration: 0.06
         errors: {ground_pitch: 0.01, ground_roll: 0.01}
+        pushes: [{time: 0.02, duration: 0.02, impulse: 0.01, elevation: 0.2}]
         """,
     "commands": """
         duration: 0.3

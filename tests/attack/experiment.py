@@ -146,6 +146,7 @@ VALUES: dict[str, tuple[Any, ...]] = {
     "pushes.0.force": ([1e-300, 0, 0],),
     "pushes.0.body": ("pelvis",),
     "pushes.0.direction": (0.5,),
+    "pushes.0.elevation": (0.4,),
     "commands": ([{"time": 0.5, "swing_height": 0.07}], [{"time": 0.5, "v_x": 1e-300}]),
     "commands.0.v_y": (0.05,),
     "commands.0.yaw_rate": (0.05,),

@@ -120,6 +120,7 @@ def test_keys_without_effect_are_noted(walk):
     [
         ("faults=[{kind: torque_loss}]", "fault 'torque_loss' needs joints, which fidelity pendulum has not got; use"),
         ("pushes=[{time: 1, force: [0, 0, 9]}]", "a vertical push on a pendulum, whose height is prescribed; use"),
+        ("pushes=[{time: 1, impulse: 0.1, elevation: 0.2}]", "an elevation of a push on a pendulum, whose height is"),
     ],
 )
 def test_what_would_test_nothing_is_refused(override, message):

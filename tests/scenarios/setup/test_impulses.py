@@ -59,8 +59,9 @@ def test_the_pendulum_changes_its_speed_by_the_impulse_whatever_it_weighs(tmp_pa
     np.testing.assert_allclose(velocity[after, :2], 0.1 * np.array([math.cos(0.3), math.sin(0.3)]), rtol=0.02)
 
 
-def test_a_log_of_it_is_run_again_as_it_was(tmp_path):
-    short = ("fidelity=pendulum", "duration=1.8", "criteria={fell: false}", "pushes.0.elevation=-0.6")
+@pytest.mark.parametrize(("fidelity", "elevation"), [("pendulum", 0.0), ("full", -0.6)])
+def test_a_log_of_it_is_run_again_as_it_was(tmp_path, fidelity, elevation):
+    short = (f"fidelity={fidelity}", "duration=1.8", "criteria={fell: false}", f"pushes.0.elevation={elevation}")
     run = run_scenario(load("walk", [PUSH, *short]), tmp_path)
     (push,) = load(run.log).pushes
-    assert (push.impulse, push.elevation, push.force) == (0.1, -0.6, None)
+    assert (push.impulse, push.elevation, push.force) == (0.1, elevation, None)

@@ -17,9 +17,9 @@ from surefoot.wbc.types import Array
 class HardConstraints:
     """Writes all rows and bounds of the QP.
 
-    Active contact: J q̈ + J' v = -d J v + levelling; inactive contact: w = 0. A foot that lands
-    before it is felt goes on down along its normal. Six rows each, so that the QP keeps its
-    shape. A leaning foot (see `surefoot.wbc.leaning`) is free to turn about its line, where its moment is zero.
+    Active contact: J q̈ + J' v = -d J v + levelling; inactive contact: w = 0. Six rows each, so that the QP keeps its
+    shape. A foot that lands before it is felt goes on down along its normal. A leaning foot (see
+    `surefoot.wbc.leaning`) is free to turn about its line, where its moment is zero.
     Floating base: M_b q̈ + h_b = Σ J_bᵀ w (first six rows of the equations of motion).
     Torque: τ = M_a q̈ + h_a - Σ J_aᵀ w within the limits, with the torque itself eliminated.
     Joints: within their limits, where a foot that is held counts as at rest. What it turns is a ripple of its contact,

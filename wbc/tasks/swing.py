@@ -108,9 +108,9 @@ class SwingFoot:
     as level as it should (see `AnkleStops`) is from then on seen from its ankle: a foot that turns about it leaves the
     shank where it was planned to be, and with it the momentum of the leg that the planner counts on. While a step
     catches the body, the joint that has come to its end is to rest as well. Otherwise the QP would turn the foot as a
-    flywheel for the trunk. It is then lifted by what its side edge hangs lower, lest that meets the ground before the
-    foot is at the end of its way, and at full speed. Of what its toe or heel hangs lower any is lifted by a few
-    millimetres; all of that would take the shank off its way again.
+    flywheel for the trunk. It is then lifted by what its side edge hangs lower, or that edge would meet the ground at
+    full speed. Any foot is lifted by a few millimetres of what its toe or heel hangs lower. All of that would take the
+    shank off its way again.
     """
 
     name, size = "swing foot", 6

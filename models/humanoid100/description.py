@@ -50,7 +50,12 @@ _KEPT_APART = (
         for part, across in (("knee_shape", "thigh_shape"), ("knee_shape", "shank_shape"), ("sole_box", "shank_shape"))
         for side, other in (("left", "right"), ("right", "left"))
     ),
-    *((f"{side}_{part}_shape", f"{side}_thigh_shape") for side in ("left", "right") for part in ("forearm", "hand")),
+    *(
+        (f"{side}_{part}_shape", f"{other}_shape")
+        for side in ("left", "right")
+        for part in ("forearm", "hand")
+        for other in ("left_thigh", "right_thigh", "pelvis")
+    ),
 )
 """Contact shapes of different limbs that can meet in walking."""
 
@@ -129,7 +134,7 @@ def _pelvis(foot_length: float, foot_width: float) -> Body:
         geoms=(
             Geom("ellipsoid", (0.095, 0.135, 0.065), (0.0, 0.0, 0.055)),
             Geom("ellipsoid", (0.08, 0.055, 0.085), (0.0, 0.0, 0.01), material="joint"),
-            Geom("sphere", (0.11,), (0.0, 0.0, 0.03), role=Role.COLLISION),
+            Geom("sphere", (0.11,), (0.0, 0.0, 0.03), role=Role.COLLISION, name="pelvis_shape"),
         ),
         sites=(("imu", (0.0, 0.0, 0.0)),),
         children=(

@@ -130,15 +130,17 @@ def shank_spacing(data: pin.Data, legs: tuple[Leg, Leg], hulls: dict[int, Hull],
 
 
 def limbs(legs: tuple[Leg, Leg], upper: Upper, hulls: dict[int, Hull]) -> list[tuple[int, int]]:
-    """Pairs of joints whose bodies can meet: thighs and shanks of both legs, lower arms and thighs, arms and trunk."""
+    """Pairs of joints whose bodies can meet: thighs and shanks of both legs, arms and thighs, arms, torso and base."""
     thighs, shanks = ([leg.joints[leg.knee + offset] for leg in legs] for offset in (-1, 0))
     pairs = [(thighs[0], thighs[1]), (shanks[0], shanks[1]), (thighs[0], shanks[1]), (thighs[1], shanks[0])]
-    for arm, thigh in zip(upper.arms, thighs, strict=False):
+    for arm in upper.arms:
         lower = [joint for joint in arm[len(arm) // 2 :] if joint in hulls]
         if lower:
             largest = max(lower, key=lambda joint: float(np.prod(np.ptp(hulls[joint].vertices, axis=0))))
-            pairs += [(joint, thigh) for joint in sorted({lower[-1], largest})]
-        pairs += [(upper.torso, joint) for joint in arm[2:] if joint in hulls and upper.torso in hulls]
+            pairs += itertools.product(sorted({lower[-1], largest}), thighs)
+        # The first link of an arm turns in its place.
+        trunk = [joint for joint in sorted({upper.torso, 1}) if joint in hulls]
+        pairs += itertools.product(trunk, [joint for joint in arm[1:] if joint in hulls])
     return pairs
 
 

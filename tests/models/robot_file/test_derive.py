@@ -146,6 +146,17 @@ def test_arms_that_hang_have_room_to_swing(shipped) -> None:
             assert shapes in robot.kept_apart
 
 
+def test_arms_are_kept_from_torso_base_and_both_thighs(shipped) -> None:
+    """From their second link on, which hit the torso of TALOS in a third of all hard pushes; hands from either thigh."""
+    pairs = {name: {frozenset(pair) for pair in shipped[name].kept_apart} for name in ("g1", "talos")}
+    for side, other in (("left", "right"), ("right", "left")):
+        upper, hand = f"arm_{side}_2_link_shape", f"arm_{side}_7_link_shape"
+        assert {frozenset((upper, "torso_2_link_shape")), frozenset((hand, "base_link_shape"))} <= pairs["talos"]
+        assert frozenset((hand, f"leg_{other}_3_link_shape")) in pairs["talos"]
+        assert frozenset((f"{side}_shoulder_roll_link_shape", "torso_link_shape")) in pairs["g1"]
+        assert frozenset((f"{side}_elbow_link_shape", "pelvis_shape")) in pairs["g1"]
+
+
 def test_each_leg_is_kept_from_thigh_shank_and_sole_of_the_other_one(tmp_path) -> None:
     pairs = {frozenset(pair) for pair in described(tmp_path).kept_apart}
     parts = [[f"{side}_{part}" for part in ("thigh_shape", "shank_shape", "sole_box")] for side in ("left", "right")]

@@ -1,0 +1,32 @@
+"""Arms that a push throws about are kept from torso, base and thighs."""
+
+from collections.abc import Iterator
+
+import pytest
+
+import surefoot
+from surefoot.scenarios.setup.load import read_scenario
+from surefoot.scenarios.study.campaigns.campaign import read_campaign
+from surefoot.scenarios.study.campaigns.points import cells
+
+pytestmark = pytest.mark.physics
+
+
+def touches(robot: str, seed: int) -> Iterator[bool]:
+    """Whether the robot touches itself, tick by tick, in a walk of the campaign `random-pushes`."""
+    cell = list(cells(read_campaign("random-pushes", (f"robot={robot}",))))[seed]
+    point = cell.point(seed, {})
+    with surefoot.Simulation(read_scenario(*point.base.written, point.settings)) as simulation:
+        while not simulation.done:
+            tick = simulation.step()
+            assert not tick.fell
+            yield tick.measurement.self_contact
+
+
+@pytest.mark.parametrize(
+    ("robot", "seed"),
+    [("talos", 16), ("talos", 94), ("humanoid100", 67), ("humanoid100", 135)],
+)
+def test_a_pushed_robot_does_not_hit_itself(robot, seed):
+    """Upper arms of TALOS hit its torso for 0.14 and 0.18 s; a forearm of humanoid100 its pelvis and other thigh."""
+    assert not any(touches(robot, seed))

@@ -35,8 +35,8 @@ SENSED = {"good": 0.95, "cheap": 0.85}
 
 FEET = {"robot_options": {"foot_length": 0.22, "foot_width": 0.11}}
 GAIT = {"gait.single_support": 0.5, "gait.double_support": 0.12, "gait.com_height": 0.95}
-NATURAL = ("walk", {**GAIT, "gait.steps": 7, "gait.step_length": 0.36, "duration": 9.0})
-"""With time for the steps that a push at its end adds."""
+NATURAL = ("walk", {**GAIT, "gait.steps": 7, "gait.step_length": 0.36, "duration": 11.0})
+"""With time for the steps that a push at its end adds: each brings feet together of a robot that is at rest."""
 
 PAPER = ("diagonal-walk", {})
 WALKS = {

@@ -293,6 +293,7 @@ TABLES: dict[str, tuple[str, Callable[[], str]]] = {
             ("public-humanoids", "robots.md"),
             ("robustness", "campaigns.md"),
             ("mechanisms", "recovery-results.md"),
+            ("mechanisms-walking", "recovery-results.md"),
         )
     },
     "startup": ("benchmarks.md", startup_table),

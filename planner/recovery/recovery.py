@@ -1,5 +1,6 @@
 """Recovery: what is made of the steps to come where the CoP alone does not hold the body."""
 
+import math
 from collections.abc import Callable
 
 import numpy as np
@@ -149,6 +150,9 @@ class Recovery:
             return False
         other = going_again(execution)
         stance = other.schedule.step(other.landed).place
+        # A foot that landed short, or whose landing was put off, is on its way: the robot cannot step from where it was.
+        if math.dist(feet.position[stance.foot], stance.position) > numbers.tolerance:
+            return False
         rotation, origin = frame = frame_rotation(stance.yaw), stance.position[:2]
         again = StepProblem.of(time, other, feet, frame)
         if again is None:

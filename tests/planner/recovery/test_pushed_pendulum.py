@@ -13,6 +13,7 @@ from surefoot.planner.ground.stairs import Direction, Stairs
 from surefoot.planner.ground.terrain import Site
 from surefoot.planner.parameters import PlannerParameters, StepAdaptation
 from surefoot.planner.planner import WalkingPlanner
+from surefoot.planner.recovery.recovery import Recovery
 from surefoot.planner.references.com_height import Rise, SmoothHeight
 from surefoot.planner.steps.execution import Execution
 from surefoot.planner.steps.gait import GaitParameters
@@ -152,6 +153,25 @@ def test_a_foot_that_has_just_landed_steps_again_where_the_other_one_would_cross
     ]
     assert all(a.step == b.step for a, b in single)
     assert trace.plans[-1].phase.kind is PhaseKind.STAND
+
+
+def test_a_foot_does_not_step_again_from_where_the_other_one_no_longer_is(stand, monkeypatch):
+    """One that landed short, or whose landing was put off, would be taken to stand where it was lifted."""
+    asked, whole = [], Recovery.goes_again
+
+    def astray(recovery, time, feet, *rest):
+        asked.append(whole(recovery, time, replace(feet, position=feet.position + (off, 0.0, 0.0)), *rest))
+        return asked[-1]
+
+    monkeypatch.setattr(Recovery, "goes_again", astray)
+    slow = replace(P, recovery=replace(P.recovery, least_single=0.16, least_double=0.06))
+    gait = GaitParameters(steps=6, step_length=0.0, single_support=0.4, double_support=0.12, com_height=0.95)
+    push = Push(gait.lift_off(4) - 0.14, 0.1, 660.0 * np.array([0.0, 1.0, 0.0]))
+    for off, again in ((0.5 * P.recovery.tolerance, True), (2.0 * P.recovery.tolerance, False)):
+        planner = WalkingPlanner(gait, stand(), 0.22, 0.11, parameters=slow, legs=LEGS)
+        walk_pendulum(planner, stand(), gait.lift_off(4) + 0.1, com=np.array([0.0, 0.0, 0.95]), pushes=(push,))
+        assert any(asked) == again
+        asked.clear()
 
 
 def test_what_a_push_leaves_to_the_cop_moves_no_step(stand):

@@ -150,7 +150,7 @@ class Recovery:
             return False
         other = going_again(execution)
         stance = other.schedule.step(other.landed).place
-        # A foot that landed short, or whose landing was put off, is on its way: the robot cannot step from where it was.
+        # A foot that landed short, or whose landing was put off, is no longer where the schedule has it.
         if math.dist(feet.position[stance.foot], stance.position) > numbers.tolerance:
             return False
         rotation, origin = frame = frame_rotation(stance.yaw), stance.position[:2]

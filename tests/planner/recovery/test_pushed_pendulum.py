@@ -160,7 +160,7 @@ def test_a_foot_does_not_step_again_from_where_the_other_one_no_longer_is(stand,
     asked, whole = [], Recovery.goes_again
 
     def astray(recovery, time, feet, *rest):
-        asked.append(whole(recovery, time, replace(feet, position=feet.position + (off, 0.0, 0.0)), *rest))
+        asked.append(whole(recovery, time, replace(feet, position=feet.position + np.array([off, 0.0, 0.0])), *rest))
         return asked[-1]
 
     monkeypatch.setattr(Recovery, "goes_again", astray)

@@ -155,23 +155,22 @@ def test_a_foot_that_has_just_landed_steps_again_where_the_other_one_would_cross
     assert trace.plans[-1].phase.kind is PhaseKind.STAND
 
 
-def test_a_foot_does_not_step_again_from_where_the_other_one_no_longer_is(stand, monkeypatch):
+@pytest.mark.parametrize(("share", "again"), [(0.5, True), (2.0, False)])
+def test_a_foot_does_not_step_again_from_where_the_other_one_no_longer_is(stand, monkeypatch, share, again):
     """One that landed short, or whose landing was put off, would be taken to stand where it was lifted."""
-    asked, whole = [], Recovery.goes_again
+    asked, whole, off = [], Recovery.goes_again, np.array([share * P.recovery.tolerance, 0.0, 0.0])
 
     def astray(recovery, time, feet, *rest):
-        asked.append(whole(recovery, time, replace(feet, position=feet.position + np.array([off, 0.0, 0.0])), *rest))
+        asked.append(whole(recovery, time, replace(feet, position=feet.position + off), *rest))
         return asked[-1]
 
     monkeypatch.setattr(Recovery, "goes_again", astray)
     slow = replace(P, recovery=replace(P.recovery, least_single=0.16, least_double=0.06))
     gait = GaitParameters(steps=6, step_length=0.0, single_support=0.4, double_support=0.12, com_height=0.95)
     push = Push(gait.lift_off(4) - 0.14, 0.1, 660.0 * np.array([0.0, 1.0, 0.0]))
-    for off, again in ((0.5 * P.recovery.tolerance, True), (2.0 * P.recovery.tolerance, False)):
-        planner = WalkingPlanner(gait, stand(), 0.22, 0.11, parameters=slow, legs=LEGS)
-        walk_pendulum(planner, stand(), gait.lift_off(4) + 0.1, com=np.array([0.0, 0.0, 0.95]), pushes=(push,))
-        assert any(asked) == again
-        asked.clear()
+    planner = WalkingPlanner(gait, stand(), 0.22, 0.11, parameters=slow, legs=LEGS)
+    walk_pendulum(planner, stand(), gait.lift_off(4) + 0.1, com=np.array([0.0, 0.0, 0.95]), pushes=(push,))
+    assert any(asked) == again
 
 
 def test_what_a_push_leaves_to_the_cop_moves_no_step(stand):

@@ -136,7 +136,7 @@ def test_a_foot_that_its_ankle_tilts_is_lifted_for_what_hangs_but_only_a_little_
     """
     terms, toe, side = terms_at(body, 0.0), 0.11 * length, 0.055 * length
     R = terms.contact_rotation[0].copy()
-    # Against what is wanted, which is the way that the ankle still has, the sole is pitched and rolled by these angles.
+    # The wanted rotation differs from that of the sole by a pitch and a roll, towards which the ankle still has room.
     turned = pin.utils.rotate("x", rolled) @ pin.utils.rotate("y", hung)
     reference = references[1](
         swing_foot=0, swing_position=terms.sole_position[0].copy(), swing_rotation=R @ turned,

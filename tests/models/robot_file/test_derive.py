@@ -147,7 +147,7 @@ def test_arms_that_hang_have_room_to_swing(shipped) -> None:
 
 
 def test_arms_are_kept_from_torso_base_and_both_thighs(shipped) -> None:
-    """From their second link on, which hit the torso of TALOS in a third of all hard pushes."""
+    """From their second link on, which hit the torso of TALOS when it was pushed hard."""
     pairs = {name: {frozenset(pair) for pair in shipped[name].kept_apart} for name in ("g1", "talos")}
     for side, other in (("left", "right"), ("right", "left")):
         upper, hand = f"arm_{side}_2_link_shape", f"arm_{side}_7_link_shape"

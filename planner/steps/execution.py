@@ -231,11 +231,15 @@ class Execution:
         self.fixed = True
 
     def fix_imminent(self, time: float, feet: FeetState, margin: float) -> None:
-        """Decide the next footstep shortly before it lands; swing a lifted foot anew where no margin is left [m]."""
+        """Decide the next footstep shortly before it lands; with no margin [m] in haste, or anew if it was lifted."""
         swing, p = self.swing, self._parameters
         frozen = (p.freeze_catching if self.catching else p.freeze_time) + CLOCK_ROUNDING
         if swing is None or swing.touchdown_time - time > frozen:
             return
+        late = max(time - swing.touchdown_time, 0.0)
+        if margin < 0.0 and late < swing.search.hurry_after:
+            # While the foot searches for the ground a DCM that no CoP holds goes on away from it.
+            self.swing = swing = replace(swing, search=replace(swing.search, hurry_after=late))
         if margin < 0.0 and self._times and not self.early and adaptation.lifted(swing, feet, time, self._size.length):
             self._swing_anew(self.clock)
         elif not self.fixed:
@@ -332,9 +336,6 @@ class Execution:
             if greatest(np.abs(target - self.swing.target) / self._pose) > _SAME_TARGET:
                 # Over edges the foot keeps to the times in which its course clears them.
                 self.swing = self.swing.retargeted(time, target, self.catching, LEAST_GLIDE * self._size.time)
-        if self.adapted and self.swing.search.hurry_after > 0.0:
-            # While a foot that is to catch the body searches for the ground the DCM goes on away from it.
-            self.swing = replace(self.swing, search=replace(self.swing.search, hurry_after=0.0))
         if self.legs is not None:
             self.lowering = self.legs.lowering(math.dist(place, stance.position)) if self.catching else 0.0
             self.swing = around_stance_leg(self.swing, stance, self.legs, time, self._parameters.sample_time)

@@ -167,8 +167,11 @@ def test_late_touchdown_holds_the_clock_up_to_its_limit(stand):
     never = drive(WalkingPlanner(gait, stand(), *HUMAN), stand(), lambda t: False, 70)
     landed = next(k for k, plan in enumerate(never) if plan.phase.step == 1 and plan.phase.kind is PhaseKind.DOUBLE)
     assert landed == 50 + limit
-    searched = never[50 + limit - 2].swing.evaluate(1.0 + 0.02 * limit - 0.02)[0, 2]
-    assert -0.05 < searched < -0.005
+    hasty = next(k for k, plan in enumerate(never) if plan.swing is not None and plan.swing.search.hurry_after < 1.0)
+    assert min(plan.balance.planned for plan in never[: hasty - 1]) >= 0.0 > never[hasty - 1].balance.planned
+    gentle, searched = (never[k].swing.evaluate(0.02 * k)[0, 2] for k in (hasty, 50 + limit - 2))
+    assert -0.08 < searched < gentle - 0.03
+    assert -0.02 < gentle < -0.005
 
 
 def test_early_touchdown_fixes_the_footstep_and_never_moves_the_clock(stand):

@@ -114,10 +114,11 @@ def test_a_body_that_has_gone_down_comes_up_again_all_the_way(stand, monkeypatch
     assert lowest[6] == plans[-1].com[0, 2] == pytest.approx(0.95, abs=1e-9)
 
 
-def test_a_foot_that_is_to_catch_the_body_searches_for_the_ground_in_haste(stand):
+@pytest.mark.parametrize("since", [0.1, 0.34], ids=["a step that is adapted", "a step that is decided"])
+def test_a_foot_that_is_to_catch_the_body_searches_for_the_ground_in_haste(stand, since):
     """And no other: a gentle search, for 4 mm, takes 0.06 s, in which the DCM goes a fifth farther away."""
     gait = GaitParameters(steps=4, step_length=0.3, single_support=0.5, double_support=0.12, com_height=0.95)
-    push = Push(gait.lift_off(2) + 0.1, 0.1, np.array([400.0, 0.0, 0.0]))
+    push = Push(gait.lift_off(2) + since, 0.1, np.array([400.0, 0.0, 0.0]))
     planner, com = WalkingPlanner(gait, stand(), 0.22, 0.11, legs=LEGS), np.array([0.0, 0.0, gait.com_height])
     plans = walk_pendulum(planner, stand(), gait.lift_off(4), com=com, pushes=(push,)).plans
     first, pushed = ([plan.swing for plan in plans if plan.swing is not None and plan.phase.step == n] for n in (1, 2))

@@ -248,6 +248,11 @@ class RecoveryParameters:
     offset_ticks: int = 5
     same_swing: float = quantity(0.005, "m")
 
+    @property
+    def longest_cut(self) -> float:
+        """Most by which a time left is cut at once; infinite where none is cut [s]."""
+        return max(-min(self.time_changes, default=0.0), 0.0) or math.inf
+
 
 _ZERO_TOO = (
     "late_touchdown", "freeze_time", "freeze_catching", "touchdown_lead", "terminal_weight", "jerk_weight",

@@ -200,6 +200,7 @@ class CompiledAdjustment:
             authority=np.array(parameters.cop_authority, dtype=np.float64),
             change_count=len(numbers.time_changes),
             changes=np.array(numbers.time_changes),
+            longest_cut=numbers.longest_cut,
             times=np.zeros((2, len(numbers.time_changes) + 1)),
             result=self._result,
             **{name: getattr(numbers, name) for name in names},

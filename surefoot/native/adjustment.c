@@ -143,7 +143,7 @@ static void choose(const Adjustment *program, const Bounded *bounded, const Box 
 static int64_t times_around(const Adjustment *program, double time, double least, double *times) {
     int64_t count = 0;
     for (int64_t k = 0; k < program->change_count; k++) {
-        const double changed = time + program->changes[k];
+        const double changed = fmin(time, least + program->longest_cut) + program->changes[k];
         if (changed >= fmin(time, least)) times[count++] = changed;
     }
     times[count++] = time;

@@ -1073,6 +1073,7 @@ typedef struct {
     const double *authority;
     int64_t change_count;
     const double *changes;
+    double longest_cut;
     double *times;
     double shift_weight;
     double second_weight;

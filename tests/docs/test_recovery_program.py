@@ -54,7 +54,8 @@ def integral(values, start):
 
 
 def times_of(nominal, least):
-    return [nominal, *(nominal + change for change in N.time_changes if nominal + change >= min(nominal, least))]
+    changed = [min(nominal, least - min(N.time_changes)) + change for change in N.time_changes]
+    return [nominal, *(time for time in changed if time >= min(nominal, least))]
 
 
 def solved(case):
@@ -139,7 +140,7 @@ def priced(case, legs, box, times, bounded, means):
 def drawn(rng):
     """A step in any phase, of feet with or without room, after any push."""
     count, side = P.horizon + P.preview + 1, float(rng.choice([1.0, -1.0]))
-    lift, swing = int(rng.choice([0, 0, 3, 6, 8])), int(rng.integers(5, 26))
+    lift, swing = int(rng.choice([0, 0, 3, 6, 8])), int(rng.integers(5, 46))
     times = np.arange(count)
     nominal = np.array([rng.uniform(-0.3, 0.4), side * rng.uniform(0.15, 0.3)])
     share, up = np.clip((times - lift - swing) / 8.0, 0.0, 1.0), np.clip(1.0 - times / max(lift, 1), 0.0, 1.0)

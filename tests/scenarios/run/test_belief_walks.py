@@ -26,7 +26,8 @@ def test_noise_with_a_push(tmp_path):
 
 
 def test_a_com_higher_than_believed(tmp_path, from_sensors):
-    result = walk(tmp_path, "errors.com_height=-0.2", "gait.steps=3")
+    # With time for the steps that are added.
+    result = walk(tmp_path, "errors.com_height=-0.2", "gait.steps=3", "duration=15.0")
     assert result.verdict.reasons == ()
     log = read(result.log)
     gap = log["/truth"].field("com") - log["/estimate"].field("com")

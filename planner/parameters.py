@@ -250,7 +250,7 @@ class RecoveryParameters:
 
     @property
     def longest_cut(self) -> float:
-        """Most by which a time left is cut at once; infinite where none is cut [s]."""
+        """The greatest cut of a time among the changes; infinite where no time is cut [s]."""
         return max(-min(self.time_changes, default=0.0), 0.0) or math.inf
 
 

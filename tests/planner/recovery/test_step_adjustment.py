@@ -1,5 +1,6 @@
 """Where and when a step lands after a push, held against the pendulum's own motion."""
 
+import math
 from dataclasses import dataclass, replace
 
 import numpy as np
@@ -8,7 +9,7 @@ from pendulum_walk import LEGS
 
 from surefoot.planner.geometry import quintic
 from surefoot.planner.model.dcm import pendulum_com, viability_weights
-from surefoot.planner.parameters import PlannerParameters, StepAdaptation
+from surefoot.planner.parameters import PlannerParameters, RecoveryParameters, StepAdaptation
 from surefoot.planner.recovery.step_adjustment import StepAdjustment, StepProblem
 from surefoot.planner.references.com_height import HeightPreview
 from surefoot.planner.references.window import Window
@@ -224,3 +225,13 @@ def test_no_foot_crosses_where_the_stance_leg_lets_the_body_down():
     crossing, down = adjusted(situation(**pushed)), adjusted(situation(**pushed, crosses=False))
     assert crossing.box[0, 1] < 0.0
     assert down.box[0, 1] >= LEGS.near - 1e-9
+
+
+@pytest.mark.parametrize(
+    ("changes", "cut"),
+    [((-0.2, -0.6, 0.1), 0.6), ((0.1, 0.2), math.inf), ((), math.inf)],
+    ids=["cuts", "none", "empty"],
+)
+def test_the_longest_cut_is_that_of_the_changes(changes, cut):
+    """Where no time is cut a long one stays what is changed."""
+    assert replace(RecoveryParameters(), time_changes=changes).longest_cut == cut

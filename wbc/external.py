@@ -14,7 +14,8 @@ Forces that sensors tell are late, and a low pass makes them later. They are hel
 when they acted. Held against the momentum of now, forces of 4 ms ago told a moment of 8 N·m that nobody exerted, on a
 robot of 33 kg at 0.8 m/s: what the feet push is far below the CoM.
 
-Times, forces and moments below are the reference robot's (see `surefoot.similarity`).
+Forces and moments below are the reference robot's (see `surefoot.similarity`). Times are those of robots of any size: a
+push lasts as long for a small one.
 """
 
 import math
@@ -96,7 +97,7 @@ class LoadObserver:
         size: Similarity = REFERENCE_SIZE,
         compiled: CompiledTerms | None = None,
     ) -> None:
-        self._mass, self._ticks = mass, max(1, round(SPAN * size.time / period))
+        self._mass, self._ticks = mass, max(1, round(SPAN / period))
         self._span = self._ticks * period
         self._felt, self._com = np.zeros(6), np.zeros(3)
         self._momentum: Array | None = None

@@ -7,6 +7,7 @@ import numpy as np
 import pinocchio as pin
 import pytest
 
+from surefoot.similarity import REFERENCE_SIZE, Similarity
 from surefoot.wbc.external import PAST, LoadObserver
 from surefoot.wbc.model import RobotTerms
 from surefoot.wbc.types import GRAVITY, NO_LOAD, ExternalLoad, FootSensing
@@ -18,12 +19,15 @@ FORCE, MOMENT = np.array([-30.0, 20.0, 0.0]), np.array([-9.0, -12.0, 5.0])
 LOAD = ExternalLoad(FORCE, MOMENT, 1.15)
 
 
-def observed(scale=1.0, pull=lambda time: np.zeros(3), duration=1.0, fault=None, unsure=None, late=0, told=0.0):
+def observed(
+    scale=1.0, pull=lambda time: np.zeros(3), duration=1.0, fault=None, unsure=None, late=0, told=0.0,
+    size=REFERENCE_SIZE,
+):  # fmt: skip
     """Loads at every tick of a body, far from the origin, that its feet shake and that is pulled 0.8 m over its CoM.
 
     What the feet feel is told so many ticks late, with an age in ticks.
     """
-    rng, observer, loads, wrenches = np.random.default_rng(5), LoadObserver(MASS, PERIOD), [], []
+    rng, observer, loads, wrenches = np.random.default_rng(5), LoadObserver(MASS, PERIOD, size), [], []
     mass, weight = scale * MASS, np.array([0.0, 0.0, -scale * MASS * GRAVITY])
     com, momentum = np.array([40.0, -7.0, 1.0]), np.array([20.0, -30.0, 5.0])
     spin = np.cross(com, momentum)
@@ -126,6 +130,16 @@ def test_a_force_counts_soon_wholly_when_it_lasts_and_no_longer_than_it_acts():
 
 def test_nobody_leans_into_a_push():
     loads = observed(pull=lambda now: np.array([70.0, 60.0, 0.0]) * (0.4 <= now < 0.5), duration=0.8)
+    assert all(load is NO_LOAD for load in loads)
+
+
+@pytest.mark.parametrize("tick", range(200, 210))
+def test_a_push_lasts_no_longer_for_a_small_robot(tick):
+    """Half of spans that followed its size would last 0.09 s: 0.1 s of a push were taken for a force that lasts."""
+    begins, ends = (tick - 0.5) * PERIOD, (tick + 49.5) * PERIOD
+    push, small = np.array([0.0, 75.0, 0.0]), Similarity(length=0.6, mass=0.33)
+    assert small.time < 0.8
+    loads = observed(pull=lambda now: push * (begins < now < ends), duration=0.8, size=small)
     assert all(load is NO_LOAD for load in loads)
 
 

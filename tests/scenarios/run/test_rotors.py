@@ -17,7 +17,7 @@ SEEDS = range(8)
 def falls(robot):
     """Of marches with a push forward in mid-swing, those that fall or blow up, of eight seeds of the sensors."""
     march = read_campaign("march-ladder").spec.set
-    push = {**march["pushes"][0], "impulse": 0.7}
+    push = {**march["pushes"][0], "impulse": 0.9}
     keys = {**march, "robot": robot, "sensing.source": "ekf", "sensing.preset": "good", "pushes": [push]}
     fallen = 0
     for seed in SEEDS:

@@ -14,8 +14,8 @@ Forces that sensors tell are late, and a low pass makes them later. They are hel
 when they acted. Held against the momentum of now, forces of 4 ms ago told a moment of 8 N·m that nobody exerted, on a
 robot of 33 kg at 0.8 m/s: what the feet push is far below the CoM.
 
-Forces, moments and their rates below are the reference robot's (see `surefoot.similarity`). The span is that of robots of
-any size: a push lasts as long for a small one.
+Forces, moments and their rates below are the reference robot's (see `surefoot.similarity`). The span is that of
+robots of any size: a push lasts as long for a small one.
 """
 
 import math

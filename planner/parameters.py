@@ -250,7 +250,7 @@ class RecoveryParameters:
 
     @property
     def longest_cut(self) -> float:
-        """The greatest cut of a time among the changes; infinite where no time is cut [s]."""
+        """The greatest cut among the changes of a time [s]. It is infinite without any cut."""
         return max(-min(self.time_changes, default=0.0), 0.0) or math.inf
 
 

@@ -233,5 +233,5 @@ def test_no_foot_crosses_where_the_stance_leg_lets_the_body_down():
     ids=["cuts", "none", "empty"],
 )
 def test_the_longest_cut_is_that_of_the_changes(changes, cut):
-    """Where no time is cut a long one stays what is changed."""
+    """Without a cut it is infinite: then a long time is changed from itself on."""
     assert replace(RecoveryParameters(), time_changes=changes).longest_cut == cut

@@ -157,7 +157,8 @@ class Execution:
             felt = contact and not self.early and 2.0 * (clock.now - phase.start) > phase.samples
             lands = self._times and contact and (over or felt)
             if lands and adaptation.lands_short(self.schedule, self.landed, feet, dcm(), self.legs):
-                self._swing_anew(clock)
+                self.clock, self.swing, self.waited = clock.showing(phase.start), None, 0
+                self.early = self.fixed = False
                 return
             if over and not contact and self.waited < self._patience:
                 self.waited += 1
@@ -230,8 +231,8 @@ class Execution:
         self.schedule = self.schedule.moved(self.landed + 1, position)
         self.fixed = True
 
-    def fix_imminent(self, time: float, feet: FeetState, margin: float) -> None:
-        """Decide the next footstep shortly before it lands; with no margin [m] in haste, or anew if it was lifted."""
+    def fix_imminent(self, time: float, margin: float) -> None:
+        """Decide the next footstep shortly before it lands; with no margin [m] it is to land in haste."""
         swing, p = self.swing, self._parameters
         frozen = (p.freeze_catching if self.catching else p.freeze_time) + CLOCK_ROUNDING
         if swing is None or swing.touchdown_time - time > frozen:
@@ -240,14 +241,8 @@ class Execution:
         if margin < 0.0 and late < swing.search.hurry_after:
             # While the foot searches for the ground a DCM that no CoP holds goes on away from it.
             self.swing = swing = replace(swing, search=replace(swing.search, hurry_after=late))
-        if margin < 0.0 and self._times and not self.early and adaptation.lifted(swing, feet, time, self._size.length):
-            self._swing_anew(self.clock)
-        elif not self.fixed:
+        if not self.fixed:
             self.fix(swing.footstep)
-
-    def _swing_anew(self, clock: TimeScaling) -> None:
-        self.clock, self.swing, self.waited = clock.showing(self.phase.start), None, 0
-        self.early = self.fixed = False
 
     def land(self, position: Array, now: float) -> None:
         """Go on with the next foot, shape (3,) [m], at an instant of the clock [samples]."""

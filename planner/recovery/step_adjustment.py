@@ -227,14 +227,16 @@ class StepAdjustment:
             return np.array([step.double]), np.array([step.single])
         numbers = self._numbers
         singles = self._around(step.single, max(numbers.least_single, step.shortest))
-        doubles = self._around(step.double, numbers.least_double) if step.double else np.zeros(1)
+        # Put off in every plan, which its clock cannot do so late, a double support would never end.
+        most = step.double if step.adapted else math.inf
+        doubles = self._around(step.double, numbers.least_double, most) if step.double else np.zeros(1)
         grid = np.zeros((len(doubles), len(singles)))
         return (doubles[:, None] + grid).ravel(), (singles + grid).ravel()
 
-    def _around(self, time: float, least: float) -> Array:
+    def _around(self, time: float, least: float, most: float = math.inf) -> Array:
         """Times to choose from [s]: the given one is the last. Changes of a long one begin with the least time."""
         times = min(time, least + self._numbers.longest_cut) + self._changes
-        return np.append(times[times >= min(time, least)], time)
+        return np.append(times[(times >= min(time, least)) & (times <= most)], time)
 
     def _cheapest(
         self,

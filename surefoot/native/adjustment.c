@@ -140,11 +140,11 @@ static void choose(const Adjustment *program, const Bounded *bounded, const Box 
 }
 
 /* Counterpart of `planner.recovery.step_adjustment.StepAdjustment._around`: says how many. */
-static int64_t times_around(const Adjustment *program, double time, double least, double *times) {
+static int64_t times_around(const Adjustment *program, double time, double least, double most, double *times) {
     int64_t count = 0;
     for (int64_t k = 0; k < program->change_count; k++) {
         const double changed = fmin(time, least + program->longest_cut) + program->changes[k];
-        if (changed >= fmin(time, least)) times[count++] = changed;
+        if (changed >= fmin(time, least) && changed <= most) times[count++] = changed;
     }
     times[count++] = time;
     return count;
@@ -159,9 +159,9 @@ static int64_t cheapest(const Adjustment *program, const Bounded *bounded, int64
     singles[0] = step->single_left;
     if (!fine && program->timing) {
         const double least = fmax(program->least_single, step->shortest);
-        single_count = times_around(program, step->single_left, least, singles);
-        if (step->double_left != 0.0)
-            double_count = times_around(program, step->double_left, program->least_double, doubles);
+        single_count = times_around(program, step->single_left, least, INFINITY, singles);
+        const double left = step->double_left, most = step->adapted != 0.0 ? left : INFINITY;
+        if (left != 0.0) double_count = times_around(program, left, program->least_double, most, doubles);
     }
     Box boxes[BOXES];
     Choice choice;

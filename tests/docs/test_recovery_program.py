@@ -71,6 +71,8 @@ def solved(case):
         return None
     only, legs, side = held or not case.timing, LEGS.turned(step.place.yaw), step.place.foot.side
     doubles = [step.double] if only or not step.double else times_of(step.double, N.least_double)
+    if step.adapted:
+        doubles = [time for time in doubles if time <= step.double]
     singles = [step.single] if only else times_of(step.single, max(N.least_single, step.shortest))
     h = N.cop_share * a
     found = []

@@ -202,6 +202,14 @@ def test_a_double_support_ends_sooner_for_who_is_far_ahead_of_its_feet():
     assert adjusted(now).left < 0.3
 
 
+@pytest.mark.parametrize(("error", "double"), [((-0.1, 0.0), 0.02), ((-0.1, -0.1), 0.1)])
+def test_a_double_support_is_put_off_only_by_the_plan_that_first_adapts_its_step(error, double):
+    """Near its end the clock gives less than is asked for: asked for again in every plan it would never end."""
+    now = {"error": error, "single": 0.5, "double": double, "swing": ((-0.36, 0.2), (0.0, 0.0))}
+    assert adjusted(situation(**now)).left > double
+    assert adjusted(situation(**now, adapted=True)).left == double
+
+
 def test_a_step_that_stays_on_its_tread_lands_sooner_within_it():
     room = np.array([[-0.02, -0.4], [0.02, 0.4]])
     now = situation((0.12, 0.04), 0.5, face=NOMINAL + room)

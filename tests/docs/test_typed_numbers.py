@@ -131,6 +131,7 @@ CODED = {
 
 HELD = {
     ("README.md", "What walks"): "test_readme.py",
+    ("docs/campaigns.md", "Campaigns"): "../scenarios/study/campaigns/test_against.py",
     ("docs/recovery.md", "Step adjustment"): "test_recovery_doc.py",
     ("docs/recovery.md", "The boxes of `LegReach.allowed`"): "test_recovery_doc.py",
     ("docs/robots.md", "Gallery"): "test_robots_doc.py",

@@ -188,7 +188,7 @@ class WalkingPlanner:
         dcm, see = partial(self._dcm, state), partial(self._sight, state)
         execution.advance(feet, dcm)
         self._obey(time)
-        execution.fix_imminent(time, 0.0 if self._plan is None else self._plan.balance.planned)
+        execution.fix_imminent(time, feet, 0.0 if self._plan is None else self._plan.balance.planned)
         sight = see()
         support, local, window = self._recovery.landing(feet, dcm, see, sight) if execution.adapted else sight
         if self._recovery.steps_out(local, window):

@@ -48,9 +48,8 @@ class Execution:
     side goes on, where it may get there: its single support begins anew.
 
     Args:
-        schedule: the steps in sight.
+        schedule, legs: see the attributes.
         window: how far a plan looks ahead [samples].
-        legs: see the attribute.
 
     Attributes:
         schedule: the steps in sight, which reach as far as any plan of the present phase looks.
@@ -63,8 +62,8 @@ class Execution:
         early: the swing foot has landed before its time.
         fixed: the next footstep may not be shifted any more.
         adapted: place or time of the next footstep are being adapted.
-        lowering: how much lower than by its law the CoM is to be for the legs to span the step that is adapted, or was
-            before the present double support [m].
+        resent: the swing foot was sent elsewhere after it had been lifted, which is done once for a step.
+        lowering: how much lower than by its law the CoM is for legs to span the step adapted now or just before [m].
         adapts: whether footsteps may be adapted at all.
         legs: what they can do; None where it is not known.
         foresight: of the tick in which the next phase begins.
@@ -72,9 +71,8 @@ class Execution:
 
     def __init__(self, schedule: Schedule, window: int, legs: LegReach | None = None) -> None:
         self.legs, self._window, parameters = legs, window, schedule.ground.parameters
-        t = parameters.sample_time
-        self.landed, self.waited, self.lowering, self._astray = 0, 0, 0.0, 0.0
-        self.early = self.fixed = self.adapted = False
+        self.landed, self.waited, self.lowering, self._astray, t = 0, 0, 0.0, 0.0, parameters.sample_time
+        self.early = self.fixed = self.adapted = self.resent = False
         self.swing: SwingTrajectory | None = None
         self.clock, self.foresight = TimeScaling(t), Foresight()
         # Where footsteps were chosen for the faces that they land on it takes legs that are known to move them.
@@ -157,8 +155,7 @@ class Execution:
             felt = contact and not self.early and 2.0 * (clock.now - phase.start) > phase.samples
             lands = self._times and contact and (over or felt)
             if lands and adaptation.lands_short(self.schedule, self.landed, feet, dcm(), self.legs):
-                self.clock, self.swing, self.waited = clock.showing(phase.start), None, 0
-                self.early = self.fixed = False
+                self._swing_anew(clock)
                 return
             if over and not contact and self.waited < self._patience:
                 self.waited += 1
@@ -231,8 +228,8 @@ class Execution:
         self.schedule = self.schedule.moved(self.landed + 1, position)
         self.fixed = True
 
-    def fix_imminent(self, time: float, margin: float) -> None:
-        """Decide the next footstep shortly before it lands; with no margin [m] it is to land in haste."""
+    def fix_imminent(self, time: float, feet: FeetState, margin: float) -> None:
+        """Decide the next footstep shortly before it lands; with no margin [m] in haste, or anew if it was lifted."""
         swing, p = self.swing, self._parameters
         frozen = (p.freeze_catching if self.catching else p.freeze_time) + CLOCK_ROUNDING
         if swing is None or swing.touchdown_time - time > frozen:
@@ -241,8 +238,16 @@ class Execution:
         if margin < 0.0 and late < swing.search.hurry_after:
             # While the foot searches for the ground a DCM that no CoP holds goes on away from it.
             self.swing = swing = replace(swing, search=replace(swing.search, hurry_after=late))
-        if not self.fixed:
+        once = margin < 0.0 and self._times and not (self.early or self.resent)
+        if once and adaptation.lifted(swing, feet, time, self._size.length):
+            self._swing_anew(self.clock)
+            self.resent = True
+        elif not self.fixed:
             self.fix(swing.footstep)
+
+    def _swing_anew(self, clock: TimeScaling) -> None:
+        self.clock, self.swing, self.waited = clock.showing(self.phase.start), None, 0
+        self.early = self.fixed = False
 
     def land(self, position: Array, now: float) -> None:
         """Go on with the next foot, shape (3,) [m], at an instant of the clock [samples]."""
@@ -252,7 +257,7 @@ class Execution:
         if self.adapted and self.legs is not None:
             schedule = adaptation.with_heel_lifted(self.schedule, self.landed, self.legs.radius)
             self.schedule = schedule if self._wide else adaptation.aligned(schedule, self.landed)
-        self.waited, self.early, self.fixed, self.adapted = 0, False, False, False
+        self.waited, self.early, self.fixed, self.adapted, self.resent = 0, False, False, False, False
 
     def may_end(self, feet: FeetState, dcm: Callable[[], adaptation.Dcm | None]) -> bool:
         """Whether the foot of a step that catches has landed early, or is about to; arguments as of `advance`."""

@@ -11,6 +11,7 @@ from typed import Row, typed
 from surefoot.models.robot_file import document, files, quantities, shapes, urdf
 from surefoot.planner.ground import terrain
 from surefoot.planner.parameters import PlannerParameters
+from surefoot.planner.steps import adaptation
 from surefoot.scenarios.apps.bridge import command, door, remote, serve
 from surefoot.scenarios.apps.drive.page import LIMITS
 from surefoot.scenarios.judge import computing_checks, motion_checks
@@ -90,6 +91,7 @@ CODED = {
         "overruns": (100 * computing_checks.OVERRUNS,),
     },
     "docs/recovery.md": {
+        "fixed": (100 * adaptation._LIFTED,),
         "a step stays": (100 * terrain._KEPT,),
         "the last three alone, up": (external.BOUND[0],),
         "the last three alone, above": (external.PUSH[1],),

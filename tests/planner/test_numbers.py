@@ -32,6 +32,7 @@ NOTICED = {
     "plan_kernel.POINT": "tests/planner/test_sampling.py",
     "recovery.step_adjustment._NO_GAIN": "tests/planner/recovery/test_step_adjustment.py",
     "references.nominal_feet._SUNK": "tests/planner/references/test_nominal_feet.py",
+    "steps.adaptation._LIFTED": "tests/planner/test_planner.py",
     "steps.adaptation._SLID": "tests/planner/steps/test_slid_feet.py",
     "steps.schedule._LAID_OUT": "tests/planner/steps/test_laid_out.py",
     "steps.schedule._STOP_AHEAD": "tests/planner/steps/test_schedule.py",

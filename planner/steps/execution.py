@@ -229,7 +229,7 @@ class Execution:
         self.fixed = True
 
     def fix_imminent(self, time: float, feet: FeetState, margin: float) -> None:
-        """Decide the next footstep shortly before it lands; with no margin [m] in haste, or anew if it was lifted."""
+        """Decide the next footstep shortly before it lands; with no margin [m] in haste, or once anew if lifted."""
         swing, p = self.swing, self._parameters
         frozen = (p.freeze_catching if self.catching else p.freeze_time) + CLOCK_ROUNDING
         if swing is None or swing.touchdown_time - time > frozen:

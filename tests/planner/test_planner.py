@@ -264,11 +264,11 @@ DECIDED = 48
 """Plan before which the footstep of the first step has been decided."""
 
 
-def about_to_land(disturb, adaptation=StepAdaptation.CROSSING):
-    """Plans until 20 ms before a landing; CoM velocity and feet are disturbed in place 40 ms before it."""
+def about_to_land(disturb, adaptation=StepAdaptation.CROSSING, count=DECIDED + 2):
+    """Plans, by default until 20 ms before a landing; from 40 ms before it CoM velocity and feet are disturbed."""
     planner, feet = catching(adaptation)
     com, velocity, plans = np.array([0.0, 0.0, 1.0]), np.zeros(3), []
-    for tick in range(50):
+    for tick in range(count):
         if tick >= DECIDED:
             disturb(velocity, feet.position)
         plan = planner.update(CentroidalState(0.02 * tick, com, velocity), feet)
@@ -301,6 +301,17 @@ def test_a_foot_that_a_push_lifts_before_it_lands_lands_where_it_catches_the_bod
     plans = about_to_land(pushed_and_lifted(0.03))
     assert moved(plans) > 0.02
     assert len(again(plans)) == 1 and plans[-1].phase.left > 0.1  # it has time to get there
+
+
+def test_one_that_stays_above_its_swing_is_sent_elsewhere_once():
+    """Sent again whenever it is about to land it never would, and the body falls over the foot that stands."""
+
+    def kept_up(velocity, position):
+        velocity[1] += 0.5 if velocity[1] < 0.3 else 0.0
+        position[Foot.LEFT, 2] += 0.03
+
+    plans = about_to_land(kept_up, count=DECIDED + 20)
+    assert len(again(plans)) == 1 and plans[-1].phase.left < 0.03
 
 
 def test_one_that_is_not_lifted_or_may_not_take_another_time_lands_where_it_was_decided():

@@ -63,7 +63,7 @@ def test_it_stands_over_its_feet_and_not_over_where_they_once_landed(monkeypatch
     assert walked(42, GOOD)[1].kind is not PhaseKind.STAND
 
 
-def test_small_feet_that_land_early_do_not_step_on_the_spot_for_ever(monkeypatch):
+def test_small_feet_that_land_early_do_not_step_on_the_spot(monkeypatch):
     """On tiles a foot lands early, with the DCM short of it; the single support of a step that catches goes on then."""
     seeds = 91, 95, 131
     runs = [walked(seed, SMALL) for seed in seeds]
@@ -75,8 +75,9 @@ def test_small_feet_that_land_early_do_not_step_on_the_spot_for_ever(monkeypatch
         recovery._execution.adopt(ended(recovery._execution, feet))
         return see()
 
-    # Negative control: it ends with its touchdown, and each step on the spot asks for the next one.
+    # Negative control: it ends with its touchdown, and a step on the spot asks for the next one. Where double supports
+    # were put off in every plan, too, that went on for ever.
     monkeypatch.setattr(Recovery, "landing", at_once)
-    for_ever = [walked(seed, SMALL)[1] for seed in seeds]
-    more = (one.step - phase.step for one, (_, phase) in zip(for_ever, runs, strict=True))
-    assert sum(steps > 2 for steps in more) >= 2
+    on_the_spot = [walked(seed, SMALL)[1] for seed in seeds]
+    more = (one.step - phase.step for one, (_, phase) in zip(on_the_spot, runs, strict=True))
+    assert sum(steps >= 2 for steps in more) >= 2

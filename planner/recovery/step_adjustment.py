@@ -22,7 +22,7 @@ with the nominal p̄, T̄_d, T̄_s, the duration T of a step, and the slacks r, 
 - cross: σ is s, with its sideways part times cross_factor where that step would have to cross, whether it may or not;
 - times: T_d = T̄_d or that and a member of time_changes, and T_s likewise, each with each. What is left of a support is
   not shortened below least_double or least_single, nor below what body and foot need to come to the footstep's height.
-  Of a longer support, changes count from its least time plus the longest cut.
+  Of a longer support, changes count from its least time plus the longest cut. T_d ≤ T̄_d where the step is adapted.
 
 Solver: for given times p* follows in closed form, since the CoP does what it can; p is p* brought into the limits, the
 boxes and the legs' reach in turn. So times and boxes are enumerated, all at once, and the cheapest is taken.

@@ -242,10 +242,8 @@ class Walk:
             PartError: the profile, of others, fails to make it.
         """
         authority = math.inf, 0.0 if self.robot.roles.feet_lean else math.inf
-        facts, height = self.facts, self.gait.com_height
-        parameters = replace(
-            self.parameters, leg=leg, cop_room=cop_room(leg, facts, self.robot.mass), cop_authority=authority
-        )
+        room = cop_room(leg, self.facts, self.robot.mass)
+        parameters = replace(self.parameters, leg=leg, cop_room=room, cop_authority=authority)
         given = (self.gait, feet, *self.sole, self.ground.terrain, parameters, self.formulation.heights)
         profile = guarded_law(self.formulation.profile, self.formulation.guard)
         if profile.planner is not None:
@@ -253,8 +251,7 @@ class Walk:
                 planner = profile.planner(*given, profile)
                 index(planner.parameters.horizon)
                 return planner
-        legs = leg_reach(self.parameters, facts, height, self.standing_height)
-        planner = WalkingPlanner(*given, profile, region_of(self.parameters, facts, height), legs)
+        planner = WalkingPlanner(*given, profile, self.region, self.legs)
         check_walk(planner.schedule, self.formulation.heights)
         return planner
 

@@ -94,7 +94,7 @@ class SeparationParameters:
     clearance: float = number(0.003, "m", "distance that must remain")
     attention: float = number(0.05, "m", "distance from which a pair is looked at", positive=True)
     horizon: float = number(0.02, "s", "time constant T of the critically damped approach", positive=True)
-    slots: int = number(3, "-", "pairs that are bound in one tick, where they are most")
+    slots: int = number(3, "-", "pairs that are looked at in one tick, the nearest ones")
 
     def __post_init__(self) -> None:
         check(self, "wbc", "separation")

@@ -1,7 +1,6 @@
 """Distances between the robot's own limbs as bounds on the joint accelerations of one tick."""
 
 from collections.abc import Callable, Sequence
-from operator import itemgetter
 
 import numpy as np
 import pinocchio as pin
@@ -13,8 +12,6 @@ from surefoot.wbc.types import Array
 
 _WORLD_AXES = pin.ReferenceFrame.LOCAL_WORLD_ALIGNED
 
-_distance = itemgetter(1)  # of a bound, a distance and a pair
-
 
 class Separation:
     """Rows J q̈ >= lower that keep pairs of shapes apart.
@@ -24,10 +21,8 @@ class Separation:
     1 m/s^2 in walking, against (d - clearance) / T² of 8 m/s^2 at two centimetres. The approach is that of the joint
     limits, T² d'' + 2 T d' + (d - clearance) >= 0, which never comes closer than the clearance. A pair inside it is not
     pushed apart (its last term counts as zero), because two standing feet could not obey, and one that touches is left
-    to the contact forces. (Faverjon and Tournassoud, ICRA 1987, is the first such damper on distances.)
-
-    Where more pairs are near than there are rows, these go to the greatest lower bounds: an arm that hangs beside the
-    trunk all the time leaves the rows to legs that come towards each other.
+    to the contact forces. (Faverjon and Tournassoud,
+    ICRA 1987, is the first such damper on distances.)
 
     Attributes:
         due: pairs that have to be measured; None in plain Python, which measures all of them.
@@ -57,15 +52,15 @@ class Separation:
             tuple(geometry.geometryObjects[shape].parentJoint for shape in (pair.first, pair.second))
             for pair in geometry.collisionPairs
         ]
-        self._points, self._gradients = np.zeros((2, 3)), np.zeros((len(self._joints), model.nv))
+        self._points = np.zeros((2, 3))
         self._written: Array | None = None
         self._filled = 0
         self.is_clear = False
-        self._compiled, self._rates = compiled, dict[int, Callable[[], float]]()
+        self._compiled, self._rates = compiled, dict[tuple[int, int], Callable[[], float]]()
         self.due = DuePairs(compiled, geometry, self._joints, parameters.attention) if compiled else None
 
     def write(self, data: pin.Data, v: Array, rows: Array, lower: Array, unbounded: float) -> None:
-        """Write the rows of the pairs that are bound most; unused ones become zero rows without a bound.
+        """Write the rows of the nearest pairs; unused ones become zero rows without a bound.
 
         Args:
             data: Pinocchio's terms of the state, with joint Jacobians.
@@ -110,36 +105,31 @@ class Separation:
         self, near: list[tuple[float, int]], data: pin.Data, v: Array, rows: Array, lower: Array, unbounded: float
     ) -> None:
         """Write the rows of pairs that are near, by distance and number."""
-        p = self._parameters
+        p, compiled = self._parameters, self._compiled
         if self._written is not rows:
             self._written, self._filled = rows, p.slots
+            self._rates.clear()
         filled, self._filled = self._filled, min(len(near), p.slots)
         self.is_clear = not near
-        bounds = [(self._bound(distance, pair, data, v), distance, pair) for distance, pair in near]
-        if len(near) > p.slots:
-            bounds = sorted(bounds, reverse=True)[: p.slots]
-        for slot, (bound, _, pair) in enumerate(sorted(bounds, key=_distance)):
-            rows[slot], lower[slot] = self._gradients[pair], bound
+        near.sort()
+        for slot, (distance, pair) in enumerate(near[: p.slots]):
+            if compiled is None:
+                rows[slot] = self._gradient(data, pair)
+                rate = float(rows[slot] @ v)
+            else:
+                result, points = self._results[pair], self._points
+                points[0], points[1] = result.getNearestPoint1(), result.getNearestPoint2()
+                rate = (self._rates.get((pair, slot)) or self._bound(compiled, pair, slot))()
+            gap = max(distance - p.clearance, 0.0)
+            lower[slot] = -2.0 / p.horizon * rate - gap / p.horizon**2
         if filled > self._filled:
             rows[self._filled :], lower[self._filled :] = 0.0, -unbounded
 
-    def _bound(self, distance: float, pair: int, data: pin.Data, v: Array) -> float:
-        """Lower bound of a pair at a distance, whose gradient is made, too."""
-        p, compiled = self._parameters, self._compiled
-        if compiled is None:
-            self._gradients[pair] = self._gradient(data, pair)
-            rate = float(self._gradients[pair] @ v)
-        else:
-            result, points = self._results[pair], self._points
-            points[0], points[1] = result.getNearestPoint1(), result.getNearestPoint2()
-            rate = (self._rates.get(pair) or self._bind(compiled, pair))()
-        gap = max(distance - p.clearance, 0.0)
-        return -2.0 / p.horizon * rate - gap / p.horizon**2
-
-    def _bind(self, terms: CompiledTerms, pair: int) -> Callable[[], float]:
-        """The kernel that does what `_gradient` does for a pair, bound once it is near."""
+    def _bound(self, terms: CompiledTerms, pair: int, slot: int) -> Callable[[], float]:
+        """The kernel that does what `_gradient` does for a pair in a slot, bound once it is near."""
+        assert self._written is not None
         columns = [np.array(moving_columns(self._model, joint), dtype=np.int64) for joint in self._joints[pair]]
-        self._rates[pair] = rate = terms.kernels.bind(
+        self._rates[pair, slot] = rate = terms.kernels.bind(
             "distance_rate",
             terms=terms.bound,
             first_count=len(columns[0]),
@@ -148,7 +138,7 @@ class Separation:
             second_columns=columns[1],
             direction=self._results[pair].normal,  # where Coal keeps it
             points=self._points,
-            gradient=self._gradients[pair],
+            gradient=self._written[slot],
         )
         return rate
 

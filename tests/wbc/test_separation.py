@@ -150,24 +150,3 @@ def test_the_controller_brakes_a_leg_before_it_meets_the_other(robot, geometry, 
         report = controller.update(reference, FootSensing((981.0, 0.0)))
         assert report.status is SolveStatus.SOLVED
         assert (row @ report.acceleration >= lower - 1e-6) == (limbs is not None)
-
-
-def test_where_more_pairs_are_near_than_rows_those_bound_most_have_them(robot, geometry) -> None:
-    """Of two arms at rest beside legs that come together, say: the nearest pairs are not those that matter."""
-    rng, count, apart = np.random.default_rng(5), len(geometry.collisionPairs), 0
-    for _ in range(20):
-        q, v = _crossing(robot, rng.uniform(0.0, 0.1)), rng.uniform(-1.0, 1.0, robot.nv)
-        data = robot.model.createData()
-        pin.computeAllTerms(robot.model, data, q, v)
-        written = []
-        for slots in (count, 3):
-            rows, lower = np.zeros((slots, robot.nv)), np.full(slots, -UNBOUNDED)
-            parameters = SeparationParameters(attention=1.0, slots=slots)
-            Separation(robot.model, geometry, parameters).write(data, v, rows, lower, UNBOUNDED)
-            written.append((rows, lower))
-        (every, bounds), (rows, lower) = written
-        most = np.argsort(bounds)[-3:]
-        np.testing.assert_allclose(np.sort(lower), bounds[most], rtol=1e-12)
-        np.testing.assert_allclose(rows[np.argsort(lower)], every[most], atol=1e-12)
-        apart += not np.isin([0, 1, 2], most).all()  # of all rows the first ones are of the nearest pairs
-    assert apart > 10

@@ -1,33 +1,33 @@
-"""MuJoCo, whose window library is loaded when a window is asked for.
+"""MuJoCo, whose library of windows and pictures is loaded when one is drawn.
 
-`import mujoco` imports glfw, which starts a process of its own to ask its library's version: a fifth of the import,
-though no run opens a window. The engine is imported from here, everywhere.
+`import mujoco` loads the library that ``MUJOCO_GL`` names, though no run draws anything. By default that is glfw, which
+starts a process of its own and takes a fifth of the import. Where the variable is wrong, or the machine lacks the
+library, the import fails. The engine is imported from here, everywhere.
 """
 
 import sys
 from importlib import import_module
-from importlib.util import find_spec
-from types import ModuleType
 from typing import Any
 
 __all__ = ["mujoco"]
 
-_WINDOWS = "glfw"
+_DRAWING = "mujoco.rendering.classic"
+_DRAWN = {"GLContext": "gl_context", "Renderer": "renderer"}
+"""Names of the engine that draw, and the modules of `_DRAWING` that have them."""
 
 
-class _Later(ModuleType):
-    """Stands for a module that is imported when something of it is used."""
-
-    def __getattr__(self, name: str) -> Any:
-        if name.startswith("__"):
-            raise AttributeError(name)
-        return getattr(import_module(self.__name__), name)
+def _drawn(name: str) -> Any:
+    """What of the engine draws, loaded when it is asked for (PEP 562)."""
+    if name not in _DRAWN:
+        raise AttributeError(f"module 'mujoco' has no attribute '{name}'")
+    return getattr(import_module(f"{_DRAWING}.{_DRAWN[name]}"), name)
 
 
-if {"mujoco", _WINDOWS}.isdisjoint(sys.modules) and find_spec(_WINDOWS):
-    sys.modules[_WINDOWS] = _Later(_WINDOWS)
+if {"mujoco", _DRAWING}.isdisjoint(sys.modules):
+    sys.modules[_DRAWING] = None  # type: ignore[assignment]  # the engine goes without what cannot be imported
     import mujoco
 
-    del sys.modules[_WINDOWS]  # whoever else imports it shall have the module itself
+    del sys.modules[_DRAWING]
+    mujoco.__getattr__ = _drawn
 else:
     import mujoco

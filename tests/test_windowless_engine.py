@@ -1,5 +1,6 @@
 """The engine without its window library, which is there once it is asked for."""
 
+import os
 import re
 import subprocess
 import sys
@@ -12,9 +13,12 @@ import surefoot
 pytestmark = pytest.mark.unit
 
 
-def said(code):
+def said(code, **environment):
     """What a program prints."""
-    return subprocess.run([sys.executable, "-c", code], capture_output=True, text=True, check=True).stdout.split()
+    done = subprocess.run(
+        [sys.executable, "-c", code], capture_output=True, text=True, check=True, env={**os.environ, **environment}
+    )
+    return done.stdout.split()
 
 
 def test_windows_are_loaded_when_one_is_asked_for():
@@ -23,13 +27,27 @@ def test_windows_are_loaded_when_one_is_asked_for():
 import sys
 from surefoot.engine import mujoco
 print("glfw" in sys.modules)
-print(sys.modules["mujoco.glfw"].glfw.VISIBLE)
-import glfw
-print(glfw.VISIBLE, type(glfw).__name__, "glfw.library" in sys.modules, hasattr(mujoco, "GLContext"))
+print(mujoco.GLContext.__module__, mujoco.Renderer.__module__)
+print("glfw.library" in sys.modules)
 """
-    before, visible, *after = said(code)
-    assert before == "False"
-    assert after == [visible, "module", "True", "True"]
+    assert said(code, MUJOCO_GL="") == ["False", "mujoco.glfw", "mujoco.rendering.classic.renderer", "True"]
+
+
+@pytest.mark.parametrize("library", ["wrong", "osmesa", "egl", "off"])
+def test_what_draws_nothing_needs_no_library_that_draws(library):
+    code = """
+import sys
+from surefoot.engine import mujoco
+print(mujoco.MjModel.from_xml_string("<mujoco/>").nbody, "OpenGL" in sys.modules)
+"""
+    assert said(code, MUJOCO_GL=library) == ["1", "False"]
+
+
+def test_what_the_engine_has_not_got_is_said_as_ever():
+    from surefoot.engine import mujoco
+
+    with pytest.raises(AttributeError, match="module 'mujoco' has no attribute 'nothing'"):
+        mujoco.nothing  # noqa: B018
 
 
 def test_the_engine_is_the_one_that_others_import():

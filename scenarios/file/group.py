@@ -9,6 +9,7 @@ from typing import TYPE_CHECKING, Annotated, Any, TypeVar, get_args
 
 from pydantic import BaseModel, BeforeValidator, ConfigDict, Field, create_model
 
+from surefoot.documented import doc_of
 from surefoot.errors import ParameterError
 from surefoot.planner.parameters import RecoveryParameters
 from surefoot.scenarios.file.names import OneOf
@@ -25,6 +26,11 @@ class Group(BaseModel):
     model_config = ConfigDict(
         frozen=True, extra="forbid", strict=True, validate_default=True, allow_inf_nan=False, defer_build=True
     )
+
+    @classmethod
+    def __pydantic_init_subclass__(cls, **_: Any) -> None:
+        """Keep the documentation that the JSON Schema shows, also where the interpreter drops it."""
+        cls.__doc__ = doc_of(cls) or None
 
 
 def key(default: Any, description: str) -> Any:
@@ -94,8 +100,7 @@ def _planner_key(entry: "DataclassField[Any]", value: Any) -> Any:
 
 
 _RECOVERY = {
-    name: (doc, unit)
-    for name, doc, unit in re.findall(r"(?m)^ +(\w+): (.*) \[(.*)\]\.$", RecoveryParameters.__doc__ or "")
+    name: (doc, unit) for name, doc, unit in re.findall(r"(?m)^ +(\w+): (.*) \[(.*)\]\.$", doc_of(RecoveryParameters))
 }
 """Meaning and unit of each number of the planner's recovery."""
 

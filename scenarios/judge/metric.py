@@ -14,6 +14,7 @@ from pickle import PicklingError
 from types import NoneType, UnionType
 from typing import Any, Generic, TypeVar, Union, get_args, get_origin, get_type_hints
 
+from surefoot.documented import doc_of
 from surefoot.errors import ParameterError
 from surefoot.scenarios.judge.digest import Array, Reads, RunView
 from surefoot.values import dataclass
@@ -141,7 +142,7 @@ class Metric(Generic[T]):
     @property
     def meaning(self) -> str:
         """What it is, in a sentence: the first line of its function's documentation."""
-        return (self.function.__doc__ or "").strip().split("\n", 1)[0]
+        return doc_of(self.function).strip().split("\n", 1)[0]
 
     @property
     def bounded(self) -> tuple[str, ...]:

@@ -5,6 +5,7 @@ Feet are ordered left, right; wrenches force first; poses x y z qx qy qz qw; q a
 
 from functools import cache
 
+from surefoot.documented import doc_of
 from surefoot.scenarios.log.spec import ChannelSpec, FieldSpec
 from surefoot.values import dataclass
 from surefoot.wbc.tasks import DEFAULT_LAYOUT, TaskLayout
@@ -57,7 +58,7 @@ def measurement(n: Sizes) -> ChannelSpec:
         _real("wrench_right", 6, "N, N m", "right sole", "contact wrench at the sole centre"),
         _real("external_force", 3, "N", "world", "sum of pushes, mean over the tick that ends at the message's time"),
     )
-    return ChannelSpec("/measurement", "Measurement", fields, measurement.__doc__ or "")
+    return ChannelSpec("/measurement", "Measurement", fields, doc_of(measurement))
 
 
 @cache
@@ -79,7 +80,7 @@ def readings(n: Sizes) -> ChannelSpec:
         _int("imu_fresh", "1: it has come since the tick before"),
         _int("wrench_fresh", "1: it has come since the tick before"),
     )
-    return ChannelSpec("/readings", "Readings", fields, readings.__doc__ or "")
+    return ChannelSpec("/readings", "Readings", fields, doc_of(readings))
 
 
 @cache
@@ -97,7 +98,7 @@ def truth(n: Sizes) -> ChannelSpec:
         _int("nonfoot_contact", "1: something but a foot touches the ground"),
         _int("self_contact", "1: the robot touches itself"),
     )
-    return ChannelSpec("/truth", "Truth", fields, truth.__doc__ or "")
+    return ChannelSpec("/truth", "Truth", fields, doc_of(truth))
 
 
 @cache
@@ -110,7 +111,7 @@ def point_truth(_: Sizes) -> ChannelSpec:
         _real("right_sole", 7, "m, -", "world", "pose of the sole centre"),
         _real("external_force", 3, "N", "world", "sum of pushes, mean over the tick that begins at the message's time"),
     )
-    return ChannelSpec("/truth", "PointTruth", fields, point_truth.__doc__ or "")
+    return ChannelSpec("/truth", "PointTruth", fields, doc_of(point_truth))
 
 
 @cache
@@ -126,7 +127,7 @@ def estimate(_: Sizes) -> ChannelSpec:
         _real("external_moment", 3, "N m", "world", "of it about the CoM"),
         _scalar("mass", "kg", "of the robot with all that it carries"),
     )
-    return ChannelSpec("/estimate", "Estimate", fields, estimate.__doc__ or "")
+    return ChannelSpec("/estimate", "Estimate", fields, doc_of(estimate))
 
 
 @cache
@@ -155,7 +156,7 @@ def estimation() -> ChannelSpec:
         _scalar("yaw_error", "rad", "heading of the base"),
         _real("place_error", 3, "m", "world", "stance foot in the world"),
     )
-    return ChannelSpec("/estimation", "Estimation", fields, (estimation.__doc__ or "").split("\n")[0])
+    return ChannelSpec("/estimation", "Estimation", fields, doc_of(estimation).split("\n")[0])
 
 
 @cache
@@ -170,7 +171,7 @@ def planner_state(_: Sizes) -> ChannelSpec:
         _real("com_acceleration", 2, "m/s^2", "world", "CoM acceleration of the filter; NaN without one"),
         _real("innovation", 2, "-", "world", "normalised innovation squared of the filter; NaN without one"),
     )
-    return ChannelSpec("/planner_state", "PlannerState", fields, planner_state.__doc__ or "")
+    return ChannelSpec("/planner_state", "PlannerState", fields, doc_of(planner_state))
 
 
 @cache
@@ -185,7 +186,7 @@ def contact(_: Sizes) -> ChannelSpec:
         _real("cop_left", 2, "m", "left sole", "centre of pressure; NaN when unloaded"),
         _real("cop_right", 2, "m", "right sole", "centre of pressure; NaN when unloaded"),
     )
-    return ChannelSpec("/contact", "Contact", fields, contact.__doc__ or "")
+    return ChannelSpec("/contact", "Contact", fields, doc_of(contact))
 
 
 @cache
@@ -210,7 +211,7 @@ def reference(_: Sizes) -> ChannelSpec:
         _int("support_count", "vertices of the polygon"),
         _real("roll", 2, "rad", "", "planned pitch about the toe edge, heel up: left, right"),
     )
-    return ChannelSpec("/reference", "Reference", fields, reference.__doc__ or "")
+    return ChannelSpec("/reference", "Reference", fields, doc_of(reference))
 
 
 @cache
@@ -233,7 +234,7 @@ def plan(n: Sizes) -> ChannelSpec:
         _scalar("step_delay", "s", "how much later than nominally the next landing is made to come"),
         _int("falling", "1: no step will save the body any more"),
     )
-    return ChannelSpec("/plan", "Plan", fields, plan.__doc__ or "")
+    return ChannelSpec("/plan", "Plan", fields, doc_of(plan))
 
 
 @cache
@@ -246,7 +247,7 @@ def footsteps(_: Sizes) -> ChannelSpec:
         _int("next_foot", "0 left, 1 right, -1 none", 3),
         _real("touchdown_time", 3, "s", "", "planned; NaN: none"),
     )
-    return ChannelSpec("/footsteps", "Footsteps", fields, footsteps.__doc__ or "")
+    return ChannelSpec("/footsteps", "Footsteps", fields, doc_of(footsteps))
 
 
 @cache
@@ -258,7 +259,7 @@ def footstep(_: Sizes) -> ChannelSpec:
         _real("planned", 4, "m, rad", "world", "x y z yaw as last planned before it touched down"),
         _real("actual", 4, "m, rad", "world", "x y z yaw in the state that the planner was given"),
     )
-    return ChannelSpec("/footstep", "Footstep", fields, footstep.__doc__ or "")
+    return ChannelSpec("/footstep", "Footstep", fields, doc_of(footstep))
 
 
 @cache
@@ -277,7 +278,7 @@ def wbc(n: Sizes) -> ChannelSpec:
         _real("wrench_right", 6, "N, N m", "right sole", "planned"),
         _real("task_error", rows, "mixed", "", tasks),
     )
-    return ChannelSpec("/wbc", "WholeBodyControl", fields, wbc.__doc__ or "")
+    return ChannelSpec("/wbc", "WholeBodyControl", fields, doc_of(wbc))
 
 
 @cache
@@ -287,7 +288,7 @@ def torque(n: Sizes) -> ChannelSpec:
         _real("command", n.nj, "N m", "", "commanded"),
         _scalar("limit_ratio_max", "-", "largest torque over its limit"),
     )
-    return ChannelSpec("/torque", "JointTorque", fields, torque.__doc__ or "")
+    return ChannelSpec("/torque", "JointTorque", fields, doc_of(torque))
 
 
 @cache
@@ -300,14 +301,14 @@ def link(_: Sizes | None = None) -> ChannelSpec:
         _int("commands_limited", "control ticks so far at which the plant did less than it was told"),
         _int("damped", "1: the plant has damped its joints"),
     )
-    return ChannelSpec("/link", "Link", fields, link.__doc__ or "")
+    return ChannelSpec("/link", "Link", fields, doc_of(link))
 
 
 @cache
 def shadow(n: Sizes) -> ChannelSpec:
     """The torques of the log in whose shadow a controller walked, every control tick."""
     fields = (_real("command", n.nj, "N m", "", "commanded then"),)
-    return ChannelSpec("/shadow", "Shadow", fields, shadow.__doc__ or "")
+    return ChannelSpec("/shadow", "Shadow", fields, doc_of(shadow))
 
 
 @cache
@@ -316,7 +317,7 @@ def timing(_: Sizes) -> ChannelSpec:
     parts = ("state", "wbc_build", "wbc_solve", "planner", "physics", "log", "tick")
     wall = tuple(_scalar(part, "us", "wall-clock time") for part in parts)
     fields = (*wall, _scalar("controller", "us", "processor time of the tick without its log and physics"))
-    return ChannelSpec("/timing", "Timing", fields, timing.__doc__ or "")
+    return ChannelSpec("/timing", "Timing", fields, doc_of(timing))
 
 
 @cache
@@ -333,11 +334,11 @@ def command(_: Sizes) -> ChannelSpec:
         _scalar("double_support", "s", "duration from now on"),
         _scalar("swing_height", "m", "clearance of the steps to come"),
     )
-    return ChannelSpec("/command", "Command", fields, command.__doc__ or "")
+    return ChannelSpec("/command", "Command", fields, doc_of(command))
 
 
 @cache
 def process(_: Sizes) -> ChannelSpec:
     """The process that makes the run, every simulated second; excluded from reproducibility."""
     fields = (_scalar("memory", "B", "resident memory"),)
-    return ChannelSpec("/process", "Process", fields, process.__doc__ or "")
+    return ChannelSpec("/process", "Process", fields, doc_of(process))

@@ -18,12 +18,6 @@ FLAGS = (
 )
 
 
-def missing() -> str | None:
-    """What is not installed, if anything."""
-    names = [name for name in ("chromium", "chromedriver") if shutil.which(name) is None]
-    return f"needs {' and '.join(names)}: apt-get install chromium chromium-driver" if names else None
-
-
 class Browser:
     """One page in one browser, as a context manager.
 

@@ -7,6 +7,7 @@ from xml.etree import ElementTree
 
 import numpy as np
 import pytest
+from needs import BROWSER
 from sensed_catalogue import from_sensors, pytest_addoption, pytest_configure
 from skips import pytest_sessionfinish, pytest_terminal_summary
 
@@ -24,6 +25,12 @@ def _heeding() -> Iterator[None]:
     yield
     for number, handler in before.items():
         signal.signal(number, handler)
+
+
+@pytest.fixture(scope="session")
+def with_a_browser() -> None:
+    """Skips a test where no browser opens a page; it is tried once, when the first test asks."""
+    BROWSER.or_skip()
 
 
 heeding = pytest.fixture(_heeding, name="heeding")

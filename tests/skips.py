@@ -1,21 +1,10 @@
-"""Skipped tests are counted and named, and a skip for another reason than those below fails the session."""
+"""Skipped tests are counted and named, and a skip for another reason than those of `needs` fails the session."""
 
-import re
 from collections import Counter
 from typing import Any
 
 import pytest
-
-ALLOWED = {
-    r"needs chromium": "a browser, which CI servers need not have",
-    r"needs the package mjlab": "a package of others, which has one MJCF",
-    r"needs a C compiler": "compiled kernels, without which all else must pass",
-    r"needs the extra docs": "what builds the documentation site, which is no part of .[dev]",
-    r"needs the package rerun": "a viewer of others, whose format changes with each version",
-    r"needs axe-core": "a package of npm, which looks at the site of the documentation",
-    r"no off-screen OpenGL": "a machine without off-screen OpenGL",
-}
-"""Beginnings of the reasons for which a test may be skipped, and what is missing then."""
+from needs import NEEDS
 
 
 def reasons(reports: list[Any]) -> Counter[str]:
@@ -29,7 +18,7 @@ def reasons(reports: list[Any]) -> Counter[str]:
 
 def unexpected(found: Counter[str]) -> list[str]:
     """Reasons that are not among those allowed."""
-    return sorted(reason for reason in found if not any(re.search(allowed, reason) for allowed in ALLOWED))
+    return sorted(reason for reason in found if not reason.startswith(tuple(need.beginning for need in NEEDS)))
 
 
 def _found(config: pytest.Config) -> Counter[str]:
@@ -54,6 +43,4 @@ def pytest_terminal_summary(terminalreporter: Any, config: pytest.Config) -> Non
     for reason, count in sorted(found.items()):
         terminalreporter.line(f"{count} x {reason}")
     for reason in unexpected(found):
-        terminalreporter.line(
-            f"unexpected skip: {reason}; install .[dev], or add the reason to tests/skips.py", red=True
-        )
+        terminalreporter.line(f"unexpected skip: {reason}; install .[dev], or add a need to tests/needs.py", red=True)

@@ -6,6 +6,7 @@ import subprocess
 import sys
 from pathlib import Path
 
+import needs
 import pytest
 
 PROGRAM = Path(__file__).with_name("robots.py")
@@ -44,7 +45,7 @@ def test_every_robot_file_of_many(tmp_path, first):
 
 
 @pytest.mark.unit
-@pytest.mark.skipif(not Path("/proc/self/status").exists(), reason="only Linux tells it of the program alone")
+@needs.LINUX.mark
 def test_the_memory_is_that_of_the_program_alone():
     ask = f"import sys; sys.path.insert(0, {str(PROGRAM.parent)!r}); import robots; print(robots.peak_memory())"
     large = (

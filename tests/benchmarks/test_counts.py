@@ -7,8 +7,9 @@ import sys
 from pathlib import Path
 
 import pytest
+from needs import KERNELS
 
-from surefoot.native.library import VARIABLE, library
+from surefoot.native.library import VARIABLE
 
 pytestmark = pytest.mark.unit
 
@@ -20,8 +21,8 @@ LEAST = 0.5
 
 @pytest.mark.parametrize("made", ["compiled kernels", "plain Python"])
 def test_a_tick_and_a_plan_do_no_more_than_before(made, tmp_path):
-    if made == "compiled kernels" and library() is None:
-        pytest.skip("needs a C compiler")
+    if made == "compiled kernels":
+        KERNELS.or_skip()
     told = tmp_path / "counts.json"
     environment = {**os.environ, VARIABLE: "1" if made == "compiled kernels" else "0"}
     command = [sys.executable, "-m", "benchmarks", "counts", "--json", str(told)]

@@ -4,12 +4,12 @@ import os
 import re
 import subprocess
 import sys
-from importlib.util import find_spec
 from pathlib import Path
 from urllib.parse import unquote, urljoin, urlsplit
 
 import pytest
-from browser import Browser, missing
+from browser import Browser
+from needs import AXE, BROWSER, SITE
 
 pytestmark = [pytest.mark.unit, pytest.mark.long]
 
@@ -23,8 +23,7 @@ def site(tmp_path_factory):
     """Folder of the site as it is built now; SITE names one that is there already."""
     if given := os.environ.get("SITE"):
         return Path(given)
-    if find_spec("sphinx") is None:
-        pytest.skip("needs the extra docs: pip install -e '.[docs]'")
+    SITE.or_skip()
     folder = tmp_path_factory.mktemp("site") / "html"
     command = [sys.executable, ROOT / "docs" / "site" / "build.py", folder]
     done = subprocess.run(command, cwd=ROOT, capture_output=True, text=True, check=False)
@@ -34,16 +33,14 @@ def site(tmp_path_factory):
 
 @pytest.fixture(scope="module")
 def browser(site, tmp_path_factory):
-    if lacks := missing():
-        pytest.skip(lacks)
+    BROWSER.or_skip()
     with Browser(site / "index.html", tmp_path_factory.mktemp("profile"), (1280, 900)) as opened:
         yield opened
 
 
 @pytest.mark.parametrize("link", ["nowhere.md", "log.md#no-such-heading", "images/none.png"])
 def test_a_broken_link_breaks_the_build(link, tmp_path):
-    if find_spec("sphinx") is None:
-        pytest.skip("needs the extra docs: pip install -e '.[docs]'")
+    SITE.or_skip()
     (tmp_path / "log.md").write_text("# Log\n")
     picture = "!" if link.endswith("png") else ""
     (tmp_path / "index.md").write_text(f"# Index\n\nSee {picture}[it]({link}).\n\n```{{toctree}}\nlog\n```\n")
@@ -116,10 +113,8 @@ def test_the_search_finds_a_key_and_a_metric_without_a_server(site, browser):
 
 @pytest.mark.parametrize("dark", [False, True])
 def test_no_page_has_a_serious_fault_of_accessibility(site, browser, dark):
-    axe = os.environ.get("AXE")
-    if not axe:
-        pytest.skip("needs axe-core: npm pack axe-core, and AXE=/path/to/axe.min.js")
-    code, faults = Path(axe).read_text(encoding="utf-8"), {}
+    AXE.or_skip()
+    code, faults = Path(os.environ["AXE"]).read_text(encoding="utf-8"), {}
     browser.show_as(1280, 900, dark)
     for path in pages(site):
         browser.open(path)

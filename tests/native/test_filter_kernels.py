@@ -2,9 +2,10 @@
 
 import numpy as np
 import pytest
+from needs import KERNELS
 
 import surefoot
-from surefoot.native.library import VARIABLE, library
+from surefoot.native.library import VARIABLE
 from surefoot.scenarios.run.sensed import sensed_state
 
 pytestmark = pytest.mark.unit
@@ -34,8 +35,7 @@ def numbers(estimate):
     ],
 )
 def test_kernels_estimate_what_plain_python_does(monkeypatch, changes, near):
-    if library() is None:
-        pytest.skip("there are no compiled kernels")
+    KERNELS.or_skip()
     pairs = []
 
     class Pair:

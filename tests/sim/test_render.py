@@ -3,6 +3,7 @@ import sys
 
 import numpy as np
 import pytest
+from needs import OPENGL
 
 from surefoot.models.registry import describe
 from surefoot.models.types import RobotOptions
@@ -32,10 +33,8 @@ def test_pictures_show_the_robot_and_follow_it() -> None:
     q = np.concatenate(([0.0, 0.0, 0.9, 0.0, 0.0, 0.0, 1.0], world.description.nominal_joint_positions))
     away = q.copy()
     away[0] += 50.0
-    try:
-        here, gone = render_frames(world.mjcf(), [q, away], (160, 120), Camera(azimuth=90, tracking=False), DRAFT)
-    except gl.RenderingUnavailableError as error:
-        pytest.skip(str(error))
+    OPENGL.or_skip()
+    here, gone = render_frames(world.mjcf(), [q, away], (160, 120), Camera(azimuth=90, tracking=False), DRAFT)
     assert here.shape == (120, 160, 3)
     orange = (here[..., 0] > 150) & (here[..., 2] < 80)
     assert orange.sum() > 10
@@ -53,10 +52,8 @@ def test_marks_are_drawn_where_they_are() -> None:
     magenta = (1.0, 0.0, 1.0)
     counts = (("point", 1), ("arrow", 2), ("line", 2))
     kinds = [(), *([Mark(kind, magenta, 0.05, ends[:count])] for kind, count in counts)]
-    try:
-        pictures = list(render_frames(world.mjcf(), [q] * 4, (160, 120), Camera(azimuth=180), DRAFT, kinds))
-    except gl.RenderingUnavailableError as error:
-        pytest.skip(str(error))
+    OPENGL.or_skip()
+    pictures = list(render_frames(world.mjcf(), [q] * 4, (160, 120), Camera(azimuth=180), DRAFT, kinds))
     none, point, arrow, line = ((p[..., 0] > 150) & (p[..., 1] < 80) & (p[..., 2] > 150) for p in pictures)
     assert not none.any()
     rows, columns = np.nonzero(point)
@@ -71,10 +68,8 @@ def test_marks_inside_the_robot_shine_through() -> None:
     world = World(describe("humanoid100", RobotOptions()), flat(), 1000)
     q = np.concatenate(([0.0, 0.0, 0.9, 0.0, 0.0, 0.0, 1.0], world.description.nominal_joint_positions))
     inside = Mark("point", (1.0, 0.0, 1.0), 0.03, np.array([[0.0, 0.0, 1.0]]))
-    try:
-        plain, marked = render_frames(world.mjcf(), [q, q], (160, 120), Camera(azimuth=180), DRAFT, [(), (inside,)])
-    except gl.RenderingUnavailableError as error:
-        pytest.skip(str(error))
+    OPENGL.or_skip()
+    plain, marked = render_frames(world.mjcf(), [q, q], (160, 120), Camera(azimuth=180), DRAFT, [(), (inside,)])
     rows, columns = np.nonzero((plain != marked).any(axis=2))
     assert len(rows) > 5
     assert np.ptp(rows) < 12

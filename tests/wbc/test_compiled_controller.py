@@ -4,8 +4,9 @@ from dataclasses import replace
 
 import numpy as np
 import pytest
+from needs import KERNELS
 
-from surefoot.native.library import VARIABLE, library
+from surefoot.native.library import VARIABLE
 from surefoot.wbc.contacts import ContactState
 from surefoot.wbc.tasks import TaskGains, TaskWeights
 from surefoot.wbc.tasks.trunk import Torso
@@ -39,8 +40,7 @@ def pair(monkeypatch):
     """A plain controller and a compiled one."""
 
     def make(robot, **given):
-        if library() is None:
-            pytest.skip("needs a C compiler")
+        KERNELS.or_skip()
         monkeypatch.setenv(VARIABLE, "0")
         plain = robot.controller(**given)
         monkeypatch.delenv(VARIABLE)

@@ -1,8 +1,7 @@
 """A robot of an MJCF as MuJoCo compiles it: defaults, welded bodies, joints beside origins, motors of all kinds."""
 
-from importlib.util import find_spec
-
 import mujoco
+import needs
 import numpy as np
 import pinocchio as pin
 import pytest
@@ -70,7 +69,7 @@ def test_what_no_description_can_hold_is_refused(tmp_path, change, limits, sente
         described(tmp_path, TEXT.replace(*change, 1) if change[0] else TEXT, limits)
 
 
-@pytest.mark.skipif(find_spec("mjlab") is None, reason="needs the package mjlab, which has this MJCF")
+@needs.MJLAB.mark
 def test_g1_of_an_mjcf_is_g1_of_its_urdf(tmp_path) -> None:
     model = "package://mjlab/asset_zoo/robots/unitree_g1/xmls/g1.xml"
     path = tmp_path / "g1.yaml"

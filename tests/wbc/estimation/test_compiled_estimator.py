@@ -3,8 +3,9 @@
 import numpy as np
 import pinocchio as pin
 import pytest
+from needs import KERNELS
 
-from surefoot.native.library import VARIABLE, library
+from surefoot.native.library import VARIABLE
 from surefoot.readings import Reading, Readings
 from surefoot.wbc.estimation.contact import SoleContact
 from surefoot.wbc.estimation.doubt import Doubt
@@ -24,8 +25,7 @@ MOUNTS = [ImuMount(), ImuMount(None, (0.05, 0.01, -0.08), TURNED), ImuMount("tor
 @pytest.mark.parametrize("mount", MOUNTS)
 def test_kernels_see_soles_and_doubt_as_plain_python_does(robot, monkeypatch, mount, stance):
     """Of an IMU wherever it is, with all joints away from where they stand, and any covariance."""
-    if library() is None:
-        pytest.skip("there are no compiled kernels")
+    KERNELS.or_skip()
     rng, found = np.random.default_rng(stance), []
     q = pin.integrate(robot.model, robot.standing, 0.3 * rng.normal(size=robot.nv))
     spread = rng.normal(size=(27 + robot.nv, 27 + robot.nv))
@@ -55,8 +55,7 @@ def test_kernels_see_soles_and_doubt_as_plain_python_does(robot, monkeypatch, mo
 
 def test_a_covariance_that_is_not_positive_is_weighed_by_plain_python(monkeypatch):
     """What neither can factor, numpy weighs; the kernel then corrects with that gain."""
-    if library() is None:
-        pytest.skip("there are no compiled kernels")
+    KERNELS.or_skip()
     found = []
     for variable in ("", "0"):
         monkeypatch.setenv(VARIABLE, variable)

@@ -5,6 +5,7 @@ from dataclasses import replace
 import numpy as np
 import pinocchio as pin
 import pytest
+from needs import KERNELS
 
 from surefoot.native.library import library
 from surefoot.wbc.estimation.compiled import StateKernel
@@ -180,9 +181,8 @@ def test_soles_that_lean_are_seen_at_their_lines_which_move_with_them(robot, mou
 @pytest.mark.parametrize("mount", MOUNTS)
 def test_the_compiled_base_is_where_it_has_come_to(robot, mount, turned):
     """As by Pinocchio, gone on by half of what it is planned to gain; of an IMU that joints move there is none."""
+    KERNELS.or_skip()
     kernels, body = library(), SensedBody(robot.model, robot.frames.soles, mount)
-    if kernels is None:
-        pytest.skip("there are no compiled kernels")
     if body.mount is None:
         assert mount.body == "torso"
         return

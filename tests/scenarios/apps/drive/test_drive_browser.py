@@ -8,7 +8,6 @@ import sys
 from collections.abc import Callable, Iterator
 from pathlib import Path
 
-import browser
 import numpy as np
 import pytest
 from browser import Browser
@@ -18,7 +17,7 @@ from surefoot.scenarios.apps.drive.page import CHANNEL
 
 pytestmark = [
     pytest.mark.physics,
-    pytest.mark.skipif(browser.missing() is not None, reason=str(browser.missing())),
+    pytest.mark.usefixtures("with_a_browser"),
 ]
 
 TIME = "return parseFloat(document.getElementById('drive-clock').textContent.split('·')[1])"

@@ -4,7 +4,6 @@ import time
 from collections.abc import Iterator
 from io import BytesIO
 
-import browser
 import numpy as np
 import pytest
 from browser import Browser
@@ -15,7 +14,7 @@ from surefoot.scenarios.show.replay.page import write_page
 
 pytestmark = [
     pytest.mark.physics,
-    pytest.mark.skipif(browser.missing() is not None, reason=str(browser.missing())),
+    pytest.mark.usefixtures("with_a_browser"),
 ]
 
 SPEED = 2.5

@@ -1,6 +1,5 @@
 """A recording for rerun has the robot, the marks, the forces and the curves of a replay, laid out."""
 
-import importlib.util
 import subprocess
 import sys
 from pathlib import Path
@@ -8,6 +7,7 @@ from unittest.mock import MagicMock
 
 import numpy as np
 import pytest
+from needs import RERUN
 
 from surefoot.scenarios.errors import LogError, MissingExtraError
 from surefoot.scenarios.show.replay.extract import extract
@@ -65,8 +65,7 @@ def test_a_mark_is_in_the_frames_in_which_it_is_shown(sent):
 
 
 def test_rerun_opens_what_is_written(log_path, tmp_path):
-    if importlib.util.find_spec("rerun") is None:
-        pytest.skip("needs the package rerun: pip install 'surefoot[rerun]'")
+    RERUN.or_skip()
     out = tmp_path / "walk.rrd"
     write_rrd(log_path, out)
     program = [str(Path(sys.executable).with_name("rerun")), "rrd"]

@@ -279,7 +279,8 @@ def relevant_versions() -> Mapping[str, str]:
     found = {name: _version(name) for name in PACKAGES}
     found["python"] = platform.python_version()
     found["machine"] = f"{platform.system()} {platform.machine()}"
-    found["native"] = "plain Python" if library() is None else "compiled kernels"
+    kernels = library()
+    found["native"] = "plain Python" if kernels is None else f"compiled kernels, {kernels.made}"
     found["source_digest"] = source_digest(Path(__file__).parents[2])
     return MappingProxyType(found)
 

@@ -6,6 +6,7 @@ machine's instructions only those that every x86-64 processor since 2009 has.
 """
 
 import hashlib
+import json
 import os
 import platform
 import re
@@ -67,13 +68,17 @@ def build() -> str:
     command = shlex.split(os.environ.get("CC", "cc"))
     if not command or shutil.which(command[0]) is None:
         return f"no C compiler '{' '.join(command)}'"
-    flags = (*FLAGS, *BASELINE.get(platform.machine(), ()), f'-DSUREFOOT_DIGEST="{digest()}"')
+    flags = (*command[1:], *FLAGS, *BASELINE.get(platform.machine(), ()))
+    told = (f'-DSUREFOOT_DIGEST="{digest()}"', f"-DSUREFOOT_FLAGS={json.dumps(shlex.join(flags))}")
     sources = sorted(path.name for path in FOLDER.glob("*.c"))
     try:
         with tempfile.TemporaryDirectory(dir=FOLDER) as scratch:
             made = Path(scratch, LIBRARY.name)
             done = subprocess.run(
-                [*command, *flags, "-o", str(made), *sources, "-lm"], cwd=FOLDER, capture_output=True, text=True
+                [command[0], *flags, *told, "-o", str(made), *sources, "-lm"],
+                cwd=FOLDER,
+                capture_output=True,
+                text=True,
             )
             if done.returncode or not made.exists():
                 said = done.stderr.strip().splitlines()

@@ -96,9 +96,14 @@ class Library:
     Args:
         handle: the loaded library.
         header: text of ``kernels.h``, which says what structs and functions there are.
+
+    Attributes:
+        structs: fields of each struct, by name.
+        made: compiler, its version and its flags, such as ``gcc 12.2.0 -std=c11 -O3``; others give other bits.
     """
 
     def __init__(self, handle: ctypes.CDLL, header: str) -> None:
+        self.made = ctypes.string_at(ctypes.addressof(ctypes.c_char.in_dll(handle, "surefoot_made"))).decode()
         self.structs: dict[str, dict[str, Field]] = {
             name: {
                 field: Field(kind, bool(star), int(length or 1)) for kind, star, field, length in _FIELD.findall(body)

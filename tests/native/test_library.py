@@ -2,6 +2,8 @@
 
 import ctypes
 import os
+import platform
+import shlex
 import shutil
 import subprocess
 import sys
@@ -11,7 +13,7 @@ import numpy as np
 import pytest
 from needs import COMPILER
 
-from surefoot.native.build import FOLDER, LIBRARY
+from surefoot.native.build import BASELINE, FLAGS, FOLDER, LIBRARY
 from surefoot.native.library import VARIABLE, library
 
 pytestmark = pytest.mark.unit
@@ -47,6 +49,22 @@ def test_a_checkout_builds_its_library_and_rebuilds_a_stale_one(checkout):
     source.write_text(source.read_text() + "/* A change. */\n")
     assert say(checkout) == (f"compiled kernels: {built}\n", "")
     assert built.read_bytes() != first
+
+
+@pytest.mark.parametrize("flags", ["", "-O1 -DODD='a b'"])
+def test_a_library_says_how_it_was_made(checkout, flags):
+    """By which compiler and with which flags, also those of ``CC``: other ones give other bits."""
+    COMPILER.or_skip()
+    say(checkout, CC=f"cc {flags}")
+    tell = "from surefoot.native.library import library; print(library().made)"
+    environment = {**os.environ, "PYTHONPATH": str(checkout), VARIABLE: "1"}
+    done = subprocess.run(
+        [sys.executable, "-c", tell], env=environment, cwd=checkout, capture_output=True, text=True, check=True
+    )
+    compiler, version, *told = shlex.split(done.stdout)
+    assert compiler in ("gcc", "clang")
+    assert version[0].isdigit()
+    assert " ".join(told).endswith(" ".join((*shlex.split(flags), *FLAGS, *BASELINE.get(platform.machine(), ()))))
 
 
 def test_a_stale_library_that_cannot_be_rebuilt_is_told_once_and_not_used(kernels, checkout):

@@ -95,3 +95,9 @@ def test_machines_of_a_cluster_may_differ_in_what_is_of_a_machine():
     there = MadeOf(lambda: {**relevant_versions(), "machine": "Linux riscv64", "python": "3.99"})
     assert digest(there) != digest()
     assert digest(there, anywhere=True) == digest(anywhere=True)
+
+
+def test_results_of_other_kernels_are_others():
+    there = MadeOf(lambda: {**relevant_versions(), "native": "compiled kernels, gcc 1.0 -Ofast"})
+    assert digest(there) != digest()
+    assert digest(there, anywhere=True) != digest(anywhere=True)

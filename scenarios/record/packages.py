@@ -1,5 +1,6 @@
 """The packages that bring parts of a run: their versions, and digests of their code as it is on the disk."""
 
+import ast
 import hashlib
 import re
 from collections.abc import Iterable, Iterator, Mapping
@@ -97,14 +98,28 @@ def _module(name: str) -> dict[str, Path]:
 
 
 def _imported(module: Path) -> dict[str, Path]:
-    """A module, and all that it imports of the folder that it lies in; nothing is executed."""
+    """A module, and all of its folder that it imports or names in a text of its own; nothing is executed."""
+    folder, found, waiting = module.parent, {module}, [module]
+    while waiting:
+        new = {file for file in _beside(waiting.pop()) if file.is_file()} - found
+        found |= new
+        waiting += [file for file in new if file.suffix == ".py"]
+    return {file.relative_to(folder).as_posix(): file for file in found}
+
+
+def _beside(module: Path) -> Iterator[Path]:
+    """Files of a module's folder that it imports, and those that its texts name: data, and modules found by name."""
     finder = ModuleFinder([str(module.parent)], excludes=[OWN_PACKAGE])
     try:
         finder.run_script(str(module))
+        texts = [node.value for node in ast.walk(ast.parse(module.read_bytes())) if isinstance(node, ast.Constant)]
     except (SyntaxError, ValueError, OSError):
-        return {module.name: module}
-    files = (getattr(one, "__file__", None) for one in finder.modules.values())
-    return {Path(file).relative_to(module.parent).as_posix(): Path(file) for file in files if file}
+        return
+    yield from (Path(file) for one in finder.modules.values() if (file := getattr(one, "__file__", None)))
+    for text in texts:
+        if isinstance(text, str) and re.fullmatch(r"[\w./-]{1,200}", text) and ".." not in text:
+            yield module.parent / text.lstrip("/")
+            yield module.parent / f"{text.replace('.', '/')}.py"
 
 
 def _digest(files: Mapping[str, Path]) -> str:

@@ -63,6 +63,7 @@ def sweep(
     with importing():
         from surefoot.scenarios.study.campaigns import against as holding
         from surefoot.scenarios.study.campaigns.campaign import read_campaign
+        from surefoot.scenarios.study.campaigns.journal import overlooked
         from surefoot.scenarios.study.campaigns.sweep import InterruptedRunsError, cores
         from surefoot.scenarios.study.campaigns.sweep import sweep as run_sweep
 
@@ -71,6 +72,8 @@ def sweep(
     campaign = read_campaign(spec, set_ or (), seeds)
     before = None if against is None else holding.table(campaign, against)
     folder = out or Path("runs") / campaign.spec.name
+    for text in overlooked(campaign):
+        typer.echo(text, err=True)
     try:
         swept = run_sweep(campaign, folder, jobs or cores(), cluster)
     except InterruptedRunsError:

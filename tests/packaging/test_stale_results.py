@@ -72,6 +72,22 @@ def test_a_module_in_the_working_directory_counts_with_those_beside_it_that_it_i
 
 
 @pytest.mark.unit
+def test_files_beside_a_module_that_it_names_count_too(site, now):
+    """Data that it reads, and a module that it finds by a name; not what others write there meanwhile."""
+    made = site("hand-made")
+    code = "TABLE = Path(__file__).with_name('table.csv')\nOTHER = import_module('found')\nDEEP = 'data/deep.csv'\n"
+    made.write("mine.py", code)
+    made.register("surefoot.metrics", sway="mine:X")
+    seen = [now({}, made)]
+    for name in ("table.csv", "found.py", "data/deep.csv", "table.csv"):
+        made.write(name, f"of {len(seen)}\n")
+        seen.append(now({}))
+    assert len({one["hand-made"] for one in seen}) == 5
+    made.write("runs/log.mcap", "a result\n")
+    assert now({}) == seen[-1]
+
+
+@pytest.mark.unit
 def test_code_elsewhere_counts_where_it_is_installed_in_place_and_versions_of_all_that_is_required(site, mine, now):
     """An installation with -e leaves a list of files in which the code is not."""
     mine.register("surefoot.tasks", part="my_package.parts:X")
@@ -128,3 +144,4 @@ def test_a_metric_that_changes_is_asked_again(site):
     assert [passed for passed, *_ in found] == [1, 1, 0], found
     assert [json.loads(line)["status"] for line in journal] == ["pass", "fail"]
     assert [said for _, said, _ in found] == [False, False, True]
+    assert all("when the code of swaying changes" in said for *_, said in found), "it says what it does not follow"

@@ -26,6 +26,7 @@ from surefoot.scenarios.record.packages import packages_of
 from surefoot.scenarios.record.provenance import relevant_versions
 from surefoot.scenarios.run.run import made_folder
 from surefoot.scenarios.setup.load import Written
+from surefoot.scenarios.study.campaigns.campaign import Campaign
 from surefoot.scenarios.study.campaigns.points import Outcome, Point, Record, Searched
 
 JOURNAL, LOGS, SCRATCH = "runs.jsonl", "logs", ".running"
@@ -57,6 +58,16 @@ class MadeOf:
         versions = {name: one for name, one in self._versions().items() if not (anywhere and name in OF_A_MACHINE)}
         robot = self._robot(str(point.settings.get("robot", own)))
         return _digest([versions, dict(packages_of(words)), robot])
+
+
+def overlooked(campaign: Campaign) -> Iterator[str]:
+    """A sentence if packages bring parts of a campaign: what of them its results do not follow."""
+    words = set(_words(campaign.spec.model_dump(mode="json")))
+    for base in campaign.bases.values():
+        words |= _named(base.written)[1]
+    if names := ", ".join(packages_of(frozenset(words))):
+        seen = f"results are made anew when the code of {names} changes, or a file beside it that it names"
+        yield f"{seen}; not when it reads other files or the environment: choose another --out then"
 
 
 def robot_digest(name: str) -> str:

@@ -34,7 +34,7 @@ physics: $(VENV)/.installed-dev
 	$(BIN)/pytest -m "physics and not long" -n auto --dist loadscope
 
 check: $(VENV)/.installed-dev
-	$(BIN)/surefoot check control-fall control-slide control-push paper-brisk stairs-tall walk-sideways walk
+	$(BIN)/surefoot check control-fall control-slide control-push control-sensors control-motors paper-brisk stairs-tall walk-sideways walk
 
 long: $(VENV)/.installed-dev
 	$(BIN)/pytest -m long

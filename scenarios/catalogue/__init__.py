@@ -37,8 +37,8 @@ OWN: Mapping[str, Traversable] = _inside(files(__name__))
 """Ours that a robot is to do well."""
 
 CONTROLS: Mapping[str, Traversable] = _inside(files(__name__) / "controls")
-"""Ours in which a robot comes to known harm, of the reference robot: a world that is kinder, or a judge that sees less,
-does not meet their criteria."""
+"""Ours in which the reference robot comes to known harm, or walks with sensors and motors that err by a known amount: a
+world that is kinder, or a judge that sees less, does not meet their criteria."""
 
 OURS: Mapping[str, Traversable] = {**OWN, **CONTROLS}
 """All of ours; their names always mean them."""

@@ -2,7 +2,7 @@
 
 from collections.abc import Callable, Iterator, Mapping
 from contextlib import ExitStack, contextmanager
-from dataclasses import dataclass, replace
+from dataclasses import dataclass, fields, replace
 from functools import partial
 from typing import Any
 from unittest.mock import patch
@@ -12,9 +12,9 @@ import numpy as np
 from controllers import CONTROLLERS
 
 import surefoot
-from surefoot.scenarios.judge import metrics
+from surefoot.scenarios.judge import feet, metrics, verdict
 from surefoot.scenarios.study.checks import check as checking
-from surefoot.sim import contacts, scene, world
+from surefoot.sim import contacts, drives, readings, scene, world
 
 
 @dataclass(frozen=True)
@@ -114,6 +114,70 @@ def _never(height: Any, nominal: float, tilt: Any, touching: Any) -> Any:
     return np.zeros(np.shape(height), dtype=bool)
 
 
+def _wider(share: float) -> Callable[..., Iterator[str]]:
+    """A judge whose bounds are wider by a share than they say."""
+    sound = verdict._missed
+
+    def judged(name: str, bound: Any, values: Any) -> Iterator[str]:
+        def moved(limit: Any, sign: float) -> Any:
+            if limit is None or isinstance(limit, tuple):
+                return limit and tuple(moved(one, sign) for one in limit)
+            return limit + sign * share * abs(limit)
+
+        wide = {"min": moved(bound.min, -1.0), "max": moved(bound.max, 1.0)}
+        yield from sound(name, bound.model_copy(update=wide), values)
+
+    return judged
+
+
+def _one_sided(foot: int) -> Callable[..., Any]:
+    """A judge that sees the slip of one foot alone."""
+    sound = feet.stance_slips
+    return lambda *given: [slip for slip in sound(*given) if slip.foot == foot]
+
+
+class Strong(world.World):
+    """The left foot measures two percent more moment than there is."""
+
+    def measure(self):
+        measured = super().measure()
+        wrenches = measured.wrench.copy()
+        wrenches[0, 3:] *= 1.02
+        return replace(measured, wrench=wrenches)
+
+
+def _erring(**factors: float) -> type:
+    """Sensors whose errors are so many times what they are said to be, by what begins their names."""
+
+    class Erring(readings.SensorSuite):
+        def __init__(self, world, errors, *given):
+            terms = {
+                entry.name: factor * getattr(errors, entry.name)
+                for beginning, factor in factors.items()
+                for entry in fields(errors)
+                if entry.name.startswith(beginning) and isinstance(getattr(errors, entry.name), float)
+            }
+            super().__init__(world, replace(errors, **terms), *given)
+
+    return Erring
+
+
+def _delivered(**changed: float) -> type:
+    """Sensors that come otherwise than they are said to."""
+
+    class Delivered(readings.SensorSuite):
+        def __init__(self, world, errors, *given):
+            groups = {name: replace(getattr(errors, name), **changed) for name in ("joints", "imu", "feet")}
+            super().__init__(world, replace(errors, **groups), *given)
+
+    return Delivered
+
+
+def _drives(**changed: Any) -> Callable[..., drives.Drives]:
+    """Motors that err otherwise than they are said to."""
+    return lambda robot, errors, *given: drives.Drives(robot, replace(errors, **changed), *given)
+
+
 class Numb(contacts.ContactSense):
     """Does not feel that the robot touches itself."""
 
@@ -123,6 +187,14 @@ class Numb(contacts.ContactSense):
 
 def _world(made: type) -> Sabotage:
     return Sabotage(patches={"scenarios.run.full.World": made})
+
+
+def _sensors(made: type) -> Sabotage:
+    return Sabotage(patches={"scenarios.run.full.SensorSuite": made})
+
+
+SLIPS = ("scenarios.judge.feet.stance_slips", "scenarios.study.checks.signs.stance_slips")
+"""Where slips are looked at."""
 
 
 WORLDS: Mapping[str, Sabotage] = {
@@ -145,10 +217,30 @@ JUDGES: Mapping[str, Sabotage] = {
     "ZMP always inside": Sabotage(judge={"zmp_inside_fraction": lambda _: 1.0}),
     "torque metric halved": Sabotage(judge={"torque_ratio_max": halved}),
     "self-contact never felt": Sabotage(patches={"sim.sensors.ContactSense": Numb}),
+    "bounds of criteria 5 % wider": Sabotage(patches={"scenarios.judge.verdict._missed": _wider(0.05)}),
+    "slip of the right foot not seen": Sabotage(patches=dict.fromkeys(SLIPS, _one_sided(0))),
+    "slip of the left foot not seen": Sabotage(patches=dict.fromkeys(SLIPS, _one_sided(1))),
+}
+
+HARDWARE: Mapping[str, Sabotage] = {
+    "left foot's moment 2 % off": _world(Strong),
+    "gyro's errors doubled": _sensors(_erring(gyro=2.0)),
+    "accelerometer's errors doubled": _sensors(_erring(accelerometer=2.0)),
+    "encoders' errors doubled": _sensors(_erring(encoder=2.0)),
+    "force sensors' errors doubled": _sensors(_erring(wrench=2.0, moment=2.0)),
+    "IMU where it should be": _sensors(_erring(imu=0.0)),
+    "readings at once": _sensors(_delivered(latency=0.0)),
+    "no reading is lost": _sensors(_delivered(dropout=0.0)),
+    "motors at once": Sabotage(patches={"scenarios.run.full.Drives": _drives(delay=0.0)}),
+    "motors without noise": Sabotage(patches={"scenarios.run.full.Drives": _drives(noise=0.0)}),
+    "joints without friction": Sabotage(
+        patches={"sim.world.world_mjcf": rewritten("joint", ("damping", "frictionloss"), 0.0)}
+    ),
 }
 
 ALL: Mapping[str, Sabotage] = {
     **{name: Sabotage(surefoot.Parts(controller=made)) for name, made in CONTROLLERS.items()},
     **WORLDS,
     **JUDGES,
+    **HARDWARE,
 }

@@ -19,6 +19,13 @@ EXPECTED = {
     "motors 1.5 times as strong": ("control-fall", "moved", "the world's motor_force is 13818.0, 9212.0 in"),
     "fall detector never fires": ("control-fall", "failed", "fell is false, must be true"),
     "slip metric halved": ("control-slide", "failed", "foot_slip_max is 0.01"),
+    "bounds of criteria 5 % wider": ("control-slide", "failed", "the judge lets foot_slip_max pass with a bound that"),
+    "slip of the right foot not seen": ("control-slide", "moved", "largest way of the right foot on the ground"),
+    "left foot's moment 2 % off": ("control-slide", "moved", "moment of the ground on the left sole about its"),
+    "encoders' errors doubled": ("control-sensors", "failed", "tilt_estimation_error_rms is 0.0026"),
+    "no reading is lost": ("control-sensors", "moved", "estimation_yaw_rate"),
+    "motors at once": ("control-motors", "failed", "foot_slip_max is 0.0009"),
+    "joints without friction": ("control-motors", "failed", "foot_slip_max is 0.0028"),
 }
 """What a control says of a kinder world and of a blunt judge: which, how, and its first words."""
 
@@ -44,7 +51,8 @@ def test_a_control_sees_a_kinder_world_and_a_blunt_judge(sabotage, tmp_path):
     with ALL[sabotage].at_work():
         found = run_case(case, tmp_path)
     assert found.status == status
-    assert [*found.reasons, *(one.text for one in found.partings)][0].startswith(said)
+    told = [*found.reasons, *(one.text for one in found.partings), *(one.name for one in found.moves)]
+    assert told[0].startswith(said)
 
 
 @pytest.mark.long

@@ -21,6 +21,7 @@ from surefoot.scenarios.run.run import run_scenario
 from surefoot.scenarios.setup.load import load
 from surefoot.scenarios.study.campaigns.engine import side_by_side
 from surefoot.scenarios.study.checks.baseline import ENDING, Baseline, Move, read_baseline, write_baseline
+from surefoot.scenarios.study.checks.blunt import blunt
 from surefoot.scenarios.study.checks.signs import Parting
 from surefoot.values import dataclass
 
@@ -171,8 +172,8 @@ def _held_against_baseline(case: Case, verdict: Verdict, now: Baseline) -> Check
         found = Checked(case, "unreadable baseline", (" ".join(str(refusal).split()),))
     else:
         found = compared(case, before, now) if before is not None else Checked(case, "without baseline")
-    reasons = (*verdict.reasons, *found.reasons)
-    return replace(found, status=found.status if verdict.passed else "failed", reasons=reasons, now=now)
+    failures = (*verdict.reasons, *blunt(verdict))
+    return replace(found, status="failed" if failures else found.status, reasons=(*failures, *found.reasons), now=now)
 
 
 def compared(case: Case, before: Baseline, now: Baseline) -> Checked:

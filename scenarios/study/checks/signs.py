@@ -14,6 +14,7 @@ from surefoot.planner.geometry import frame_rotation, headings
 from surefoot.planner.types import GRAVITY
 from surefoot.scenarios.judge.body import leg
 from surefoot.scenarios.judge.digest import Array, RunView
+from surefoot.scenarios.judge.feet import stance_slips
 from surefoot.scenarios.judge.walking import runs_of
 from surefoot.scenarios.log import Log
 from surefoot.scenarios.show.logview import FOOT_NAMES, LOADED
@@ -151,6 +152,20 @@ def _friction(run: RunView, side: str) -> Array:
     return np.where(loaded, np.hypot(wrench[:, 0], wrench[:, 1]) / np.where(loaded, wrench[:, 2], 1.0), 0.0)
 
 
+def _moment(run: RunView, side: str) -> Array:
+    """Square of the moment that the ground gives a sole about its centre, as measured."""
+    return np.asarray(np.sum(run.field("/measurement", f"wrench_{side}")[:, 3:] ** 2, axis=1))
+
+
+def _slip(run: RunView, parts: Sequence[Stage], foot: int) -> Array:
+    """Greatest way of a foot on the ground in each stage, from where its stance began."""
+    way = np.full(run.ticks, np.nan)
+    for slip in stance_slips(run):
+        if slip.foot == foot:
+            way[slip.ticks] = slip.way
+    return np.array([[np.fmax.reduce(way[one.ticks])] for one in parts])
+
+
 def _lag(run: RunView, parts: Sequence[Stage]) -> Array:
     """Time by which the measured normal forces follow the planned ones: where their changes differ least.
 
@@ -206,6 +221,18 @@ def _grip(side: str) -> Sign:
     return Sign((f"friction_{side}",), 3, (0.1, 0.0), "", "grip", words, used, body=True, peak=True)
 
 
+def _pressed(side: str) -> Sign:
+    moment = _each(partial(_moment, side=side), lambda squared: math.sqrt(np.mean(squared)))
+    words = f"moment of the ground on the {side} sole about its centre (RMS) {{stage}}"
+    return Sign((f"moment_{side}",), 3, (0.05, 0.01), "N m", "soles", words, moment, body=True)
+
+
+def _slid(foot: int) -> Sign:
+    side = FOOT_NAMES[foot]
+    words = f"largest way of the {side} foot on the ground {{stage}}"
+    return Sign((f"slip_{side}",), 5, (2e-4, 0.05), "mm", "feet", words, partial(_slip, foot=foot), body=True)
+
+
 SIGNS: tuple[Sign, ...] = (
     Sign(("time",), 3, (0.011, 0.0), "s", "feet", "begin of {label}", _times),
     Sign(("lag",), 4, (1e-3, 0.0), "ms", "feet", _LAG, _lag, body=True),
@@ -213,10 +240,12 @@ SIGNS: tuple[Sign, ...] = (
     Sign(("sole_x", "sole_y", "sole_z"), 4, (1e-3, 0.0), "mm", "soles", _SOLE, _landings),
     Sign(("sole_yaw",), 4, (5e-3, 0.0), "deg", "top-view", _YAW, _landing_yaw),
     Sign(("swing",), 5, (5e-5, 0.05), "mm", "feet", _SWING, _swing_error),
+    *map(_slid, (0, 1)),
     *map(_leg, FOOT_NAMES),
     Sign(("zmp",), 4, (5e-3, 0.05), "mm", "balance", _ZMP, _each(_zmp_error)),
     Sign(("sway",), 5, (2e-4, 0.05), "mm", "balance", _BALANCE, _each(_sway)),
     Sign(("tilt",), 4, (2e-3, 0.05), "deg", "balance", "largest tilt of the torso {stage}", _each(_TILT), body=True),
+    *map(_pressed, FOOT_NAMES),
     Sign(("com_x", "com_y", "com_z"), 4, (2e-3, 0.0), "mm", "balance", "CoM at the end of {label}", _com),
 )
 """What is kept of a run; of those that part in the same stage, the first is nearest to the cause. Torques come late:

@@ -1,6 +1,7 @@
 """Criteria against metrics, and runs that did not come to their end."""
 
 import json
+import math
 from contextlib import suppress
 
 import pytest
@@ -136,3 +137,15 @@ def test_the_record_of_the_end_and_the_data_must_agree(tmp_path, robot, motion, 
     verdict = judged(tmp_path, robot, motion(duration=0.4, fall_at=fall_at, end=end), criteria=criteria)
     assert not verdict.passed
     assert verdict.reasons[0].endswith(reason)
+
+
+@pytest.mark.parametrize("value", [1e-3, -2.5, 0.0, 7.0])
+def test_a_bound_holds_to_the_last_digit(value):
+    """What is at a bound meets it, and the next number beyond does not."""
+    for side, beyond in (("min", -math.inf), ("max", math.inf)):
+        for limit in (value, (value,)):
+            criteria = {"speed_mean": Bound.model_validate({side: limit})}
+            given = [value] if isinstance(limit, tuple) else value
+            over = math.nextafter(value, beyond)
+            assert missed({"speed_mean": given}, criteria) == []
+            assert len(missed({"speed_mean": [over] if isinstance(limit, tuple) else over}, criteria)) == 1

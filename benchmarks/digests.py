@@ -66,6 +66,7 @@ def pushes() -> Iterator[tuple[str, Overrides]]:
     yield "walk", pushed(400, 0.1, 0.3, "left_forearm")
     yield "stairs-up", pushed(500, 0.05, 0.15)
     yield "walk", {**PENDULUM, **pushed(600, 0.2, 0.6)}
+    yield "stand", {**PENDULUM, "pushes": [{"time": 1.0, "duration": 0.1, "force": [400, 0, 0]}]}
 
 
 def sensors() -> Iterator[tuple[str, Overrides]]:

@@ -123,7 +123,7 @@ def ghost_moment_max(run: RunView) -> float:
 
 def _ghost(run: RunView, name: str) -> float:
     ticks = round(PUSH_LASTS * run.constants.similarity.time * run.constants.control_rate)
-    pushed = np.flatnonzero(run.field("/measurement", "external_force").any(axis=1))
+    pushed = np.flatnonzero(np.nan_to_num(run.field("/measurement", "external_force")).any(axis=1))
     quiet = np.ones(run.ticks, dtype=bool)
     for tick in pushed:
         quiet[tick : tick + ticks] = False

@@ -22,6 +22,7 @@ from surefoot.scenarios.file.translate import without
 from surefoot.scenarios.judge.acted import contradictions, idle_commands, not_there, unmet_ground
 from surefoot.scenarios.judge.digest import Digest, RunView
 from surefoot.scenarios.judge.metrics import digest, known, measure
+from surefoot.scenarios.judge.pushed import unacted_pushes
 from surefoot.scenarios.judge.walking import steps_added
 from surefoot.scenarios.log import Log
 from surefoot.scenarios.output import write_whole
@@ -196,6 +197,7 @@ def judge(log: Log, gathered: Digest | None = None) -> Verdict:
     agenda = agenda_of(log, scenario)
     idle = (
         *_unacted(log, agenda, run.constants.control_rate),
+        *unacted_pushes(run),
         *idle_commands(run, scenario.commands),
         *unmet_ground(run),
     )

@@ -23,7 +23,8 @@ class Plant(Protocol):
     The loop calls `reset`, and then in turn `measure` and `act`, once each in a control tick. What a plant raises ends
     the run with a fault that names it. Two methods more are asked only of plants that have them: ``push``, which takes
     a `surefoot.forces.Push` before it begins, and ``read``, which gives `surefoot.Readings` of a `Measurement`
-    and the number of the control tick, to estimators that sense.
+    and the number of the control tick, to estimators that sense. The impulse of a push is judged by the external forces
+    that are measured.
     """
 
     def reset(self, q: Array, v: Array | None = None, torque: Array | None = None) -> None:
@@ -110,7 +111,7 @@ def _measured(joints: int) -> Callable[..., Measurement]:
         for name in ("joint_position", "joint_velocity", "joint_torque"):
             fit(getattr(answer, name), (joints,), name, finite=False)
         fit(answer.wrench, (2, 6), "wrench", finite=False)
-        fit(answer.external_force, (3,), "external_force")
+        fit(answer.external_force, (3,), "external_force", finite=False)
         return answer
 
     return take

@@ -8,6 +8,11 @@ from surefoot.values import dataclass
 Array = NDArray[np.float64]
 
 
+def is_rotation(quaternion: Array) -> bool:
+    """Whether four numbers, shape (4,), are those of a rotation but for rounding."""
+    return bool(0.81 < float(np.vdot(quaternion, quaternion)) < 1.21)
+
+
 @dataclass(frozen=True, slots=True)
 class Measurement:
     """Sensors and truth at one instant; the joint order is that of the robot description.

@@ -3,6 +3,7 @@
 import threading
 from dataclasses import replace
 
+import numpy as np
 import pytest
 
 import surefoot
@@ -19,6 +20,7 @@ from surefoot.sim import World
 
 pytestmark = pytest.mark.unit
 
+TURNED = np.array([[1.0, 0.0], [0.1, 1.0]])
 POINT = {"fidelity": "pendulum", "gait.steps": 2, "criteria": {"fell": False}}
 STANDING = {"gait.steps": 0, "duration": 0.3, "sensing.source": "truth", "criteria": {"fell": False}}
 TIMED = {"time": 0.1, "duration": 0.051, "force": [20.0, 5.0, 0.0]}
@@ -58,7 +60,7 @@ def test_pushes_that_act_pass_and_those_that_do_not_fail(tmp_path, acts, pushes)
         (lambda time, force: 1.5 * force, "1.2 of 0.8 N·s"),
         (lambda time, force: -force, "-0.8 of 0.8 N·s"),
         (lambda time, force: force[::-1], "0 of 0.8 N·s"),
-        (lambda time, force: (force[0] + 0.1 * force[1], force[1]), "0.8 of 0.8 N·s acted of the push at"),
+        (lambda time, force: force @ TURNED, "0.8 of 0.8 N·s acted of the push at"),
     ],
 )
 def test_an_impulse_that_is_another_is_no_pass(tmp_path, acts, how, words):

@@ -77,9 +77,8 @@ def _unknown(name: Any) -> Iterator[Problem]:
 
 
 def _meant(name: str) -> str:
-    return nearest(
-        name, [bounded for metric in map(known, METRICS) if metric is not None for bounded in metric.bounded]
-    )
+    names = [bounded for metric in map(known, METRICS) if metric is not None for bounded in metric.bounded]
+    return f"{nearest(name, names)}{METRICS.hint}"
 
 
 def _usable(name: str) -> Metric[Any]:

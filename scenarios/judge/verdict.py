@@ -2,17 +2,18 @@
 
 import json
 import math
-from collections.abc import Iterator, Mapping
+from collections.abc import Iterable, Iterator, Mapping
 from dataclasses import replace
 from html import escape
 from io import BytesIO
+from itertools import islice
 from pathlib import Path
 from typing import Any
 
 from pydantic import ValidationError
 
 from surefoot.scenarios import palette
-from surefoot.scenarios.errors import LogError, Problem, ScenarioError, nearest
+from surefoot.scenarios.errors import LogError, Problem, ScenarioError, nearest, told_once
 from surefoot.scenarios.file.criteria import Bound
 from surefoot.scenarios.file.dumped import dumped_values
 from surefoot.scenarios.file.names import unknown
@@ -110,6 +111,18 @@ def _degraded(metrics: Mapping[str, Any], added: int) -> Iterator[str]:
         yield f"the whole-body QP needed its second solver at {failures} ticks"
 
 
+_FEW = 20
+"""Reasons of one kind that are told."""
+
+
+def _few(reasons: Iterable[str]) -> Iterator[str]:
+    """The first reasons of a kind, and how many more there are."""
+    found = iter(reasons)
+    yield from islice(found, _FEW)
+    if more := sum(1 for _ in found):
+        yield f"and {more} more like these"
+
+
 _LOSSES_SAID = 3
 _ACCEPTED_ENDS = ("completed", "fall")
 
@@ -197,12 +210,12 @@ def judge(log: Log, gathered: Digest | None = None) -> Verdict:
     agenda = agenda_of(log, scenario)
     idle = (
         *_unacted(log, agenda, run.constants.control_rate),
-        *unacted_pushes(run),
+        *_few(unacted_pushes(run)),
         *idle_commands(run, scenario.commands),
         *unmet_ground(run),
     )
     undone = (*idle, *not_there(measured.values, criteria, size.length))
-    reasons = (*untrue, *map(str, absent), *undone, *missed(measured.values, criteria))
+    reasons = (*untrue, *_few(map(str, told_once(absent))), *undone, *missed(measured.values, criteria))
     skipped = [name for name in scenario.criteria if name not in criteria]
     idle_keys = [note for note in agenda.notes if note not in agenda.standing or not run.has("/command")]
     unasked = (f"criterion {name} is not asked: a pendulum has no such metric" for name in skipped)

@@ -12,7 +12,19 @@ from surefoot.errors import PartError
 from surefoot.guard import Guard, MisfitError, shown
 from surefoot.plugins import Declared, PluginError
 from surefoot.scenarios.errors import LogError, Problem, nearest
-from surefoot.scenarios.judge import balance, computing, effort, feet, health, linked, names, pushed, sensed, walking
+from surefoot.scenarios.judge import (
+    acted,
+    balance,
+    computing,
+    effort,
+    feet,
+    health,
+    linked,
+    names,
+    pushed,
+    sensed,
+    walking,
+)
 from surefoot.scenarios.judge.digest import Digest, Reads, RunView, Source
 from surefoot.scenarios.judge.metric import Metric, Reduction
 from surefoot.scenarios.judge.placed import PLACED
@@ -198,7 +210,7 @@ def digest(log: "Log") -> Digest:
                         failed.add(reduction)  # its metric will say so, computing it anew
         return found
 
-    reads: list[Reads] = [health.READS, PLACED, pushed.READS, *(metric.reads for metric in metrics)]
+    reads: list[Reads] = [health.READS, PLACED, pushed.READS, acted.READS, *(metric.reads for metric in metrics)]
     gathered = Digest(log, constants, reads, reduce)
     for reduction in failed:
         gathered.reduced.forget(reduction)

@@ -20,7 +20,7 @@ from surefoot.scenarios.file.names import unknown
 from surefoot.scenarios.file.schema import Scenario
 from surefoot.scenarios.file.source import decoded
 from surefoot.scenarios.file.translate import without
-from surefoot.scenarios.judge.acted import contradictions, idle_commands, not_there, unmet_ground
+from surefoot.scenarios.judge.acted import bent_commands, contradictions, idle_commands, not_there, unmet_ground
 from surefoot.scenarios.judge.digest import Digest, RunView
 from surefoot.scenarios.judge.metrics import digest, known, measure
 from surefoot.scenarios.judge.pushed import unacted_pushes
@@ -219,7 +219,7 @@ def judge(log: Log, gathered: Digest | None = None) -> Verdict:
     skipped = [name for name in scenario.criteria if name not in criteria]
     idle_keys = [note for note in agenda.notes if note not in agenda.standing or not run.has("/command")]
     unasked = (f"criterion {name} is not asked: a pendulum has no such metric" for name in skipped)
-    said = (*unasked, *idle_keys, *_degraded(measured.values, steps_added(run)), *measured.notes)
+    said = (*unasked, *idle_keys, *bent_commands(run), *_degraded(measured.values, steps_added(run)), *measured.notes)
     return Verdict(not reasons, reasons, said, measured.values, criteria)
 
 

@@ -119,8 +119,13 @@ def _few(reasons: Iterable[str]) -> Iterator[str]:
     """The first reasons of a kind, and how many more there are."""
     found = iter(reasons)
     yield from islice(found, _FEW)
-    if more := sum(1 for _ in found):
-        yield f"and {more} more like these"
+    yield from _more(sum(1 for _ in found))
+
+
+def _more(count: int) -> Iterator[str]:
+    """That there are more reasons of a kind than were told, if there are."""
+    if count > 0:
+        yield f"and {count} more like these"
 
 
 _LOSSES_SAID = 3
@@ -246,8 +251,12 @@ def _known_part(log: Log) -> tuple[Scenario, list[Problem]]:
 
 
 def missed(metrics: Mapping[str, Any], criteria: Mapping[str, Bound]) -> list[str]:
-    """Say which criteria are not met."""
-    return [reason for name, bound in criteria.items() for reason in _missed(name, bound, metrics)]
+    """Say which criteria are not met; of those on metrics that are not known here no more than a few."""
+    unknown = [name for name in criteria if name.partition(".")[0] not in metrics]
+    untold = set(unknown[_FEW:])
+    told = (pair for pair in criteria.items() if pair[0] not in untold)
+    reasons = [reason for name, bound in told for reason in _missed(name, bound, metrics)]
+    return [*reasons, *_more(len(untold))]
 
 
 def _missed(name: str, bound: Bound, metrics: Mapping[str, Any]) -> Iterator[str]:

@@ -8,6 +8,7 @@ import pytest
 
 import surefoot
 from surefoot.scenarios.apps.bridge.host import Care, Host
+from surefoot.scenarios.apps.bridge.line import Disturbance
 from surefoot.scenarios.apps.bridge.remote import Remote, RemotePlant
 from surefoot.scenarios.apps.bridge.serve import Server
 from surefoot.scenarios.apps.bridge.shadow import walk_in_shadow
@@ -106,6 +107,8 @@ def test_a_push_by_hand_is_compared_too_and_again_in_the_run_of_its_log(tmp_path
             while not sim.done:
                 if sim.time == 0.3:
                     sim.push((10.0, 0.0, 0.0), 0.1)
+                if sim.time == 0.55:  # of which the end of the run cuts off half
+                    sim.push((0.0, 10.0, 0.0), 0.1)
                 sim.advance()
         return tmp_path / name
 
@@ -113,8 +116,9 @@ def test_a_push_by_hand_is_compared_too_and_again_in_the_run_of_its_log(tmp_path
     assert judge(surefoot.read(log)).passed
     assert surefoot.run(str(log), out=tmp_path).verdict.passed
     acts(lambda time, force: 0.5 * force)
-    assert judge(surefoot.read(driven("halved.mcap"))).reasons == ("0.5 of 1 N·s acted of the push at 0.3 s",)
-    assert surefoot.run(str(log), out=tmp_path).verdict.reasons == ("0.5 of 1 N·s acted of the push at 0.3 s",)
+    halved = ("0.5 of 1 N·s acted of the push at 0.3 s", "0.25 of 0.5 N·s acted of the push at 0.55 s")
+    assert judge(surefoot.read(driven("halved.mcap"))).reasons == halved
+    assert surefoot.run(str(log), out=tmp_path).verdict.reasons == halved
 
 
 def test_a_log_tells_what_was_asked_of_the_plant(tmp_path):
@@ -162,9 +166,10 @@ def test_a_plant_of_ones_own_is_judged_by_what_it_says_that_acted(tmp_path, shar
     assert surefoot.run(surefoot.load("walk", STANDING), out=tmp_path, parts=parts).verdict.passed
 
 
-def bridged(tmp_path, scenario):
-    """The verdict of a walk on a plant that is served."""
-    server = Server(resolve(surefoot.load("walk", STANDING)), "127.0.0.1", 0, lambda said: None, Care())
+def bridged(tmp_path, scenario, **line):
+    """The verdict of a walk on a plant that is served over a line."""
+    care = Care(Disturbance(**line))
+    server = Server(resolve(surefoot.load("walk", STANDING)), "127.0.0.1", 0, lambda said: None, care)
     serving = threading.Thread(target=server.run, args=(lambda: False,))
     serving.start()
     verdict = walk_on(Remote(server.address, {}), scenario, tmp_path).verdict
@@ -180,6 +185,20 @@ def test_a_push_that_gets_lost_over_the_bridge_is_no_pass(tmp_path, monkeypatch)
     assert bridged(tmp_path, scenario).reasons == ("0.526 of 1.05 N·s acted of the push at 0.1 s",)
     monkeypatch.setattr(RemotePlant, "push", lambda plant, asked: None)
     assert bridged(tmp_path, scenario).reasons == ("0 of 1.05 N·s acted of the push at 0.1 s",)
+
+
+def test_over_a_line_that_is_late_or_loses_states_no_push_is_blamed_for_it(tmp_path, monkeypatch):
+    scenario = surefoot.load("walk", {**STANDING, "pushes": [TIMED]})
+    assert bridged(tmp_path, scenario, delay=0.01).passed
+    (reason,) = bridged(tmp_path, scenario, drop=0.2).reasons
+    assert reason.startswith("the ticks of the log are not 2 ms apart")
+    push = Host.push
+    monkeypatch.setattr(Host, "push", lambda host, asked: push(host, replace(asked, time=asked.time + 0.05)))
+    assert bridged(tmp_path, scenario, delay=0.01).passed
+    monkeypatch.setattr(Host, "push", lambda host, asked: None)
+    assert "0 of 1.05 N·s acted of the push at 0.1 s" in bridged(tmp_path, scenario, delay=0.01).reasons
+    lost = "the push at 0.1 s cannot be told to have acted: ticks of that time are not in the log"
+    assert lost in bridged(tmp_path, scenario, drop=0.2).reasons
 
 
 def test_in_a_shadow_that_acted_which_is_in_its_log(tmp_path):

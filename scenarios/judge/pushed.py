@@ -3,6 +3,7 @@
 from collections.abc import Iterator, Sequence
 
 import numpy as np
+from numpy.typing import NDArray
 
 from surefoot.scenarios.errors import LogError
 from surefoot.scenarios.judge.digest import Array, Mask, Reads, RunView
@@ -21,6 +22,9 @@ ROUNDING = 1e-8
 LATE = 0.1
 """How much later than asked it may act over a line between two processes [s]: by then the joints are damped."""
 
+_EVER = 2.0**62
+"""A time after every run, and the one before all of them, if negative [ns]."""
+
 _NOTHING = 1e-9
 """Share of a tick, and of the sum of the forces' sizes, below which there is nothing [-]."""
 
@@ -30,15 +34,17 @@ class _Acted:
     """What acted in the ticks of a log, of which each message tells one.
 
     Attributes:
-        begin: of each tick, shape (n,) [s].
-        impulse: of its external force, NaN where that was not measured, shape (n, 3) [N·s].
+        stamps: of the messages, shape (n,) [ns].
+        force: mean of the external one over each tick, NaN where it was not measured, shape (n, 3) [N].
         period: of a tick [s].
+        before: from the begin of a tick to its message [s].
         late: how much later than asked a push may act [s].
     """
 
-    begin: Array
-    impulse: Array
+    stamps: NDArray[np.int64]
+    force: Array
     period: float
+    before: float
     late: float
 
     @classmethod
@@ -46,24 +52,30 @@ class _Acted:
         """Of a run in full physics the ticks that end at a message, of a pendulum those that begin at one."""
         topic, period = "/measurement" if run.has("/measurement") else "/truth", 1.0 / run.constants.control_rate
         try:
-            times, force = run.log[topic].time, run.log[topic].field("external_force")
+            stamps, force = run.log[topic].time_ns, run.log[topic].field("external_force")
         except (KeyError, LogError):
             return None
-        if force.shape != (len(times), 3) or not len(times):
+        if force.shape != (len(stamps), 3) or not len(stamps):
             return None
-        begin = times - period if topic == "/measurement" else times
-        return cls(begin, force * period, period, LATE if run.has("/link") else period)
+        before = period if topic == "/measurement" else 0.0
+        return cls(stamps, force, period, before, LATE if run.has("/link") else period)
 
     @property
     def end(self) -> float:
         """Until when the log tells what acted [s]."""
-        return float(self.begin[-1]) + self.period
+        return 1e-9 * int(self.stamps[-1]) - self.before + self.period
 
     def rows(self, begin: float, end: float) -> slice:
         """The ticks that have a part in a time [s]."""
-        some = _NOTHING * self.period
-        first = np.searchsorted(self.begin, begin - self.period + some, side="right")
-        return slice(int(first), int(np.searchsorted(self.begin, end - some)))
+        times = begin - (1.0 - _NOTHING) * self.period, end - _NOTHING * self.period
+        # Of whole numbers, for which no other array is made of the stamps.
+        ends = np.array([min(max(1e9 * (time + self.before), -_EVER), _EVER) for time in times], self.stamps.dtype)
+        first, last = np.searchsorted(self.stamps, ends)
+        return slice(int(first), int(last))
+
+    def begin(self, rows: slice) -> Array:
+        """When ticks begin, shape (k,) [s]."""
+        return np.asarray(1e-9 * self.stamps[rows] - self.before)
 
     def episodes(self, pushes: Sequence[AskedPush]) -> Iterator["_Episode"]:
         """The pushes, in order of time, by what can be told apart: with a tick before and some time after."""
@@ -87,8 +99,8 @@ class _Episode:
     """
 
     def __init__(self, pushes: Sequence[AskedPush], acted: _Acted, rows: slice) -> None:
-        self._pushes, self._all, self._begin = pushes, acted, acted.begin[rows]
-        self._acted, self._asked = acted.impulse[rows], np.zeros((len(self._begin), 3))
+        self._pushes, self._all, self._begin = pushes, acted, acted.begin(rows)
+        self._acted, self._asked = acted.force[rows] * acted.period, np.zeros((len(self._begin), 3))
         most = np.zeros(len(self._begin))
         for push in pushes:
             lasts = self._covered(push)

@@ -258,7 +258,10 @@ def asked_pushes(records: Mapping[str, Mapping[str, str]], log_name: str) -> tup
     told = () if agenda is None else agenda.pushes
     begun = _pushes_of(records, BEGUN_RECORD, log_name)
     given = (replace(push, live=True) for push in _pushes_of(records, PUSH_RECORD, log_name))
-    return tuple(sorted((*told, *begun, *given), key=lambda push: push.time))
+    pushes = (*told, *begun, *given)
+    if not all(math.isfinite(part) for push in pushes for part in (push.time, push.duration, *push.force)):
+        raise LogError(f"{log_name}: tells pushes that are not finite; give a log that `surefoot run` has written")
+    return tuple(sorted(pushes, key=lambda push: push.time))
 
 
 def _pushes_of(records: Mapping[str, Mapping[str, str]], kind: str, log_name: str) -> Iterator[AskedPush]:

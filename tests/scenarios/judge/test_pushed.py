@@ -13,6 +13,7 @@ from surefoot.scenarios.apps.bridge.remote import Remote, RemotePlant
 from surefoot.scenarios.apps.bridge.serve import Server
 from surefoot.scenarios.apps.bridge.shadow import walk_in_shadow
 from surefoot.scenarios.apps.bridge.walk import walk_on
+from surefoot.scenarios.errors import LogError
 from surefoot.scenarios.judge.verdict import judge
 from surefoot.scenarios.record.provenance import BEGUN_RECORD, PUSH_RECORD, AskedPush, asked_pushes
 from surefoot.scenarios.run import pendulum
@@ -131,6 +132,17 @@ def test_a_log_tells_what_was_asked_of_the_plant(tmp_path):
     del log.metadata[f"{BEGUN_RECORD}1"]
     log.metadata[f"{PUSH_RECORD}1"] = AskedPush(0.05, 0.1, (1.0, 0.0, 0.0)).to_metadata()
     assert [push.live for push in asked_pushes(log.metadata, "a.mcap")] == [True, False]
+    for wrong in ('{"time": NaN, "duration": 1, "force": [0, 0, 1]}', '{"time": 1}', "[[", '{"time": 1e999}'):
+        log.metadata[f"{PUSH_RECORD}1"] = {"push": wrong}
+        with pytest.raises(LogError, match=r"a\.mcap: "):
+            asked_pushes(log.metadata, "a.mcap")
+
+
+def test_a_push_at_the_end_of_all_times_is_no_fault_of_the_judge(tmp_path):
+    log = surefoot.read(surefoot.run(surefoot.load("walk", POINT), out=tmp_path).log)
+    for number, (time, lasts) in enumerate([(1e300, 1.0), (0.0, 1e300), (-1e300, 1e301)]):
+        log.metadata[f"{PUSH_RECORD}{number}"] = AskedPush(time, lasts, (1.0, 0.0, 0.0)).to_metadata()
+    assert any("N·s acted of the" in reason for reason in judge(log).reasons)
 
 
 class Own:

@@ -8,6 +8,7 @@ import pinocchio as pin
 
 from surefoot.models.robot_file.imu import find_imu
 from surefoot.models.robot_file.legs import at, find_legs, rest, solved
+from surefoot.models.robot_file.magnitudes import check_figure
 from surefoot.models.robot_file.meshes import decimated
 from surefoot.models.robot_file.reduced import Reduced, reduced
 from surefoot.models.robot_file.schema import RobotFile, matched
@@ -84,6 +85,7 @@ class _Deriver:
         excluded = self._excluded([straight, posture])
         mjcf = robot_text(self._parts(excluded, looks=True))
         com_height = self._com_height(posture)
+        self._check_figure(com_height)
         description = self._description(mjcf, straight, posture, com_height, excluded)
         self._say(description, excluded)
         return Derived(description, tuple(self.lines), tuple(self.reduced.notes))
@@ -195,6 +197,11 @@ class _Deriver:
         com = pin.centerOfMass(self.model, data, q)
         leg = self.legs[0]
         return float(com[2] - (data.oMi[leg.joints[-1]] * leg.sole.placement).translation[2])
+
+    def _check_figure(self, com_height: float) -> None:
+        sole = self.sole[0], self.sole[1]
+        centre = max(float(np.linalg.norm(leg.sole.placement.translation)) for leg in self.legs)
+        check_figure(self.file.name, self.leg_length, centre, sole, com_height)
 
     def _meeting(self, excluded: list[tuple[str, str]]) -> list[tuple[int, int]]:
         """Limbs that can meet, but for those that overlap for good."""

@@ -7,6 +7,7 @@ import numpy as np
 import pinocchio as pin
 
 from surefoot.engine import mujoco
+from surefoot.models.robot_file.magnitudes import Part
 from surefoot.models.robot_file.mesh_file import binary_stl, burden, mesh_content, triangles
 from surefoot.models.robot_file.meshes import thinned
 from surefoot.models.robot_file.mjcf import Assembled
@@ -179,7 +180,7 @@ class _Reader:
             if mj.body_rootid[body] == self._root:
                 self._add_body(body)
         self._add_sites()
-        source = Source(self._model, (), (), (), self._notes)
+        source = Source(self._model, (), (), (), tuple(map(self._part, self._place)), self._notes)
         self._add_limits()
         self._add_shapes(source)
         if mj.dof_damping[6:].any() or mj.dof_frictionloss[6:].any():
@@ -247,6 +248,11 @@ class _Reader:
         about = R @ np.diag(mj.body_inertia[body]) @ R.T
         repaired = physical(about, float(mj.body_mass[body]), name, self._file, self._path, self._notes)
         return pin.Inertia(float(mj.body_mass[body]), mj.body_ipos[body], about if repaired is None else repaired)
+
+    def _part(self, body: int) -> Part:
+        mj = self._mj
+        moment = float(mj.body_inertia[body].max())
+        return Part(self._name(body), float(mj.body_mass[body]), np.array(mj.body_ipos[body]), moment)
 
     def _add_limits(self) -> None:
         """Torques from the motors; of speeds an MJCF knows nothing."""

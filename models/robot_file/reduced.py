@@ -8,6 +8,7 @@ import pinocchio as pin
 
 from surefoot.models.joints import is_revolute
 from surefoot.models.robot_file.files import srdf_of
+from surefoot.models.robot_file.magnitudes import check_joints
 from surefoot.models.robot_file.motors import read_srdf, require_limits, set_armature, set_limits
 from surefoot.models.robot_file.schema import RobotFile, matched
 from surefoot.models.robot_file.shapes import Shape, placed
@@ -100,6 +101,7 @@ def reduced(file: RobotFile, source: Source, path: Path) -> Reduced:
     model = _without(full, list(locked), q)
     model.name = file.name
     require_limits(model, notes)
+    notes += check_joints(model)
     frames = tuple(frame_of(model, link, "feet") for link in (feet.left, feet.right))
     turned = _turn(model, frames, file, notes)
     bodies = _bodies(full, tuple(model.names)[1:])

@@ -12,7 +12,6 @@ import pinocchio as pin
 from surefoot.models.robot_file.mesh_file import colour_in_file, read_mesh
 from surefoot.models.robot_file.meshes import Faces, hull
 from surefoot.models.robot_file.paths import is_file, resolve
-from surefoot.models.robot_file.quantities import LENGTH
 from surefoot.models.types import Array, RobotError
 from surefoot.values import dataclass
 
@@ -41,12 +40,6 @@ class Shape:
     vertices: Array
     faces: Faces
     rgba: Colour = GREY
-
-    def __post_init__(self) -> None:
-        """Refuse what no engine can hold."""
-        if not np.abs(self.vertices).max(initial=0.0) <= LENGTH:
-            what = f"a shape of link '{self.link}' reaches beyond {LENGTH:g} m"
-            raise RobotError(("model",), what, "give its lengths in metres, or a scale")
 
 
 def require_moderate(shapes: Sequence[Shape]) -> None:

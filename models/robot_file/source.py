@@ -9,6 +9,7 @@ import numpy as np
 import pinocchio as pin
 
 from surefoot.models.robot_file.files import Document, read_document
+from surefoot.models.robot_file.magnitudes import Part, check_parts
 from surefoot.models.robot_file.quantities import INERTIA, LENGTH, MASS
 from surefoot.models.robot_file.schema import RobotFile
 from surefoot.models.robot_file.shapes import Shape, urdf_shapes
@@ -37,6 +38,7 @@ class Source:
         visual: what is drawn.
         collision: what touches.
         mimics: joints that follow others.
+        parts: its links, as the file has them.
         notes: what was altered or left out while reading.
     """
 
@@ -44,6 +46,7 @@ class Source:
     visual: tuple[Shape, ...]
     collision: tuple[Shape, ...]
     mimics: tuple[str, ...] = ()
+    parts: tuple[Part, ...] = ()
     notes: list[str] = field(default_factory=list)
 
 
@@ -61,13 +64,15 @@ def read_source(file: RobotFile, path: Path) -> Source:
 
         source = read_mjcf(file, path, document.mjcf)
     _check_parts(source.model, path)
+    source.visual, remarks = check_parts(source.model, source.parts, source.visual, source.collision, str(path))
+    source.notes += remarks
     return source
 
 
 def _read_urdf(file: RobotFile, document: Document) -> Source:
     root, path, source_notes = document.root, document.path, list[str]()
     mimics = tuple(_mended_joints(root, source_notes))
-    _check_inertias(root, file, path, source_notes)
+    parts = tuple(_checked_inertias(root, file, path, source_notes))
     visual = urdf_shapes(root, path, "visual", source_notes)
     collision = urdf_shapes(root, path, "collision", source_notes, visual)
     try:
@@ -75,7 +80,7 @@ def _read_urdf(file: RobotFile, document: Document) -> Source:
     except Exception as error:
         raise RobotError(("model",), f"{path}: {_one_line(error)}", "mend it, so that Pinocchio can read it") from None
     model.name = file.name
-    return Source(model, visual, collision, mimics, source_notes)
+    return Source(model, visual, collision, mimics, parts, source_notes)
 
 
 def _check_parts(model: pin.Model, path: Path) -> None:
@@ -125,8 +130,8 @@ def _mended_joints(root: ElementTree.Element, notes: list[str]) -> Iterator[str]
             yield name
 
 
-def _check_inertias(root: ElementTree.Element, file: RobotFile, path: Path, notes: list[str]) -> None:
-    """Refuse or repair what no body can have.
+def _checked_inertias(root: ElementTree.Element, file: RobotFile, path: Path, notes: list[str]) -> Iterator[Part]:
+    """Refuse or repair what no body can have; yields links as the file has them.
 
     Raises:
         RobotError: an inertia is unphysical and not to be repaired.
@@ -138,7 +143,11 @@ def _check_inertias(root: ElementTree.Element, file: RobotFile, path: Path, note
             continue
         name, kilograms = link.get("name", ""), float(mass.get("value", "0"))
         xx, xy, xz, yy, yz, zz = (float(inertia.get(part, "0")) for part in ("ixx", "ixy", "ixz", "iyy", "iyz", "izz"))
-        repaired = physical(np.array([[xx, xy, xz], [xy, yy, yz], [xz, yz, zz]]), kilograms, name, file, path, notes)
+        about = np.array([[xx, xy, xz], [xy, yy, yz], [xz, yz, zz]])
+        repaired = physical(about, kilograms, name, file, path, notes)
+        origin = inertial.find("origin")
+        com = np.array([float(part) for part in ("" if origin is None else origin.get("xyz", "")).split()] or [0.0] * 3)
+        yield Part(name, kilograms, com, float(np.linalg.eigvalsh(about)[2]))
         if repaired is not None:
             for part, (i, j) in {
                 "ixx": (0, 0),

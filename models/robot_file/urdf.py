@@ -100,7 +100,7 @@ def _end(joint: Node, name: str, end: str, links: dict[str, Node]) -> str:
 def _check_chain(links: dict[str, Node], above: dict[str, str], name: str) -> None:
     """Refuse a link from which the way up comes back to it."""
     at = name
-    for _ in above:
+    for _ in range(len(above) + 1):
         if (at := above.get(at, "")) in ("", name):
             break
     if at:

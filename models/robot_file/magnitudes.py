@@ -1,0 +1,332 @@
+"""Sizes that no robot has, told by the robot itself: each number of a part against the size or the mass of the whole.
+
+A number in another unit is off by a factor of ten and more, while what robots are made of is alike at every size. So
+each law is a ratio, and its bound lies between the farthest of some 130 public models and the nearest unit that is none
+of ours. The farthest of them stand in the table of docs/robot-files.md.
+"""
+
+import math
+from collections.abc import Iterator, Sequence
+
+import numpy as np
+import pinocchio as pin
+
+from surefoot.models.robot_file.shapes import Shape, placed
+from surefoot.models.types import Array, RobotError
+from surefoot.values import dataclass
+
+Units = tuple[tuple[float, str], ...]
+"""Units in which a number may be instead, each with the factor that it makes of the ratio."""
+
+LENGTHS: Units = ((39.37, "inches"), (100.0, "centimetres"), (1000.0, "millimetres"))
+MASSES: Units = ((1000.0, "grams"), (1e-3, "tonnes"))
+ANGLES: Units = ((180.0 / math.pi, "degrees"),)
+TORQUES: Units = ((1000.0, "N mm"),)
+SPEEDS: Units = ((180.0 / math.pi, "deg/s"), (30.0 / math.pi, "turns a minute"))
+INERTIAS: Units = ((1e2, "kg cm^2"), (1e3, "kg mm^2"), (3.2e3, "g cm^2"), (3.2e4, "g mm^2"))
+"""Of a radius of gyration, which grows with the root of the moment."""
+
+
+@dataclass(frozen=True, slots=True)
+class Law:
+    """What a ratio may be.
+
+    Attributes:
+        quantity: what is measured, as a sentence begins with it.
+        unit: of the number that is told.
+        over: what it is measured by, with its size as ``{}``.
+        most: largest ratio of a robot.
+        usual: ratio of most robots, by which the unit is guessed.
+        units: in which the number may be instead; none where nobody can say.
+        least: smallest ratio.
+    """
+
+    quantity: str
+    unit: str
+    over: str
+    most: float
+    usual: float
+    units: Units = ()
+    least: float = 0.0
+
+    def holds(self, value: float, size: float) -> bool:
+        """Say whether a number is of a robot of that size."""
+        return self.least * size <= value <= self.most * size
+
+    def told(self, what: str, value: float, size: float) -> tuple[str, str]:
+        """A number that is of no robot, and what would be right."""
+        ratio = value / size if size > 0.0 else math.inf
+        over = self.over.format(f"{size:.3g}")
+        bound = f"at least {self.least * size:.3g}" if ratio < self.least else f"at most {self.most * size:.3g}"
+        said = f"the {self.quantity} of {what} is {value:.3g} {self.unit}, {ratio:.3g} times {over}"
+        return said, f"give {bound} {self.unit}{self._likely(ratio)}"
+
+    def _likely(self, ratio: float) -> str:
+        """The unit whose factor is the nearest to what the number is off by."""
+        if not self.units or not 0.0 < ratio < math.inf:
+            return ""
+        off = math.log(ratio / self.usual)
+        factor, unit = min(self.units, key=lambda one: abs(math.log(one[0]) - off))
+        return f"; it is likely in {unit}" if abs(math.log(factor) - off) < 0.6 * abs(math.log(factor)) else ""
+
+
+_SPAN = "the {} m from end to end of its joints"
+APART = Law("distance from the joint before", "m", _SPAN, 0.75, 0.2, LENGTHS)
+LONG = Law("size", "m", "the {} m of a robot of its mass", 5.0, 1.0, LENGTHS)
+HEAVY = Law("mass", "kg", "the {} kg of a robot of its size", 30.0, 1.0, MASSES)
+SHARE = Law("mass", "kg", "the {} kg of all other links", 8.0, 0.05, MASSES)
+DENSE = Law("mass", "kg", "the {} kg of a cube of water as wide as its shapes", 30.0, 0.2, MASSES)
+EXTENT = Law("extent of a shape", "m", _SPAN, 4.0, 0.2, LENGTHS)
+LEVER = Law("distance of the centre of mass from its shapes and joints", "m", _SPAN, 0.4, 0.1, LENGTHS)
+GYRATION = Law("radius of gyration", "m", _SPAN, 1.5, 0.05, INERTIAS)
+SPREAD = Law("radius of gyration", "m", "the {} m across its shapes", 1.5, 0.3, INERTIAS)
+TURN = Law("range", "rad", "a turn of {} rad", 1.01, 0.3, ANGLES)
+ROTOR = Law("armature", "kg m^2", "the {} kg m^2 of its mass at its size", 0.3, 1e-3)
+TORQUE = Law("torque limit", "N m", "the {} N m of its weight at its size", 30.0, 0.3, TORQUES)
+SPEED = Law("velocity limit", "rad/s", "the {} rad/s of fast joints", 1.0, 0.1, SPEEDS)
+CENTRE = Law("distance of the sole's centre from the ankle", "m", "the {} m from hip to ankle", 0.6, 0.1, LENGTHS)
+LENGTH = Law("sole's length", "m", "the {} m of the legs", 1.0, 0.25, LENGTHS, 0.04)
+WIDTH = Law("sole's width", "m", "the {} m of the legs", 1.0, 0.12, LENGTHS, 0.02)
+COM = Law("CoM height in walking", "m", "the {} m of the legs", 2.0, 1.0, LENGTHS, 0.4)
+
+FEWEST = 8
+"""Joints that two legs have; what has fewer is refused for that."""
+
+_CUBIC = 20.0
+"""Mass of a humanoid over the cube of the distance from end to end of its joints: 7 to 70 in most [kg/m^3]."""
+
+_WATER = 1000.0
+"""Density [kg/m^3]."""
+
+_WEIGHTY, _MASSIVE, _TURNING = 1e-3, 5e-3, 1e-3
+"""Share of the mass from which on a CoM counts, a density counts, and of mass and size squared an inertia [-]."""
+
+_ENDLESS = 1e3
+"""Angle as large stands for no stop in models that other programs wrote, as 1e9 does [rad]."""
+
+_FAST = 100.0
+"""Speed of fast joints [rad/s]."""
+
+_GRAVITY = 9.81
+"""[m/s^2]"""
+
+
+@dataclass(frozen=True, slots=True)
+class Part:
+    """A link as its file has it.
+
+    Attributes:
+        link: its name.
+        mass: of it [kg].
+        com: in its frame, shape (3,) [m].
+        moment: largest moment of inertia about its CoM [kg m^2].
+    """
+
+    link: str
+    mass: float
+    com: Array
+    moment: float
+
+
+def check_parts(
+    model: pin.Model, parts: Sequence[Part], drawn: Sequence[Shape], touching: Sequence[Shape], place: str
+) -> tuple[tuple[Shape, ...], list[str]]:
+    """Hold the parts of a model against the whole.
+
+    Args:
+        model: joint 1 is the floating base.
+        parts: its links.
+        drawn: what is drawn of it.
+        touching: what touches.
+        place: its file, for messages.
+
+    Returns:
+        what is drawn of a size that it can have, and what is remarked.
+
+    Raises:
+        RobotError: a number is of no robot.
+    """
+    whole = _Whole(model, parts)
+    if model.njoints - 2 < FEWEST or not whole.mass > 0.0:
+        return tuple(drawn), []
+    for refused in whole.refused(touching):
+        raise RobotError(("model",), f"{place}: {refused[0]}", refused[1])
+    seen = tuple(shape for shape in drawn if EXTENT.holds(_extent(shape), whole.span))
+    notes = [f"left out of what is drawn: {what}" for what in whole.too_large(drawn, seen)]
+    for refused in whole.astray((*seen, *touching)):
+        raise RobotError(("model",), f"{place}: {refused[0]}", refused[1])
+    return seen, [*notes, *whole.remarked((*seen, *touching))]
+
+
+def check_joints(model: pin.Model) -> list[str]:
+    """Hold limits and rotors of the driven joints against the robot; ranges that stand for none become a turn.
+
+    Args:
+        model: altered in place; joint 1 is the floating base, all others are driven.
+
+    Returns:
+        what is remarked.
+
+    Raises:
+        RobotError: a number is of no robot.
+    """
+    data = model.createData()
+    pin.forwardKinematics(model, data, pin.neutral(model))
+    span = float(np.linalg.norm(np.ptp([data.oMi[joint].translation for joint in range(1, model.njoints)], axis=0)))
+    mass = sum(inertia.mass for inertia in model.inertias)
+    notes = _bounded(model)
+    names = tuple(model.names)[2:]
+    ends = np.maximum(np.abs(model.lowerPositionLimit[7:]), np.abs(model.upperPositionLimit[7:]))
+    sizes = {
+        TURN: (("model",), ends, math.tau),
+        ROTOR: (("armature",), model.armature[6:], mass * span**2),
+    }
+    for law, (key, values, size) in sizes.items():
+        worst = int(np.argmax(values))
+        if not law.holds(float(values[worst]), size):
+            what, right = law.told(f"joint '{names[worst]}' of {model.name}", float(values[worst]), size)
+            raise RobotError(key, what, right)
+    for law, values, size in (
+        (TORQUE, model.upperEffortLimit[6:], mass * _GRAVITY * span),
+        (SPEED, model.upperVelocityLimit[6:], _FAST),
+    ):
+        wrong = [joint for joint in range(len(names)) if not law.holds(float(values[joint]), size)]
+        if wrong:
+            others = f" and {len(wrong) - 1} more" if len(wrong) > 1 else ""
+            notes.append("; ".join(law.told(f"joint '{names[wrong[0]]}'{others}", float(values[wrong[0]]), size)))
+    return notes
+
+
+def _bounded(model: pin.Model) -> list[str]:
+    """One turn either way for joints whose ends are as large as those that stand for none; tells which."""
+    lower, upper = np.array(model.lowerPositionLimit), np.array(model.upperPositionLimit)
+    endless = (lower < -_ENDLESS) | (upper > _ENDLESS)
+    endless[:7] = False
+    names = [str(model.names[at - 5]) for at in np.flatnonzero(endless)]
+    lower[endless], upper[endless] = np.maximum(lower[endless], -math.tau), np.minimum(upper[endless], math.tau)
+    model.lowerPositionLimit, model.upperPositionLimit = lower, upper
+    return [f"joints turn without end in the model and one turn either way here: {', '.join(names)}"] if names else []
+
+
+def check_figure(robot: str, leg_length: float, centre: float, sole: tuple[float, float], com_height: float) -> None:
+    """Hold soles and CoM, given or derived, against the legs.
+
+    Args:
+        robot: its name, for messages.
+        leg_length: hip centre to sole [m].
+        centre: from the ankle's joint to the centre of the sole [m].
+        sole: length and width [m].
+        com_height: of the CoM above the soles in walking [m].
+
+    Raises:
+        RobotError: a number is of no robot.
+    """
+    hip_to_ankle = max(leg_length - centre, 0.0)
+    for law, key, value, size in (
+        (CENTRE, "sole", centre, hip_to_ankle),
+        (LENGTH, "sole", sole[0], leg_length),
+        (WIDTH, "sole", sole[1], leg_length),
+        (COM, "com_height", com_height, leg_length),
+    ):
+        if not law.holds(value, size):
+            raise RobotError((key,), *law.told(robot, value, size))
+
+
+class _Whole:
+    """A model with its size and its mass."""
+
+    def __init__(self, model: pin.Model, parts: Sequence[Part]) -> None:
+        self._model, self._parts = model, parts
+        self._links = {f.name: f for f in model.frames if f.type == pin.FrameType.BODY}
+        data = model.createData()
+        pin.forwardKinematics(model, data, pin.neutral(model))
+        places = np.array([data.oMi[joint].translation for joint in range(1, model.njoints)])
+        self.span = float(np.linalg.norm(np.ptp(places, axis=0)))
+        self.mass = sum(part.mass for part in parts)
+
+    def refused(self, touching: Sequence[Shape]) -> Iterator[tuple[str, str]]:
+        """Joints too far apart, masses that are none, and shapes that are too large to touch."""
+        joints = range(2, self._model.njoints)
+        apart = {joint: float(np.linalg.norm(self._model.jointPlacements[joint].translation)) for joint in joints}
+        far = max(apart, key=lambda joint: apart[joint])
+        if not APART.holds(apart[far], self.span):
+            yield APART.told(f"joint '{self._model.names[far]}'", apart[far], self.span)
+        heaviest = max(self._parts, key=lambda part: part.mass)
+        if not SHARE.holds(heaviest.mass, self.mass - heaviest.mass):
+            yield SHARE.told(f"link '{heaviest.link}'", heaviest.mass, self.mass - heaviest.mass)
+        usual = math.cbrt(self.mass / _CUBIC)
+        if not LONG.holds(self.span, usual):
+            what = f"the robot, with {apart[far]:.3g} m to joint '{self._model.names[far]}',"
+            yield LONG.told(what, self.span, usual)
+        for shape in touching:
+            if not EXTENT.holds(_extent(shape), self.span):
+                yield EXTENT.told(f"link '{shape.link}'", _extent(shape), self.span)
+
+    def too_large(self, drawn: Sequence[Shape], seen: Sequence[Shape]) -> Iterator[str]:
+        """What is drawn and not seen, one sentence for each link."""
+        kept = {id(shape) for shape in seen}
+        for shape in {shape.link: shape for shape in drawn if id(shape) not in kept}.values():
+            yield "; ".join(EXTENT.told(f"link '{shape.link}'", _extent(shape), self.span))
+
+    def astray(self, shapes: Sequence[Shape]) -> Iterator[tuple[str, str]]:
+        """Links that are too dense, and whose mass is where they are not, or spread over more than there is of them."""
+        boxes = self._boxes(shapes)
+        for part in self._parts:
+            joint, what = self._joint(part), f"link '{part.link}'"
+            box = boxes.get(joint)
+            cube = 0.0 if box is None else _WATER * float(np.linalg.norm(np.ptp(box, axis=0))) ** 3
+            if cube and part.mass > _MASSIVE * self.mass and not DENSE.holds(part.mass, cube):
+                yield DENSE.told(what, part.mass, cube)
+            outside = self._outside(part, box)
+            if part.mass > _WEIGHTY * self.mass and not LEVER.holds(outside, self.span):
+                yield LEVER.told(what, outside, self.span)
+            radius = math.sqrt(part.moment / part.mass) if part.mass else 0.0
+            counts = part.moment > _TURNING * self.mass * self.span**2
+            if counts and not GYRATION.holds(radius, self.span):
+                yield GYRATION.told(what, radius, self.span)
+        usual, heaviest = _CUBIC * self.span**3, max(self._parts, key=lambda part: part.mass)
+        if not HEAVY.holds(self.mass, usual):
+            what = f"the robot, with {heaviest.mass:.3g} kg of link '{heaviest.link}',"
+            yield HEAVY.told(what, self.mass, usual)
+
+    def remarked(self, shapes: Sequence[Shape]) -> Iterator[str]:
+        """Links whose mass is spread over more than their shapes."""
+        boxes = self._boxes(shapes)
+        for part in self._parts:
+            box = boxes.get(self._joint(part))
+            if box is None or part.mass <= _MASSIVE * self.mass:
+                continue
+            radius, across = math.sqrt(part.moment / part.mass), float(np.linalg.norm(np.ptp(box, axis=0)))
+            if not SPREAD.holds(radius, across):
+                yield SPREAD.told(f"link '{part.link}'", radius, across)[0]
+
+    def _joint(self, part: Part) -> int:
+        return int(self._links[part.link].parentJoint)
+
+    def _boxes(self, shapes: Sequence[Shape]) -> dict[int, Array]:
+        """Corners of the box around the shapes of each joint, in its frame, shape (2, 3) [m]."""
+        found: dict[int, list[Array]] = {}
+        for shape in shapes:
+            if len(shape.vertices):
+                frame = self._links[shape.link]
+                found.setdefault(frame.parentJoint, []).append(placed(shape.vertices, frame.placement))
+        return {joint: _box(np.concatenate(points)) for joint, points in found.items()}
+
+    def _outside(self, part: Part, box: Array | None) -> float:
+        """How far a CoM is from the box around a link's shapes, its joint and the joints that it carries [m]."""
+        joint, model = self._joint(part), self._model
+        ends = [model.jointPlacements[child].translation for child in model.children[joint]]
+        low, high = _box(np.vstack((np.zeros((1, 3)), *ends, *(() if box is None else box))))
+        com = self._links[part.link].placement.act(part.com)
+        return float(np.linalg.norm(np.maximum(0.0, np.maximum(low - com, com - high))))
+
+
+def _box(points: Array) -> Array:
+    return np.array((points.min(axis=0), points.max(axis=0)))
+
+
+def _extent(shape: Shape) -> float:
+    """Of a shape from the frame of its link, so that one that is far away counts as well [m]."""
+    if not np.isfinite(shape.vertices).all():
+        return math.inf
+    return float(np.abs(shape.vertices).max(initial=0.0))

@@ -164,6 +164,13 @@ class Node(ElementTree.Element):
         """Its children."""
         return [child for child in self if isinstance(child, Node)]
 
+    def child(self, tag: str) -> "Node":
+        """A new child at its place."""
+        node = Node(tag)
+        node.file, node.line = self.file, self.line
+        self.append(node)
+        return node
+
     def elements(self) -> "Iterator[Node]":
         """Itself and all below it."""
         yield from (node for node in self.iter() if isinstance(node, Node))

@@ -65,9 +65,13 @@ REQUIRED = {
     "capsule": ("radius", "length"),
     "mesh": ("filename",),
     "mass": ("value",),
+    "inertia": ("ixx", "ixy", "ixz", "iyy", "iyz", "izz"),
     "axis": ("xyz",),
 }
 """Attributes of a URDF without which an element says nothing."""
+
+HOLDS = {"inertial": ("mass", "inertia")}
+"""Elements of a URDF without which one says nothing."""
 
 MJCF = {
     **dict.fromkeys(("pos", "fromto", "refpos"), Quantity(LENGTH, "m")),

@@ -8,6 +8,7 @@ from xml.etree import ElementTree
 import numpy as np
 import pinocchio as pin
 
+from surefoot.models.robot_file.document import Node
 from surefoot.models.robot_file.files import Document, read_document
 from surefoot.models.robot_file.magnitudes import Part, check_parts
 from surefoot.models.robot_file.quantities import INERTIA, LENGTH, MASS
@@ -113,15 +114,20 @@ def _one_line(error: Exception) -> str:
     return " ".join(str(error).split())[:200] or type(error).__name__
 
 
-def _mended_joints(root: ElementTree.Element, notes: list[str]) -> Iterator[str]:
-    """Bound joints that turn without end, since both engines then have one angle for each; yields those that mimic."""
-    for joint in root.findall("joint"):
-        name = joint.get("name", "")
-        if joint.get("type") == "continuous":
+def _mended_joints(root: Node, notes: list[str]) -> Iterator[str]:
+    """Bound joints that turn without end, since both engines then have one angle for each; yields those that mimic.
+
+    A limit that is not there is zero, which says that a joint has no torque, no speed or no range.
+    """
+    for joint in (node for node in root.nodes if node.tag == "joint"):
+        name, kind = joint.get("name", ""), joint.get("type")
+        limit = joint.find("limit")
+        if limit is None and kind in ("continuous", "revolute", "prismatic"):
+            limit = joint.child("limit")
+        if limit is not None:
+            limit.attrib |= {"effort": "0", "velocity": "0", **limit.attrib}
+        if kind == "continuous" and limit is not None:
             joint.set("type", "revolute")
-            limit = joint.find("limit")
-            if limit is None:
-                limit = ElementTree.SubElement(joint, "limit", effort="0", velocity="0")
             limit.attrib |= {"lower": str(-2 * np.pi), "upper": str(2 * np.pi)}
             notes.append(f"joint '{name}' turns without end in the model and one turn either way here")
         mimic = joint.find("mimic")

@@ -39,16 +39,18 @@ class Source:
         visual: what is drawn.
         collision: what touches.
         mimics: joints that follow others.
+        notes: what was altered while reading.
+        left_out: elements of the file that the robot has not, each line beginning with "left out: ".
         parts: its links, as the file has them.
-        notes: what was altered or left out while reading.
     """
 
     model: pin.Model
     visual: tuple[Shape, ...]
     collision: tuple[Shape, ...]
     mimics: tuple[str, ...] = ()
-    parts: tuple[Part, ...] = ()
     notes: list[str] = field(default_factory=list)
+    left_out: list[str] = field(default_factory=list)
+    parts: tuple[Part, ...] = ()
 
 
 def read_source(file: RobotFile, path: Path) -> Source:
@@ -81,7 +83,7 @@ def _read_urdf(file: RobotFile, document: Document) -> Source:
     except Exception as error:
         raise RobotError(("model",), f"{path}: {_one_line(error)}", "mend it, so that Pinocchio can read it") from None
     model.name = file.name
-    return Source(model, visual, collision, mimics, parts, source_notes)
+    return Source(model, visual, collision, mimics, source_notes, parts=parts)
 
 
 def _check_parts(model: pin.Model, path: Path) -> None:

@@ -128,9 +128,24 @@ class Part:
     moment: float
 
 
+@dataclass(frozen=True, slots=True)
+class Held:
+    """What came of a model that was held against itself.
+
+    Attributes:
+        drawn: shapes of a size that they can have.
+        left_out: others, one line each link.
+        notes: what is remarked.
+    """
+
+    drawn: tuple[Shape, ...]
+    left_out: tuple[str, ...] = ()
+    notes: tuple[str, ...] = ()
+
+
 def check_parts(
     model: pin.Model, parts: Sequence[Part], drawn: Sequence[Shape], touching: Sequence[Shape], place: str
-) -> tuple[tuple[Shape, ...], list[str]]:
+) -> Held:
     """Hold the parts of a model against the whole.
 
     Args:
@@ -140,22 +155,25 @@ def check_parts(
         touching: what touches.
         place: its file, for messages.
 
-    Returns:
-        what is drawn of a size that it can have, and what is remarked.
-
     Raises:
         RobotError: a number is of no robot.
     """
     whole = _Whole(model, parts)
     if model.njoints - 2 < FEWEST or not whole.mass > 0.0:
-        return tuple(drawn), []
-    for refused in whole.refused(touching):
-        raise RobotError(("model",), f"{place}: {refused[0]}", refused[1])
+        return Held(tuple(drawn))
+    _refuse(whole.apart(touching), place)
     seen = tuple(shape for shape in drawn if EXTENT.holds(_extent(shape), whole.span))
-    notes = [f"left out of what is drawn: {what}" for what in whole.too_large(drawn, seen)]
-    for refused in whole.astray((*seen, *touching)):
-        raise RobotError(("model",), f"{place}: {refused[0]}", refused[1])
-    return seen, [*notes, *whole.remarked((*seen, *touching))]
+    unseen = {shape.link: shape for shape in drawn if not EXTENT.holds(_extent(shape), whole.span)}
+    _refuse(whole.astray((*seen, *touching)), place)
+    left_out = ("; ".join(EXTENT.told(f"link '{link}'", _extent(one), whole.span)) for link, one in unseen.items())
+    notes = whole.remarked((*seen, *touching))
+    return Held(seen, tuple(f"left out: what is drawn, since {what}" for what in left_out), tuple(notes))
+
+
+def _refuse(faults: Iterator[tuple[str, str]], place: str) -> None:
+    """Refuse the first of some faults, each with what would be right."""
+    for what, right in faults:
+        raise RobotError(("model",), f"{place}: {what}", right)
 
 
 def check_joints(model: pin.Model) -> list[str]:
@@ -244,7 +262,7 @@ class _Whole:
         self.span = float(np.linalg.norm(np.ptp(places, axis=0)))
         self.mass = sum(part.mass for part in parts)
 
-    def refused(self, touching: Sequence[Shape]) -> Iterator[tuple[str, str]]:
+    def apart(self, touching: Sequence[Shape]) -> Iterator[tuple[str, str]]:
         """Joints too far apart, masses that are none, and shapes that are too large to touch."""
         joints = range(2, self._model.njoints)
         apart = {joint: float(np.linalg.norm(self._model.jointPlacements[joint].translation)) for joint in joints}
@@ -261,12 +279,6 @@ class _Whole:
         for shape in touching:
             if not EXTENT.holds(_extent(shape), self.span):
                 yield EXTENT.told(f"link '{shape.link}'", _extent(shape), self.span)
-
-    def too_large(self, drawn: Sequence[Shape], seen: Sequence[Shape]) -> Iterator[str]:
-        """What is drawn and not seen, one sentence for each link."""
-        kept = {id(shape) for shape in seen}
-        for shape in {shape.link: shape for shape in drawn if id(shape) not in kept}.values():
-            yield "; ".join(EXTENT.told(f"link '{shape.link}'", _extent(shape), self.span))
 
     def astray(self, shapes: Sequence[Shape]) -> Iterator[tuple[str, str]]:
         """Links that are too dense, and whose mass is where they are not, or spread over more than there is of them."""

@@ -13,7 +13,7 @@ from surefoot.models.robot_file.files import Document, read_document
 from surefoot.models.robot_file.magnitudes import Part, check_parts
 from surefoot.models.robot_file.quantities import INERTIA, LENGTH, MASS
 from surefoot.models.robot_file.schema import RobotFile
-from surefoot.models.robot_file.shapes import Shape, urdf_shapes
+from surefoot.models.robot_file.shapes import Shape, Told, urdf_shapes
 from surefoot.models.robot_file.urdf import kinematics
 from surefoot.models.types import Array, RobotError
 
@@ -67,23 +67,26 @@ def read_source(file: RobotFile, path: Path) -> Source:
 
         source = read_mjcf(file, path, document.mjcf)
     _check_parts(source.model, path)
-    source.visual, remarks = check_parts(source.model, source.parts, source.visual, source.collision, str(path))
-    source.notes += remarks
+    held = check_parts(source.model, source.parts, source.visual, source.collision, str(path))
+    source.visual = held.drawn
+    source.left_out += held.left_out
+    source.notes += held.notes
     return source
 
 
 def _read_urdf(file: RobotFile, document: Document) -> Source:
-    root, path, source_notes = document.root, document.path, list[str]()
+    root, path, source_notes, left_out = document.root, document.path, list[str](), list[str]()
     mimics = tuple(_mended_joints(root, source_notes))
     parts = tuple(_checked_inertias(root, file, path, source_notes))
-    visual = urdf_shapes(root, path, "visual", source_notes)
-    collision = urdf_shapes(root, path, "collision", source_notes, visual)
+    told = Told(source_notes, left_out)
+    visual = urdf_shapes(root, path, "visual", told)
+    collision = urdf_shapes(root, path, "collision", told, visual)
     try:
         model = pin.buildModelFromXML(kinematics(root), pin.JointModelFreeFlyer(), ROOT)
     except Exception as error:
         raise RobotError(("model",), f"{path}: {_one_line(error)}", "mend it, so that Pinocchio can read it") from None
     model.name = file.name
-    return Source(model, visual, collision, mimics, source_notes, parts=parts)
+    return Source(model, visual, collision, mimics, source_notes, left_out, parts)
 
 
 def _check_parts(model: pin.Model, path: Path) -> None:
@@ -153,7 +156,7 @@ def _checked_inertias(root: ElementTree.Element, file: RobotFile, path: Path, no
         xx, xy, xz, yy, yz, zz = (float(inertia.get(part, "0")) for part in ("ixx", "ixy", "ixz", "iyy", "iyz", "izz"))
         about = np.array([[xx, xy, xz], [xy, yy, yz], [xz, yz, zz]])
         repaired = physical(about, kilograms, name, file, path, notes)
-        origin = inertial.find("origin")
+        origin = None if inertial is None else inertial.find("origin")
         com = np.array([float(part) for part in ("" if origin is None else origin.get("xyz", "")).split()] or [0.0] * 3)
         yield Part(name, kilograms, com, float(np.linalg.eigvalsh(about)[2]))
         if repaired is not None:

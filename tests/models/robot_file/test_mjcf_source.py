@@ -11,7 +11,7 @@ from surefoot.models import RobotError, RobotOptions, describe, explain
 from surefoot.models.consistency import EnginePair
 from surefoot.models.convert import pinocchio_to_mujoco, velocity_map
 from surefoot.models.pinocchio import pinocchio_model
-from surefoot.models.robot_file import mujoco_source
+from surefoot.models.robot_file import compiled
 from surefoot.models.robot_file.mesh_file import burden
 
 pytestmark = pytest.mark.unit
@@ -84,15 +84,15 @@ def test_g1_of_an_mjcf_is_g1_of_its_urdf(tmp_path) -> None:
     )
 
 
-def compiled(monkeypatch):
+def taken(monkeypatch):
     """What MuJoCo gets, by name, of each model that it compiles."""
-    got, before = [], mujoco_source._moderate
-    monkeypatch.setattr(mujoco_source, "_moderate", lambda *args: got.append(before(*args)) or got[-1])
+    got, before = [], compiled._moderate
+    monkeypatch.setattr(compiled, "_moderate", lambda *args: got.append(before(*args)) or got[-1])
     return got
 
 
 def test_meshes_that_are_not_dense_reach_mujoco_as_they_are(tmp_path, monkeypatch) -> None:
-    got = compiled(monkeypatch)
+    got = taken(monkeypatch)
     explain(meshed(tmp_path, 20, DRAWN, 'mass="0"'))
     assert got == [dict.fromkeys(("mesh0.stl", "mesh1.stl"), (tmp_path / "m.stl").read_bytes())]
 
@@ -101,8 +101,8 @@ def test_meshes_that_are_not_dense_reach_mujoco_as_they_are(tmp_path, monkeypatc
 def test_dense_meshes_become_coarser_but_for_those_that_say_how_heavy_a_body_is(tmp_path, monkeypatch, kind) -> None:
     monkeypatch.setenv("XDG_CACHE_HOME", str(tmp_path / "cache"))
     file = meshed(tmp_path, 60, DRAWN, 'mass="0"', weighs=("",), kind=kind)  # 14 400 each
-    whole, got = describe(file, RobotOptions()), compiled(monkeypatch)
-    monkeypatch.setattr(mujoco_source, "MOST_COMPILED", 20_000)
+    whole, got = describe(file, RobotOptions()), taken(monkeypatch)
+    monkeypatch.setattr(compiled, "MOST_COMPILED", 20_000)
     monkeypatch.setenv("XDG_CACHE_HOME", str(tmp_path / "other"))
     told = explain(meshed(tmp_path, 60, DRAWN, 'mass="0"', weighs=("",), kind=kind))
     (files,) = got
@@ -121,7 +121,7 @@ def test_dense_meshes_become_coarser_but_for_those_that_say_how_heavy_a_body_is(
     [("", ""), (f'{DRAWN} type="box"', ""), ('density="1"', '<compiler inertiafromgeom="true"/>')],
 )
 def test_dense_meshes_by_which_bodies_have_inertia_or_size_are_refused(tmp_path, monkeypatch, geom, compiler) -> None:
-    monkeypatch.setattr(mujoco_source, "MOST_COMPILED", 20_000)
+    monkeypatch.setattr(compiled, "MOST_COMPILED", 20_000)
     explain(meshed(tmp_path, 60, DRAWN, DRAWN))
     with pytest.raises(RobotError, match=r"28800 triangles in MSH and in meshes by which .* at most 20000"):
         explain(meshed(tmp_path, 60, geom, geom, compiler=compiler))

@@ -8,7 +8,7 @@ from pathlib import Path, PurePath
 import numpy as np
 
 from surefoot.engine import mujoco
-from surefoot.models.robot_file.mesh_file import binary_stl, burden, is_binary_stl, mesh_content, triangles
+from surefoot.models.robot_file.mesh_file import binary_stl, burden, is_sound_stl, mesh_content, triangles
 from surefoot.models.robot_file.meshes import thinned
 from surefoot.models.robot_file.mjcf import Assembled
 from surefoot.models.robot_file.paths import is_file
@@ -22,6 +22,12 @@ _MOST_OF_STL = 200_000
 """Triangles that MuJoCo takes of one STL."""
 
 _INFERRED = 'inertiafromgeom="true"'
+
+
+_OF_ENGINE = re.compile(
+    r"^Error: |;? perhaps this is an ASCII file\?| ?\. Try setting inertia to shell| Element name [^,]*, id -?\d+"
+)
+"""What MuJoCo adds to a reason, which helps nobody here."""
 
 
 class Bare:
@@ -90,7 +96,8 @@ class Bare:
         if mesh is None:
             raise error
         file = self._document.meshes.get(mesh.file)
-        what = f"mesh {file.name if file else mesh.name}: {self._said(str(error))}"
+        said = _OF_ENGINE.sub("", self._said(str(error)))
+        what = f"mesh {file.name if file else mesh.name} is of no use, {said}"
         return {mesh.name: RobotError(("model",), what, "give it as a closed surface with a volume")}
 
     def _leave_out(self, spec: mujoco.MjSpec, faults: dict[str, RobotError]) -> None:
@@ -137,7 +144,7 @@ def _read(mesh: Path, ending: str) -> _Content | RobotError:
         return RobotError(("model",), f"mesh {mesh.name} is not there", f"put it at {mesh}")
     try:
         data = mesh_content(mesh, ending)
-        if ending == ".stl" and not is_binary_stl(data):
+        if ending == ".stl" and not is_sound_stl(data):
             data = binary_stl(triangles(mesh, ending, data))
     except RobotError as error:
         return error

@@ -199,9 +199,10 @@ class _Deriver:
         return float(com[2] - (data.oMi[leg.joints[-1]] * leg.sole.placement).translation[2])
 
     def _check_figure(self, com_height: float) -> None:
-        sole = self.sole[0], self.sole[1]
+        data, leg = at(self.model, rest(self.model)), self.legs[0]
         centre = max(float(np.linalg.norm(leg.sole.placement.translation)) for leg in self.legs)
-        check_figure(self.file.name, self.leg_length, centre, sole, com_height)
+        to_ankle = float(np.linalg.norm(leg.hip - data.oMi[leg.joints[-1]].translation))
+        check_figure(self.file.name, self.leg_length, to_ankle, centre, (self.sole[0], self.sole[1]), com_height)
 
     def _meeting(self, excluded: list[tuple[str, str]]) -> list[tuple[int, int]]:
         """Limbs that can meet, but for those that overlap for good."""

@@ -21,6 +21,7 @@ Units = tuple[tuple[float, str], ...]
 LENGTHS: Units = ((39.37, "inches"), (100.0, "centimetres"), (1000.0, "millimetres"))
 MASSES: Units = ((1000.0, "grams"), (1e-3, "tonnes"))
 ANGLES: Units = ((180.0 / math.pi, "degrees"),)
+RADIANS: Units = ((math.pi / 180.0, "radians, while the file's compiler reads degrees"),)
 TORQUES: Units = ((1000.0, "N mm"),)
 SPEEDS: Units = ((180.0 / math.pi, "deg/s"), (30.0 / math.pi, "turns a minute"))
 INERTIAS: Units = ((1e2, "kg cm^2"), (1e3, "kg mm^2"), (3.2e3, "g cm^2"), (3.2e4, "g mm^2"))
@@ -32,22 +33,24 @@ class Law:
     """What a ratio may be.
 
     Attributes:
-        quantity: what is measured, as a sentence begins with it.
-        unit: of the number that is told.
+        said: a sentence about ``{what}`` whose number is ``{value}``, up to what it is measured by.
+        unit: of the number.
         over: what it is measured by, with its size as ``{}``.
         most: largest ratio of a robot.
         usual: ratio of most robots, by which the unit is guessed.
         units: in which the number may be instead; none where nobody can say.
         least: smallest ratio.
+        instead: what else may be wrong.
     """
 
-    quantity: str
+    said: str
     unit: str
     over: str
     most: float
     usual: float
     units: Units = ()
     least: float = 0.0
+    instead: str = ""
 
     def holds(self, value: float, size: float) -> bool:
         """Say whether a number is of a robot of that size."""
@@ -56,38 +59,61 @@ class Law:
     def told(self, what: str, value: float, size: float) -> tuple[str, str]:
         """A number that is of no robot, and what would be right."""
         ratio = value / size if size > 0.0 else math.inf
-        over = self.over.format(f"{size:.3g}")
-        bound = f"at least {self.least * size:.3g}" if ratio < self.least else f"at most {self.most * size:.3g}"
-        said = f"the {self.quantity} of {what} is {value:.3g} {self.unit}, {ratio:.3g} times {over}"
-        return said, f"give {bound} {self.unit}{self._likely(ratio)}"
+        said = self.said.format(what=what, value=f"{_shown(value)} {self.unit}")
+        bound = f"least {_shown(self.least * size)}" if ratio < self.least else f"most {_shown(self.most * size)}"
+        right = f"give at {bound} {self.unit}{self._likely(ratio)}"
+        return f"{said}, {_shown(ratio)} times {self.over.format(_shown(size))}", right
 
     def _likely(self, ratio: float) -> str:
         """The unit whose factor is the nearest to what the number is off by."""
-        if not self.units or not 0.0 < ratio < math.inf:
-            return ""
-        off = math.log(ratio / self.usual)
-        factor, unit = min(self.units, key=lambda one: abs(math.log(one[0]) - off))
-        return f"; it is likely in {unit}" if abs(math.log(factor) - off) < 0.6 * abs(math.log(factor)) else ""
+        off = math.log(ratio / self.usual) if 0.0 < ratio < math.inf else 0.0
+        near = [one for one in self.units if abs(math.log(one[0]) - off) < 0.6 * abs(math.log(one[0]))]
+        best = min(near, key=lambda one: abs(math.log(one[0]) - off), default=None)
+        return self.instead if best is None else f"; it is likely in {best[1]}"
+
+
+def _shown(value: float) -> str:
+    """A number in three digits, or a whole one."""
+    return f"{value:.0f}" if 100.0 <= value < 1e7 else f"{value:.3g}"
 
 
 _SPAN = "the {} m from end to end of its joints"
-APART = Law("distance from the joint before", "m", _SPAN, 0.75, 0.2, LENGTHS)
-LONG = Law("size", "m", "the {} m of a robot of its mass", 5.0, 1.0, LENGTHS)
-HEAVY = Law("mass", "kg", "the {} kg of a robot of its size", 30.0, 1.0, MASSES)
-SHARE = Law("mass", "kg", "the {} kg of all other links", 8.0, 0.05, MASSES)
-DENSE = Law("mass", "kg", "the {} kg of a cube of water as wide as its shapes", 30.0, 0.2, MASSES)
-EXTENT = Law("extent of a shape", "m", _SPAN, 4.0, 0.2, LENGTHS)
-LEVER = Law("distance of the centre of mass from its shapes and joints", "m", _SPAN, 0.4, 0.1, LENGTHS)
-GYRATION = Law("radius of gyration", "m", _SPAN, 1.5, 0.05, INERTIAS)
-SPREAD = Law("radius of gyration", "m", "the {} m across its shapes", 1.5, 0.3, INERTIAS)
-TURN = Law("range", "rad", "a turn of {} rad", 1.01, 0.3, ANGLES)
-ROTOR = Law("armature", "kg m^2", "the {} kg m^2 of its mass at its size", 0.3, 1e-3)
-TORQUE = Law("torque limit", "N m", "the {} N m of its weight at its size", 30.0, 0.3, TORQUES)
-SPEED = Law("velocity limit", "rad/s", "the {} rad/s of fast joints", 1.0, 0.1, SPEEDS)
-CENTRE = Law("distance of the sole's centre from the ankle", "m", "the {} m from hip to ankle", 0.6, 0.1, LENGTHS)
-LENGTH = Law("sole's length", "m", "the {} m of the legs", 1.0, 0.25, LENGTHS, 0.04)
-WIDTH = Law("sole's width", "m", "the {} m of the legs", 1.0, 0.12, LENGTHS, 0.02)
-COM = Law("CoM height in walking", "m", "the {} m of the legs", 2.0, 1.0, LENGTHS, 0.4)
+LONG = Law(
+    "{what} are {value} from end to end",
+    "m",
+    "the {} m of a robot of its mass",
+    5.0,
+    1.0,
+    ((10.0, "metres and its masses in tonnes"), *LENGTHS),
+)
+FAR = Law("{what} is {value} from the joint before it", "m", "the {} m of a robot of its mass", 4.0, 0.3, LENGTHS)
+APART = Law("{what} is {value} from the joint before it", "m", _SPAN, 0.75, 0.2)
+HEAVY = Law("the mass of {what} is {value}", "kg", "the {} kg of a robot of its size", 30.0, 1.0, MASSES)
+SHARE = Law("the mass of {what} is {value}", "kg", "the {} kg of all other links", 8.0, 0.05, MASSES)
+DENSE = Law(
+    "the mass of {what} is {value}",
+    "kg",
+    "the {} kg of a cube of water as wide as its shapes",
+    30.0,
+    0.2,
+    instead=", or larger shapes: one of both is in another unit",
+)
+EXTENT = Law("a shape of {what} reaches {value} from its frame", "m", _SPAN, 4.0, 0.2, LENGTHS)
+LEVER = Law("the centre of mass of {what} is {value} outside its shapes and joints", "m", _SPAN, 0.4, 0.1, LENGTHS)
+ASIDE = Law("the centre of mass of {what} is {value} outside its shapes and joints", "m", _SPAN, 0.1, 0.1, LENGTHS)
+GYRATION = Law("the radius of gyration of {what} is {value}", "m", _SPAN, 1.5, 0.05, INERTIAS)
+SPREAD = Law("the radius of gyration of {what} is {value}", "m", "the {} m across its shapes", 1.5, 0.3, INERTIAS)
+TURN = Law("{what} turns up to {value}", "rad", "a turn of {} rad", 1.01, 0.3, ANGLES)
+WIDEST = Law("{what} turns the farthest, up to {value}", "rad", "a turn of {} rad", 1.01, 0.3, RADIANS, 0.03)
+ROTOR = Law("the armature of {what} is {value}", "kg m^2", "the {} kg m^2 of its mass at its size", 0.3, 1e-3)
+TORQUE = Law("the torque limit of {what} is {value}", "N m", "the {} N m of its weight at its size", 30.0, 0.3, TORQUES)
+SPEED = Law("the velocity limit of {what} is {value}", "rad/s", "the {} rad/s of fast joints", 1.0, 0.1, SPEEDS)
+CENTRE = Law(
+    "the centre of the sole of {what} is {value} from its ankle", "m", "the {} m from hip to ankle", 0.6, 0.1, LENGTHS
+)
+LENGTH = Law("the sole of {what} is {value} long", "m", "the {} m of its legs", 1.0, 0.25, LENGTHS, 0.04)
+WIDTH = Law("the sole of {what} is {value} wide", "m", "the {} m of its legs", 1.0, 0.12, LENGTHS, 0.02)
+COM = Law("the CoM of {what} is {value} high in walking", "m", "the {} m of its legs", 2.0, 1.0, LENGTHS, 0.4)
 
 FEWEST = 8
 """Joints that two legs have; what has fewer is refused for that."""
@@ -104,7 +130,7 @@ _WEIGHTY, _MASSIVE, _TURNING = 1e-3, 5e-3, 1e-3
 _ENDLESS = 1e3
 """Angle as large stands for no stop in models that other programs wrote, as 1e9 does [rad]."""
 
-_FAST = 100.0
+_FAST = 200.0
 """Speed of fast joints [rad/s]."""
 
 _GRAVITY = 9.81
@@ -195,15 +221,15 @@ def check_joints(model: pin.Model) -> list[str]:
     notes = _bounded(model)
     names = tuple(model.names)[2:]
     ends = np.maximum(np.abs(model.lowerPositionLimit[7:]), np.abs(model.upperPositionLimit[7:]))
-    sizes = {
-        TURN: (("model",), ends, math.tau),
-        ROTOR: (("armature",), model.armature[6:], mass * span**2),
-    }
-    for law, (key, values, size) in sizes.items():
+    for law, key, values, size in (
+        (TURN, "model", ends, math.tau),
+        (WIDEST, "model", ends, math.tau),
+        (ROTOR, "armature", model.armature[6:], mass * span**2),
+    ):
         worst = int(np.argmax(values))
         if not law.holds(float(values[worst]), size):
             what, right = law.told(f"joint '{names[worst]}' of {model.name}", float(values[worst]), size)
-            raise RobotError(key, what, right)
+            raise RobotError((key,), what, right)
     for law, values, size in (
         (TORQUE, model.upperEffortLimit[6:], mass * _GRAVITY * span),
         (SPEED, model.upperVelocityLimit[6:], _FAST),
@@ -215,33 +241,45 @@ def check_joints(model: pin.Model) -> list[str]:
     return notes
 
 
+def check_angle(what: str, angle: float, key: tuple[str, ...]) -> None:
+    """Refuse an angle beyond a turn [rad].
+
+    Raises:
+        RobotError: it is.
+    """
+    if not TURN.holds(abs(angle), math.tau):
+        raise RobotError(key, *TURN.told(what, abs(angle), math.tau))
+
+
 def _bounded(model: pin.Model) -> list[str]:
     """One turn either way for joints whose ends are as large as those that stand for none; tells which."""
     lower, upper = np.array(model.lowerPositionLimit), np.array(model.upperPositionLimit)
     endless = (lower < -_ENDLESS) | (upper > _ENDLESS)
     endless[:7] = False
-    names = [str(model.names[at - 5]) for at in np.flatnonzero(endless)]
+    names = [model.names[int(at) - 5] for at in np.flatnonzero(endless)]
     lower[endless], upper[endless] = np.maximum(lower[endless], -math.tau), np.minimum(upper[endless], math.tau)
     model.lowerPositionLimit, model.upperPositionLimit = lower, upper
     return [f"joints turn without end in the model and one turn either way here: {', '.join(names)}"] if names else []
 
 
-def check_figure(robot: str, leg_length: float, centre: float, sole: tuple[float, float], com_height: float) -> None:
+def check_figure(
+    robot: str, leg_length: float, to_ankle: float, centre: float, sole: tuple[float, float], com_height: float
+) -> None:
     """Hold soles and CoM, given or derived, against the legs.
 
     Args:
         robot: its name, for messages.
         leg_length: hip centre to sole [m].
-        centre: from the ankle's joint to the centre of the sole [m].
+        to_ankle: hip centre to the last joint of the leg, which is straight [m].
+        centre: from that joint to the centre of the sole [m].
         sole: length and width [m].
         com_height: of the CoM above the soles in walking [m].
 
     Raises:
         RobotError: a number is of no robot.
     """
-    hip_to_ankle = max(leg_length - centre, 0.0)
     for law, key, value, size in (
-        (CENTRE, "sole", centre, hip_to_ankle),
+        (CENTRE, "sole", centre, to_ankle),
         (LENGTH, "sole", sole[0], leg_length),
         (WIDTH, "sole", sole[1], leg_length),
         (COM, "com_height", com_height, leg_length),
@@ -267,15 +305,16 @@ class _Whole:
         joints = range(2, self._model.njoints)
         apart = {joint: float(np.linalg.norm(self._model.jointPlacements[joint].translation)) for joint in joints}
         far = max(apart, key=lambda joint: apart[joint])
+        usual, joint = math.cbrt(self.mass / _CUBIC), f"joint '{self._model.names[far]}'"
+        if not FAR.holds(apart[far], usual):
+            yield FAR.told(joint, apart[far], usual)
+        if not LONG.holds(self.span, usual):
+            yield LONG.told("the joints", self.span, usual)
         if not APART.holds(apart[far], self.span):
-            yield APART.told(f"joint '{self._model.names[far]}'", apart[far], self.span)
+            yield APART.told(joint, apart[far], self.span)
         heaviest = max(self._parts, key=lambda part: part.mass)
         if not SHARE.holds(heaviest.mass, self.mass - heaviest.mass):
             yield SHARE.told(f"link '{heaviest.link}'", heaviest.mass, self.mass - heaviest.mass)
-        usual = math.cbrt(self.mass / _CUBIC)
-        if not LONG.holds(self.span, usual):
-            what = f"the robot, with {apart[far]:.3g} m to joint '{self._model.names[far]}',"
-            yield LONG.told(what, self.span, usual)
         for shape in touching:
             if not EXTENT.holds(_extent(shape), self.span):
                 yield EXTENT.told(f"link '{shape.link}'", _extent(shape), self.span)
@@ -302,15 +341,19 @@ class _Whole:
             yield HEAVY.told(what, self.mass, usual)
 
     def remarked(self, shapes: Sequence[Shape]) -> Iterator[str]:
-        """Links whose mass is spread over more than their shapes."""
+        """Links whose mass is beside their shapes, or spread over more than these."""
         boxes = self._boxes(shapes)
         for part in self._parts:
-            box = boxes.get(self._joint(part))
-            if box is None or part.mass <= _MASSIVE * self.mass:
+            box, what = boxes.get(self._joint(part)), f"link '{part.link}'"
+            if part.mass <= _MASSIVE * self.mass:
                 continue
-            radius, across = math.sqrt(part.moment / part.mass), float(np.linalg.norm(np.ptp(box, axis=0)))
+            outside = self._outside(part, box)
+            if not ASIDE.holds(outside, self.span):
+                yield ASIDE.told(what, outside, self.span)[0]
+            radius = math.sqrt(part.moment / part.mass)
+            across = math.inf if box is None else float(np.linalg.norm(np.ptp(box, axis=0)))
             if not SPREAD.holds(radius, across):
-                yield SPREAD.told(f"link '{part.link}'", radius, across)[0]
+                yield SPREAD.told(what, radius, across)[0]
 
     def _joint(self, part: Part) -> int:
         return int(self._links[part.link].parentJoint)

@@ -70,9 +70,16 @@ def triangles(path: Path, ending: str, data: bytes) -> Triangles:
 
 
 def is_binary_stl(data: bytes) -> bool:
-    """Whether bytes are as long as a binary STL says in its head."""
+    """Say whether bytes are as long as a binary STL says in its head."""
     count = int.from_bytes(data[80:_STL_HEAD], "little")
     return len(data) == _STL_HEAD + count * _STL.itemsize
+
+
+def is_sound_stl(data: bytes) -> bool:
+    """Say whether bytes are a binary STL of some triangles, all finite."""
+    if not is_binary_stl(data) or len(data) == _STL_HEAD:
+        return False
+    return bool(np.isfinite(np.frombuffer(data, _STL, -1, _STL_HEAD)["corners"]).all())
 
 
 def _finite(path: Path, points: Array) -> Array:

@@ -8,7 +8,7 @@ import pinocchio as pin
 
 from surefoot.models.joints import is_revolute
 from surefoot.models.robot_file.files import srdf_of
-from surefoot.models.robot_file.magnitudes import check_joints
+from surefoot.models.robot_file.magnitudes import check_angle, check_joints
 from surefoot.models.robot_file.motors import read_srdf, require_limits, set_armature, set_limits
 from surefoot.models.robot_file.schema import RobotFile, matched
 from surefoot.models.robot_file.shapes import Shape, placed
@@ -161,6 +161,7 @@ def _locked(
         if not meant:
             what = f"lock of {file.name} has the pattern '{pattern}', which matches no joint"
             raise RobotError(("lock", pattern), what, nearest(pattern, names))
+        check_angle(f"lock of {file.name} with '{pattern}'", angle or 0.0, ("lock", pattern))
         given |= dict.fromkeys(meant, angle)
     found: dict[int, tuple[str, float]] = {}
     for joint in range(2, model.njoints):

@@ -7,6 +7,7 @@ of ours. The farthest of them stand in the table of docs/robot-files.md.
 
 import math
 from collections.abc import Iterator, Sequence
+from itertools import repeat
 
 import numpy as np
 import pinocchio as pin
@@ -234,11 +235,17 @@ def check_joints(model: pin.Model) -> list[str]:
         (TORQUE, model.upperEffortLimit[6:], mass * _GRAVITY * span),
         (SPEED, model.upperVelocityLimit[6:], _FAST),
     ):
-        wrong = [joint for joint in range(len(names)) if not law.holds(float(values[joint]), size)]
-        if wrong:
-            others = f" and {len(wrong) - 1} more" if len(wrong) > 1 else ""
-            notes.append("; ".join(law.told(f"joint '{names[wrong[0]]}'{others}", float(values[wrong[0]]), size)))
+        notes += _remark(law, "joint", [one for one in zip(names, values, repeat(size)) if not law.holds(*one[1:])])
     return notes
+
+
+def _remark(law: Law, kind: str, wrong: Sequence[tuple[str, float, float]]) -> list[str]:
+    """What is remarked of names, each with its number and its size, in one line; none where none is wrong."""
+    if not wrong:
+        return []
+    name, value, size = wrong[0]
+    others = f" and {len(wrong) - 1} more" if len(wrong) > 1 else ""
+    return ["; ".join(law.told(f"{kind} '{name}'{others}", float(value), size))]
 
 
 def check_angle(what: str, angle: float, key: tuple[str, ...]) -> None:
@@ -341,19 +348,19 @@ class _Whole:
             yield HEAVY.told(what, self.mass, usual)
 
     def remarked(self, shapes: Sequence[Shape]) -> Iterator[str]:
-        """Links whose mass is beside their shapes, or spread over more than these."""
+        """Links whose mass is beside their shapes, or spread over more than these; the first of each kind."""
         boxes = self._boxes(shapes)
+        found: dict[Law, list[tuple[str, float, float]]] = {ASIDE: [], SPREAD: []}
         for part in self._parts:
-            box, what = boxes.get(self._joint(part)), f"link '{part.link}'"
+            box = boxes.get(self._joint(part))
             if part.mass <= _MASSIVE * self.mass:
                 continue
-            outside = self._outside(part, box)
-            if not ASIDE.holds(outside, self.span):
-                yield ASIDE.told(what, outside, self.span)[0]
-            radius = math.sqrt(part.moment / part.mass)
-            across = math.inf if box is None else float(np.linalg.norm(np.ptp(box, axis=0)))
-            if not SPREAD.holds(radius, across):
-                yield SPREAD.told(what, radius, across)[0]
+            found[ASIDE].append((part.link, self._outside(part, box), self.span))
+            if box is not None:
+                across = float(np.linalg.norm(np.ptp(box, axis=0)))
+                found[SPREAD].append((part.link, math.sqrt(part.moment / part.mass), across))
+        for law, numbers in found.items():
+            yield from _remark(law, "link", [number for number in numbers if not law.holds(*number[1:])])
 
     def _joint(self, part: Part) -> int:
         return int(self._links[part.link].parentJoint)

@@ -106,6 +106,8 @@ def read(path: Path) -> RobotFile:
         raise RobotError((), f"{place}: no YAML, {getattr(error, 'problem', None) or error}", "mend it") from None
     except (ValueError, TypeError, AttributeError) as error:  # dates and the like that are none
         raise RobotError((), f"{path}: no YAML, {error}", "give words and numbers") from None
+    if values is None:
+        raise RobotError((), f"{path}: is empty", "write one with: surefoot robot new MODEL --out FILE")
     if not isinstance(values, dict):
         raise RobotError((), f"{path}: no robot file", "give name, model and feet, a line each")
     try:

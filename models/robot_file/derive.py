@@ -130,7 +130,7 @@ class _Deriver:
             joint = names.index(name) + 7
             lower, upper = float(self.model.lowerPositionLimit[joint]), float(self.model.upperPositionLimit[joint])
             if not lower <= angle <= upper:
-                what = f"posture of {self.file.name} has joint '{name}' at {angle} rad"
+                what = f"posture of {self.file.name} has joint '{name}' at {angle:.6g} rad"
                 raise RobotError(("posture", name), what, f"it must lie within {lower:.3f} and {upper:.3f} rad")
         return given
 

@@ -157,7 +157,8 @@ def _refusal(path: Path, fault: Any, lines: Mapping[tuple[str, ...], int]) -> Ro
     if fault["type"] == "missing":
         return RobotError(key, f"{place}: lacks {'.'.join(key)}", f"give {_example(key)}")
     rule = fault["msg"][0].lower() + fault["msg"][1:]
-    shown = repr(fault["input"])
+    given = fault["input"]
+    shown = f"{given:.9g}" if isinstance(given, float) else repr(given)
     return RobotError(key, f"{place}: {dotted} is {shown if len(shown) <= _SHOWN else f'{shown[:_SHOWN]}...'}", rule)
 
 

@@ -183,7 +183,7 @@ def physical(inertia: Array, mass: float, link: str, file: RobotFile, path: Path
     moments, axes = np.linalg.eigh(second)
     total = float(np.abs(moments).sum())
     if mass < 0.0:
-        raise RobotError(("model",), f"{path}: link '{link}' has the mass {mass} kg", "give one of at least 0 kg")
+        raise RobotError(("model",), f"{path}: link '{link}' has the mass {mass:.6g} kg", "give one of at least 0 kg")
     if moments[0] >= -1e-6 * total or total < 1e-12:
         return None
     a, b, c = np.linalg.eigvalsh(inertia)

@@ -32,6 +32,9 @@ _CLEAR = 0.01
 _FREE = 0.04
 """Distance of hanging arms from thighs and trunk, over the leg's length: a push at the trunk swings them [-]."""
 
+_FEWEST = 4
+"""Vertices that a mesh has for an engine."""
+
 _NEAR = 0.005
 """Distance in the posture, over the leg's length, below which links may overlap for good [-]."""
 
@@ -178,8 +181,16 @@ class _Deriver:
         small = decimated([(shape.vertices, shape.faces) for shape in shapes])
         looks: list[list[Shape]] = [[] for _ in range(self.model.njoints)]
         for joint, shape, (vertices, faces) in zip(joints, shapes, small, strict=True):
-            if len(faces):
+            if len(faces) and len(vertices) >= _FEWEST:
                 looks[joint].append(Shape(shape.link, vertices, faces, shape.rgba))
+        lost = [
+            body
+            for body, look, of in zip(self.reduced.bodies, looks[1:], self.reduced.visual[1:], strict=True)
+            if of and not look
+        ]
+        if lost:
+            what = "which is too small or too flat to be seen"
+            self.reduced.left_out.append(f"left out: what is drawn of {', '.join(lost)}, {what}")
         return looks
 
     def _excluded(self, postures: list[Array]) -> list[tuple[str, str]]:

@@ -100,6 +100,7 @@ DENSE = Law(
     instead=", or larger shapes: one of both is in another unit",
 )
 EXTENT = Law("a shape of {what} reaches {value} from its frame", "m", _SPAN, 4.0, 0.2, LENGTHS)
+SPECK = Law("a shape of {what} is {value} across", "m", _SPAN, math.inf, 0.2, least=4e-4)
 LEVER = Law("the centre of mass of {what} is {value} outside its shapes and joints", "m", _SPAN, 0.4, 0.1, LENGTHS)
 ASIDE = Law("the centre of mass of {what} is {value} outside its shapes and joints", "m", _SPAN, 0.1, 0.1, LENGTHS)
 GYRATION = Law("the radius of gyration of {what} is {value}", "m", _SPAN, 1.5, 0.05, INERTIAS)
@@ -189,12 +190,24 @@ def check_parts(
     if model.njoints - 2 < FEWEST or not whole.mass > 0.0:
         return Held(tuple(drawn))
     _refuse(whole.apart(touching), place)
-    seen = tuple(shape for shape in drawn if EXTENT.holds(_extent(shape), whole.span))
-    unseen = {shape.link: shape for shape in drawn if not EXTENT.holds(_extent(shape), whole.span)}
+    faults = [_unseen(shape, whole.span) for shape in drawn]
+    seen = tuple(shape for shape, fault in zip(drawn, faults, strict=True) if not fault)
     _refuse(whole.astray((*seen, *touching)), place)
-    left_out = ("; ".join(EXTENT.told(f"link '{link}'", _extent(one), whole.span)) for link, one in unseen.items())
-    notes = whole.remarked((*seen, *touching))
-    return Held(seen, tuple(f"left out: what is drawn, since {what}" for what in left_out), tuple(notes))
+    left_out = dict.fromkeys(f"left out: what is drawn, since {fault}" for fault in faults if fault)
+    specks = [(shape.link, _across(shape), whole.span) for shape in touching if _across(shape) > 0.0]
+    notes = _remark(SPECK, "link", [speck for speck in specks if not SPECK.holds(*speck[1:])])
+    return Held(seen, tuple(left_out), (*notes, *whole.remarked((*seen, *touching))))
+
+
+def _unseen(shape: Shape, span: float) -> str:
+    """Why a shape cannot be drawn; empty where it can."""
+    what = f"link '{shape.link}'"
+    if not len(shape.faces):
+        return f"a shape of {what} has no surface"
+    for law, size in ((EXTENT, _extent(shape)), (SPECK, _across(shape))):
+        if not law.holds(size, span):
+            return "; ".join(law.told(what, size, span))
+    return ""
 
 
 def _refuse(faults: Iterator[tuple[str, str]], place: str) -> None:
@@ -385,6 +398,11 @@ class _Whole:
 
 def _box(points: Array) -> Array:
     return np.array((points.min(axis=0), points.max(axis=0)))
+
+
+def _across(shape: Shape) -> float:
+    """Diagonal of the box around a shape [m]."""
+    return float(np.linalg.norm(np.ptp(shape.vertices, axis=0)))
 
 
 def _extent(shape: Shape) -> float:

@@ -163,7 +163,12 @@ def test_a_walk_that_follows_its_refusal_is_accepted(tmp_path, case) -> None:
 
 @pytest.mark.parametrize(
     ("case", "left_out"),
-    [("too slow", "speed_mean"), ("too slow to turn", "heading_change"), ("too slow on stairs", ""), ("too weak", "speed_mean")],
+    [
+        ("too slow", "speed_mean"),
+        ("too slow to turn", "heading_change"),
+        ("too slow on stairs", ""),
+        ("too weak", "speed_mean"),
+    ],
 )
 def test_a_proposal_says_what_it_leaves_out_of_the_criteria(tmp_path, case, left_out) -> None:
     """What asks for the speed or for the way of the walk as it was; other postures and lower steps leave none out."""

@@ -222,6 +222,9 @@ class _FoundError(Exception):
 _OF_OTHERS = ("gazebo", "ros2_control", "transmission")
 """Groups of a URDF that other programs read, with places that those fill in."""
 
+_WITHOUT_PREFIX = ("include", "macro", "property", "insert_block", "if", "unless")
+"""Elements of a robot that xacro took for its own when it had no name space, and that no URDF has."""
+
 _FILLED_IN = re.compile(r"\$\{[^}]*\}?|\$\((?:find|arg|eval|env|optenv|dirname|anon)\b[^)]*\)?")
 """Of a value, what xacro computes or looks up (http://wiki.ros.org/xacro)."""
 
@@ -267,7 +270,8 @@ class _Builder:
         """
         spaces = (name for name, value in attributes.items() if name.startswith("xmlns:") and "xacro" in value)
         self._prefixes |= {name.removeprefix("xmlns:") for name in spaces}
-        left = tag if ":" in tag and tag.partition(":")[0] in self._prefixes else ""
+        prefixed = ":" in tag and tag.partition(":")[0] in self._prefixes
+        left = tag if prefixed or (tag in _WITHOUT_PREFIX and [node.tag for node in self._open] == ["robot"]) else ""
         if not left and not any(node.tag in _OF_OTHERS for node in self._open) and tag not in _OF_OTHERS:
             found = (match for value in attributes.values() if (match := _FILLED_IN.search(value)))
             left = next((match[0][:40] for match in found), "")

@@ -102,7 +102,7 @@ DENSE = Law(
 EXTENT = Law("a shape of {what} reaches {value} from its frame", "m", _SPAN, 4.0, 0.2, LENGTHS)
 SPECK = Law("a shape of {what} is {value} across", "m", _SPAN, math.inf, 0.2, least=4e-4)
 LEVER = Law("the centre of mass of {what} is {value} outside its shapes and joints", "m", _SPAN, 0.4, 0.1, LENGTHS)
-ASIDE = Law("the centre of mass of {what} is {value} outside its shapes and joints", "m", _SPAN, 0.1, 0.1, LENGTHS)
+ASIDE = Law("the centre of mass of {what} is {value} outside its shapes and joints", "m", _SPAN, 0.1, 0.05, LENGTHS)
 GYRATION = Law("the radius of gyration of {what} is {value}", "m", _SPAN, 1.5, 0.05, INERTIAS)
 SPREAD = Law("the radius of gyration of {what} is {value}", "m", "the {} m across its shapes", 1.5, 0.3, INERTIAS)
 TURN = Law("{what} turns up to {value}", "rad", "a turn of {} rad", 1.01, 0.3, ANGLES)

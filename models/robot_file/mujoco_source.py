@@ -195,9 +195,8 @@ class _Reader:
                 require_moderate((*visual, *collision))
         source.visual, source.collision = tuple(visual or collision), tuple(collision)
         if visual and not collision:
-            self._notes.append(
-                "no geom of the model collides (contype and conaffinity are 0): links touch by their looks"
-            )
+            why = "no geom of the model collides (contype and conaffinity are 0)"
+            self._notes.append(f"{why}, so links touch by what is drawn of them")
 
     def _shape(self, geom: int) -> list[Shape]:
         """The geom as triangles; none for planes and fields."""

@@ -42,6 +42,7 @@ class Law:
         units: in which the number may be instead; none where nobody can say.
         least: smallest ratio.
         instead: what else may be wrong.
+        then: what becomes of a model that breaks it.
     """
 
     said: str
@@ -52,6 +53,7 @@ class Law:
     units: Units = ()
     least: float = 0.0
     instead: str = ""
+    then: str = "refused"
 
     def holds(self, value: float, size: float) -> bool:
         """Say whether a number is of a robot of that size."""
@@ -100,16 +102,42 @@ DENSE = Law(
     instead=", or larger shapes: one of both is in another unit",
 )
 EXTENT = Law("a shape of {what} reaches {value} from its frame", "m", _SPAN, 4.0, 0.2, LENGTHS)
-SPECK = Law("a shape of {what} is {value} across", "m", _SPAN, math.inf, 0.2, least=4e-4)
+SPECK = Law("a shape of {what} is {value} across", "m", _SPAN, math.inf, 0.2, least=4e-4, then="remarked")
 LEVER = Law("the centre of mass of {what} is {value} outside its shapes and joints", "m", _SPAN, 0.4, 0.1, LENGTHS)
-ASIDE = Law("the centre of mass of {what} is {value} outside its shapes and joints", "m", _SPAN, 0.1, 0.05, LENGTHS)
+ASIDE = Law(
+    "the centre of mass of {what} is {value} outside its shapes and joints",
+    "m",
+    _SPAN,
+    0.1,
+    0.05,
+    LENGTHS,
+    then="remarked",
+)
 GYRATION = Law("the radius of gyration of {what} is {value}", "m", _SPAN, 1.5, 0.05, INERTIAS)
-SPREAD = Law("the radius of gyration of {what} is {value}", "m", "the {} m across its shapes", 1.5, 0.3, INERTIAS)
+SPREAD = Law(
+    "the radius of gyration of {what} is {value}",
+    "m",
+    "the {} m across its shapes",
+    1.5,
+    0.3,
+    INERTIAS,
+    then="remarked",
+)
 TURN = Law("{what} turns up to {value}", "rad", "a turn of {} rad", 1.01, 0.3, ANGLES)
 WIDEST = Law("{what} turns the farthest, up to {value}", "rad", "a turn of {} rad", 1.01, 0.3, RADIANS, 0.03)
 ROTOR = Law("the armature of {what} is {value}", "kg m^2", "the {} kg m^2 of its mass at its size", 0.3, 1e-3)
-TORQUE = Law("the torque limit of {what} is {value}", "N m", "the {} N m of its weight at its size", 30.0, 0.3, TORQUES)
-SPEED = Law("the velocity limit of {what} is {value}", "rad/s", "the {} rad/s of fast joints", 1.0, 0.1, SPEEDS)
+TORQUE = Law(
+    "the torque limit of {what} is {value}",
+    "N m",
+    "the {} N m of its weight at its size",
+    30.0,
+    0.3,
+    TORQUES,
+    then="remarked",
+)
+SPEED = Law(
+    "the velocity limit of {what} is {value}", "rad/s", "the {} rad/s of fast joints", 1.0, 0.1, SPEEDS, then="remarked"
+)
 CENTRE = Law(
     "the centre of the sole of {what} is {value} from its ankle", "m", "the {} m from hip to ankle", 0.6, 0.1, LENGTHS
 )

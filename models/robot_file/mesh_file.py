@@ -116,7 +116,11 @@ def _unread(path: Path, reason: str) -> RobotError:
 _NOT_FINITE = rb"(?:nan|inf|e\+?0*(?:39|[4-9][0-9]|[1-9][0-9]{2,}))"
 """What of a row of numbers is none that single precision holds; readers find nothing wrong in it."""
 
-_ROWS = {".obj": rb"(?im)^[ \t]*v[ \t][^\n]*", ".stl": rb"(?im)^[ \t]*vertex[^\n]*"}
+_ROWS = {
+    ".obj": rb"(?im)^[ \t]*v[ \t][^\n]*",
+    ".stl": rb"(?im)^[ \t]*vertex[^\n]*",
+    ".dae": rb"(?i)<float_array[^>]*>[^<]*",
+}
 """Beginning of the rows of vertices, by ending of a file."""
 
 
@@ -126,8 +130,6 @@ def _loaded(path: Path, ending: str, data: bytes) -> Triangles:
 
     if ending == ".stl" and not data.lstrip().startswith(b"solid"):
         raise _unread(path, f"a binary STL of {int.from_bytes(data[80:_STL_HEAD], 'little')} triangles is not as long")
-    if (rows := _ROWS.get(ending)) and re.search(rows + _NOT_FINITE, data):
-        raise _unread(path, "a vertex is not finite")
     words = int(np.count_nonzero(np.frombuffer(data, np.uint8) <= ord(" ")))
     if words > MOST_WORDS:
         raise _unread(path, f"it has {words} spaces and ends of lines, more than {MOST_WORDS}")
@@ -135,6 +137,8 @@ def _loaded(path: Path, ending: str, data: bytes) -> Triangles:
     if ending == ".dae":
         text = collada_text(path, data)
         metres, data = _Collada(path, text).metres, text.encode()
+    if re.search(b"(?i)" + _NOT_FINITE, data) and re.search(_ROWS[ending] + _NOT_FINITE, data):
+        raise _unread(path, "a number is not finite")
     with tempfile.TemporaryDirectory() as folder:
         copy = Path(folder) / f"mesh{ending}"
         copy.write_bytes(re.sub(rb"(?m)^[ \t]*mtllib[^\n]*", b"", data) if ending == ".obj" else data)
@@ -215,8 +219,6 @@ class _Collada:
         return metres
 
     def _text(self, text: str) -> None:
-        if self._open[-1] == "float_array" and re.search(b"(?i)" + _NOT_FINITE, text.encode()):
-            raise _unread(self._path, "a number is not finite")
         if self._open[-1] in _INDICES and (found := re.search(r"[^0-9\s]", text)):
             raise _unread(self._path, f"{self._open[-1]} has '{found[0]}' among its indices")
 

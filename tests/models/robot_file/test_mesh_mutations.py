@@ -23,7 +23,7 @@ QUICK = (
 )
 """Of each kind of fault one, for every change."""
 
-EVERY = [pytest.param(name, marks=() if name in QUICK else pytest.mark.long) for name in MESHES]
+EVERY = [pytest.param(name, marks=pytest.mark.unit if name in QUICK else pytest.mark.long) for name in MESHES]
 THIGH = '<geometry><box size="0.06 0.06 0.2"/></geometry>'
 PLACED = f'<origin xyz="0 0 -0.15"/>{THIGH}'
 
@@ -98,7 +98,7 @@ def mjcf_text(mesh: Mesh, more: str) -> str:
 
 
 OF_MJCF = [
-    pytest.param(name, marks=() if name in QUICK else pytest.mark.long)
+    pytest.param(name, marks=pytest.mark.unit if name in QUICK else pytest.mark.long)
     for name, mesh in MESHES.items()
     if mesh.ending in ("stl", "obj")
 ]
@@ -135,6 +135,7 @@ def test_a_mesh_of_an_mjcf_is_used_refused_or_told(tmp_path, name, drawn, capfd,
     assert not recwarn.list
 
 
+@pytest.mark.unit
 def test_there_are_sixty_and_more() -> None:
     assert len(MESHES) >= 60
     assert {mesh.ending for mesh in MESHES.values()} >= {"stl", "obj", "dae"}

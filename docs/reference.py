@@ -257,6 +257,7 @@ _COMMANDS = {"help": "--help", "list": "list", "show": "show walk", "schema": "s
 VALUES: dict[str, str] = {
     "chunk": f"{CHUNK_PERIOD_NS / 1e6:g} ms",
     "scenarios": str(len(catalogue.OWN)),
+    "models": result_tables.models_held(),
     "knees": f"{standing.measured('walk', 'knee_angle_mean'):.0f}",
     **{f"{kind}calls": str(_LIMITS[name]["calls of a tick without a plan"]) for kind, name in _CALLS.items()},
     **{f"{kind}calls_plan": str(_LIMITS[name]["calls of a tick with a plan"]) for kind, name in _CALLS.items()},

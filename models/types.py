@@ -161,6 +161,7 @@ class RobotDescription:
         bodies: all body names.
         kept_apart: pairs of named contact shapes of different limbs that the controller keeps apart.
         imu: where its own IMU is, whose readings an estimator gets.
+        left_out: parts of its model that this description has not, one line each; the verdict of each run tells them.
     """
 
     name: str
@@ -187,6 +188,7 @@ class RobotDescription:
     bodies: tuple[str, ...]
     kept_apart: tuple[tuple[str, str], ...]
     imu: ImuPlace = ImuPlace()
+    left_out: tuple[str, ...] = ()
 
     def __post_init__(self) -> None:
         """Refuse what contradicts itself."""
@@ -197,7 +199,7 @@ class RobotDescription:
             self._check_names(("imu", "body"), (self.imu.body,), self.bodies, "body")
         self._check_roles()
         if not 0.0 < self.shank_spacing < np.inf:
-            what = f"shank_spacing of {self.name} is {self.shank_spacing} m"
+            what = f"shank_spacing of {self.name} is {self.shank_spacing:.6g} m"
             raise RobotError(("shank_spacing",), what, "it must be a positive distance")
 
     def joint_indices(self, names: Iterable[str]) -> tuple[int, ...]:
@@ -219,7 +221,7 @@ class RobotDescription:
         """Refuse the value of the first wrong joint of an array."""
         if wrong.any():
             joint = int(np.argmax(wrong))
-            what = f"{name} of joint '{self.joint_names[joint]}' of {self.name} is {getattr(self, name)[joint]}"
+            what = f"{name} of joint '{self.joint_names[joint]}' of {self.name} is {getattr(self, name)[joint]:.6g}"
             raise RobotError((name, joint), what, f"it {rule}")
 
     def _check_roles(self) -> None:

@@ -1,19 +1,18 @@
 """An MJCF as a Pinocchio model: what MuJoCo compiled of it, with all defaults and includes."""
 
-import re
-from pathlib import Path, PurePath
+from pathlib import Path
 
 import numpy as np
 import pinocchio as pin
 
 from surefoot.engine import mujoco
-from surefoot.models.robot_file.mesh_file import binary_stl, burden, mesh_content, triangles
-from surefoot.models.robot_file.meshes import thinned
+from surefoot.models.robot_file.compiled import Bare
+from surefoot.models.robot_file.magnitudes import Part
 from surefoot.models.robot_file.mjcf import Assembled
-from surefoot.models.robot_file.paths import is_file
 from surefoot.models.robot_file.schema import RobotFile
 from surefoot.models.robot_file.shapes import (
     Shape,
+    Told,
     box,
     capsule,
     cylinder,
@@ -21,7 +20,6 @@ from surefoot.models.robot_file.shapes import (
     placed,
     require_moderate,
     solid,
-    told_missing,
 )
 from surefoot.models.robot_file.source import ROOT, Source, physical
 from surefoot.models.types import Array, RobotError
@@ -32,14 +30,6 @@ _LEGS = 8
 
 _MESH = int(mujoco.mjtGeom.mjGEOM_MESH)
 
-MOST_COMPILED = 400_000
-"""Triangles of all meshes that MuJoCo compiles, 1.3 kB and 6 us each; dense meshes of more become coarser."""
-
-_MOST_OF_STL = 200_000
-"""Triangles that MuJoCo takes of one STL."""
-
-_INFERRED = 'inertiafromgeom="true"'
-
 
 def read_mjcf(file: RobotFile, path: Path, document: Assembled) -> Source:
     """Read a robot's MJCF.
@@ -47,100 +37,14 @@ def read_mjcf(file: RobotFile, path: Path, document: Assembled) -> Source:
     Raises:
         RobotError: MuJoCo does not compile it, or it is no single robot of hinges.
     """
-    notes: list[str] = []
-    try:
-        mj = _bare(path, document, notes).compile()
-    except RobotError:
-        raise
-    except Exception as error:
-        raise RobotError(("model",), f"{path}: {_placed(str(error), document)}", "mend it") from None
-    return _Reader(mj, file, path, _robot_of(mj, path, notes), notes).read()
+    notes, left_out = list[str](), list[str]()
+    bare = Bare(path, document, notes)
+    mj = bare.compiled()
+    Told(notes, left_out).missing("visual", bare.unseen)
+    return _Reader(mj, file, path, _robot_of(mj, path, left_out), notes, left_out).read()
 
 
-def _bare(path: Path, document: Assembled, notes: list[str]) -> mujoco.MjSpec:
-    """The document without what is no part of a robot: contacts with a ground, and looks that are missing.
-
-    Raises:
-        RobotError: a mesh is missing that the robot touches with, or that says how heavy it is.
-    """
-    files = {name: text.encode() for name, text in document.models.items()}
-    there = {name: mesh for name, mesh in document.meshes.items() if is_file(mesh)}
-    spec = mujoco.MjSpec.from_string(document.text, files, files)
-    for part in (*spec.pairs, *spec.excludes):
-        spec.delete(part)
-    missing = {mesh.name: document.meshes[mesh.file] for mesh in spec.meshes if mesh.file and mesh.file not in there}
-    told = []
-    for geom in [geom for geom in spec.geoms if geom.meshname in missing]:
-        body, file = geom.parent, missing[geom.meshname]
-        what = f"body '{body.name}' of {path}: mesh {file.name} is not there"
-        if geom.contype or geom.conaffinity or not body.explicitinertial:
-            raise RobotError(("model",), what, f"put it at {file}")
-        told.append(what)
-        spec.delete(geom)
-    for mesh in [mesh for mesh in spec.meshes if mesh.name in missing]:
-        spec.delete(mesh)
-    notes += told_missing("visual", told)
-    spec.assets = files | _moderate(spec, path, document, there, notes)
-    return spec
-
-
-def _moderate(
-    spec: mujoco.MjSpec, path: Path, document: Assembled, there: dict[str, Path], notes: list[str]
-) -> dict[str, bytes]:
-    """What is in the mesh files of a document, dense ones made coarser where they say nothing of inertia or size.
-
-    Raises:
-        RobotError: a mesh cannot be read, or those that cannot be made coarser have too many triangles.
-    """
-    sources = {name: (mesh, PurePath(name).suffix) for name, mesh in there.items()}
-    contents = {source: mesh_content(*source) for source in dict.fromkeys(sources.values())}
-    costs = {source: burden(source[1], data) for source, data in contents.items()}
-    burdens = {name: costs[source] for name, source in sources.items()}
-    found = {name: contents[source] for name, source in sources.items()}
-    exact, meshes = _exact(spec, document), [mesh for mesh in spec.meshes if mesh.file in there]
-    free = [mesh for mesh in meshes if mesh.name not in exact and not mesh.file.endswith(".msh")]
-    fixed = sum(burdens[mesh.file] for mesh in meshes) - sum(burdens[mesh.file] for mesh in free)
-    if fixed > MOST_COMPILED:
-        what = f"{path}: it has {fixed} triangles in MSH and in meshes by which bodies have inertia or size"
-        raise RobotError(("model",), what, f"give STL and bodies with an inertial, or at most {MOST_COMPILED}")
-    level = _level(sorted(burdens[mesh.file] for mesh in free), max(MOST_COMPILED - fixed, MOST_COMPILED // 4))
-    most, thin = min(level, _MOST_OF_STL), dict[tuple[Path, str], bytes]()
-    for mesh in [mesh for mesh in free if burdens[mesh.file] > most]:
-        source = sources[mesh.file]
-        if source not in thin:
-            thin[source] = binary_stl(thinned(triangles(*source, contents[source]), most))
-        mesh.file = f"thin {PurePath(mesh.file).stem}.stl"
-        mesh.inertia = mujoco.mjtMeshInertia.mjMESH_INERTIA_SHELL  # says nothing here, and a volume may be missing
-        found[mesh.file] = thin[source]
-    if thin:
-        names = ", ".join(sorted({file.name for file, _ in thin}))
-        notes.append(f"meshes are dense and made coarser, with at most {most} triangles each: {names}")
-    used = {mesh.file for mesh in spec.meshes}
-    return {name: data for name, data in found.items() if name in used}
-
-
-def _exact(spec: mujoco.MjSpec, document: Assembled) -> set[str]:
-    """Names of meshes by which a body has its inertia, or a geom of another shape its size."""
-    inferred = any(_INFERRED in text for text in (document.text, *document.models.values()))
-    found = set()
-    for geom in spec.geoms:
-        weightless = geom.mass == 0.0 or (np.isnan(geom.mass) and geom.density == 0.0)
-        weighs = not weightless and (inferred or not geom.parent.explicitinertial)
-        if geom.meshname and (weighs or geom.type != mujoco.mjtGeom.mjGEOM_MESH):
-            found.add(geom.meshname)
-    return found
-
-
-def _level(counts: list[int], most: int) -> int:
-    """Up to what each of some ascending counts may go so that together they are at most `most`."""
-    for at, count in enumerate(counts):
-        if count * (len(counts) - at) > most:
-            return most // (len(counts) - at)
-        most -= count
-    return most + max(counts, default=0)
-
-
-def _robot_of(mj: mujoco.MjModel, path: Path, notes: list[str]) -> int:
+def _robot_of(mj: mujoco.MjModel, path: Path, left_out: list[str]) -> int:
     """The body in the world that is a robot: the only one, or the only one with joints enough for two legs.
 
     Raises:
@@ -154,14 +58,16 @@ def _robot_of(mj: mujoco.MjModel, path: Path, notes: list[str]) -> int:
         raise RobotError(("model",), f"{path}: has the bodies {names} in its world", "give a file with one robot alone")
     others = [f"'{mj.body(body).name}'" for body in roots if body not in robots]
     if others:
-        notes.append(f"left out, beside the robot in the world of its model: {', '.join(others)}")
+        left_out.append(f"left out: {', '.join(others)}, beside the robot in the world of its model")
     return robots[0]
 
 
 class _Reader:
     """Goes through the bodies of a compiled model; welded ones become part of what they are welded to."""
 
-    def __init__(self, mj: mujoco.MjModel, file: RobotFile, path: Path, root: int, notes: list[str]) -> None:
+    def __init__(
+        self, mj: mujoco.MjModel, file: RobotFile, path: Path, root: int, notes: list[str], left_out: list[str]
+    ) -> None:
         self._mj, self._file, self._path, self._root = mj, file, path, root
         self._model = pin.Model()
         self._model.name = file.name
@@ -170,7 +76,7 @@ class _Reader:
         self._names = [mj.body(body).name or _free(f"body{body}", self._links) for body in range(mj.nbody)]
         self._place: dict[int, tuple[int, pin.SE3]] = {}
         self._added: dict[int, int] = {}
-        self._notes = notes
+        self._notes, self._left_out = notes, left_out
 
     def read(self) -> Source:
         """The whole robot."""
@@ -179,11 +85,12 @@ class _Reader:
             if mj.body_rootid[body] == self._root:
                 self._add_body(body)
         self._add_sites()
-        source = Source(self._model, (), (), (), self._notes)
+        source = Source(self._model, (), (), (), self._notes, self._left_out)
+        source.parts = tuple(map(self._part, self._place))
         self._add_limits()
         self._add_shapes(source)
         if mj.dof_damping[6:].any() or mj.dof_frictionloss[6:].any():
-            self._notes.append("damping and friction of joints in the model are left out")
+            self._left_out.append("left out: damping and friction of joints")
         return source
 
     def _add_body(self, body: int) -> None:
@@ -248,6 +155,11 @@ class _Reader:
         repaired = physical(about, float(mj.body_mass[body]), name, self._file, self._path, self._notes)
         return pin.Inertia(float(mj.body_mass[body]), mj.body_ipos[body], about if repaired is None else repaired)
 
+    def _part(self, body: int) -> Part:
+        mj = self._mj
+        moment = float(mj.body_inertia[body].max())
+        return Part(self._name(body), float(mj.body_mass[body]), np.array(mj.body_ipos[body]), moment)
+
     def _add_limits(self) -> None:
         """Torques from the motors; of speeds an MJCF knows nothing."""
         model = self._model
@@ -282,6 +194,9 @@ class _Reader:
                 (collision if touches else visual).extend(self._shape(geom))
                 require_moderate((*visual, *collision))
         source.visual, source.collision = tuple(visual or collision), tuple(collision)
+        if visual and not collision:
+            why = "no geom of the model collides (contype and conaffinity are 0)"
+            self._notes.append(f"{why}, so links touch by what is drawn of them")
 
     def _shape(self, geom: int) -> list[Shape]:
         """The geom as triangles; none for planes and fields."""
@@ -313,14 +228,6 @@ def _free(name: str, taken: set[str]) -> str:
         name += "_"
     taken.add(name)
     return name
-
-
-def _placed(said: str, document: Assembled) -> str:
-    """What MuJoCo says in one line, with the place where it stands in the files."""
-    line = re.search(r",? *\bline (\d+)", said)
-    place = document.places[int(line[1]) - 1] if line and 0 < int(line[1]) <= len(document.places) else ""
-    said = " ".join((said.replace(line[0], "") if line else said).split())[:200]
-    return f"{said}, {place}" if place else said
 
 
 def _placement(position: Array, quaternion: Array) -> pin.SE3:

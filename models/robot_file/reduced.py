@@ -8,6 +8,7 @@ import pinocchio as pin
 
 from surefoot.models.joints import is_revolute
 from surefoot.models.robot_file.files import srdf_of
+from surefoot.models.robot_file.magnitudes import check_angle, check_joints
 from surefoot.models.robot_file.motors import read_srdf, require_limits, set_armature, set_limits
 from surefoot.models.robot_file.schema import RobotFile, matched
 from surefoot.models.robot_file.shapes import Shape, placed
@@ -39,6 +40,7 @@ class Reduced:
         turned: angle about z by which the base's frame was turned [rad].
         states: postures of the SRDF by name.
         notes: what was derived or altered.
+        left_out: see `Source`.
     """
 
     model: pin.Model
@@ -49,6 +51,7 @@ class Reduced:
     turned: float
     states: dict[str, dict[str, float]]
     notes: list[str]
+    left_out: list[str]
 
     def joint_of(self, link: str, key: str) -> int:
         """The joint that moves a link.
@@ -100,12 +103,13 @@ def reduced(file: RobotFile, source: Source, path: Path) -> Reduced:
     model = _without(full, list(locked), q)
     model.name = file.name
     require_limits(model, notes)
+    notes += check_joints(model)
     frames = tuple(frame_of(model, link, "feet") for link in (feet.left, feet.right))
     turned = _turn(model, frames, file, notes)
     bodies = _bodies(full, tuple(model.names)[1:])
     _require_inertias(model, bodies, {full.names[joint] for joint in left | right}, file, notes)
     visual, collision = (_by_joint(model, shapes) for shapes in (source.visual, source.collision))
-    return Reduced(model, bodies, (frames[0], frames[1]), visual, collision, turned, states, notes)
+    return Reduced(model, bodies, (frames[0], frames[1]), visual, collision, turned, states, notes, source.left_out)
 
 
 def _above(model: pin.Model, left: set[int], right: set[int]) -> set[int]:
@@ -157,6 +161,7 @@ def _locked(
         if not meant:
             what = f"lock of {file.name} has the pattern '{pattern}', which matches no joint"
             raise RobotError(("lock", pattern), what, nearest(pattern, names))
+        check_angle(f"lock of {file.name} with '{pattern}'", angle or 0.0, ("lock", pattern))
         given |= dict.fromkeys(meant, angle)
     found: dict[int, tuple[str, float]] = {}
     for joint in range(2, model.njoints):

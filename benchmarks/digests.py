@@ -1,11 +1,11 @@
-"""Behaviour to the bit: a digest of every walk, to hold a change of the code against the code before it.
+"""Behaviour to the bit: digests of every channel of about sixty runs, to hold a change against the code before it.
 
-    python benchmarks/digests.py --out before.json            # on the old code
-    python benchmarks/digests.py --against before.json        # on the new; exits 1 where a walk differs
+    python benchmarks/digests.py --out before.json --jobs 2            # on the old code, ten minutes of two cores
+    python benchmarks/digests.py --against before.json --jobs 2        # on the new; exits 1 where a run differs
 
-A digest covers time, CoM, its velocity, ZMP, the fall and the plan's CoM and ZMP reference of each tenth control tick.
-Physics amplifies what differs between them. Walks that are refused count with their refusal. All have the true state,
-so that code before the sensors can be held against as well.
+Runs are those of the catalogue with the sensors that they name, walks on the pendulum, pushes and punches
+at random with fixed seeds, other sensors, and other robots. All channels count but those of the wall's clock and of the
+process. A run that is refused counts with its refusal.
 """
 
 import argparse
@@ -13,8 +13,9 @@ import hashlib
 import json
 import multiprocessing
 import sys
+import tempfile
 import time
-from collections.abc import Iterator
+from collections.abc import Iterator, Mapping
 from pathlib import Path
 from typing import Any
 
@@ -25,43 +26,56 @@ from surefoot.scenarios.catalogue import CONTROLS, OWN
 
 Overrides = dict[str, Any]
 
-EVERY = 10
-"""Control ticks per tick that is looked at."""
+OF_THE_CLOCK = ("/timing", "/process")
+"""Topics that differ from run to run."""
 
 PENDULUM: Overrides = {"fidelity": "pendulum"}
+GOOD: Overrides = {"sensing.source": "ekf", "sensing.preset": "good"}
+CHEAP: Overrides = {**GOOD, "sensing.preset": "cheap"}
 
 
-def pushed(force: tuple[float, float], step: int, phase: str, fraction: float, body: str | None = None) -> Overrides:
-    """A push of 0.1 s at a phase of a step, in the world frame [N]."""
-    push = {"step": step, "phase": phase, "fraction": fraction, "duration": 0.1, "force": [*force, 0.0]}
-    return {"pushes": [push if body is None else {**push, "body": body}]}
+def pushed(seed: int, least: float, most: float, body: str | None = None) -> Overrides:
+    """A push of 0.1 s at random: its impulse per mass from a range [N·s/kg], its direction, step and moment."""
+    rng = np.random.default_rng(seed)
+    push = {
+        "step": int(rng.integers(4, 9)),
+        "phase": ("single", "double")[int(rng.integers(2))],
+        "fraction": round(float(rng.uniform()), 3),
+        "duration": 0.1,
+        "impulse": round(float(rng.uniform(least, most)), 3),
+        "direction": round(float(rng.uniform(-np.pi, np.pi)), 3),
+    }
+    return {"pushes": [push if body is None else {**push, "body": body}], "criteria": {"fell": False}}
 
 
 def catalogue() -> Iterator[tuple[str, Overrides]]:
-    """The whole catalogue in both fidelities, and the controls."""
-    for name in OWN:
-        yield name, PENDULUM
-        yield name, {"fidelity": "full"}
-    for name in CONTROLS:
+    """All scenarios as they stand, and some on the pendulum."""
+    for name in (*OWN, *CONTROLS):
         yield name, {}
+    for name in ("walk", "stairs-up", "walk-turn", "commanded", "paper-walk", "paper-push"):
+        yield name, PENDULUM
 
 
 def pushes() -> Iterator[tuple[str, Overrides]]:
-    """Pushed walks: four directions, three phases, what may change about a step, walks on faces, told ones, stands."""
-    directions = ((200.0, 0.0), (-200.0, 0.0), (0.0, 160.0), (0.0, -160.0))
-    for number, force in enumerate(directions):
-        for adaptation in ("location", "timing", "crossing"):
-            phase, fraction = (("single", 0.1), ("single", 0.6), ("double", 0.3))[number % 3]
-            yield "walk", {**PENDULUM, "planner.step_adaptation": adaptation, **pushed(force, 6, phase, fraction)}
-        yield "walk", pushed(force, 6, "single", 0.2)
-        yield "walk", pushed(force, 7, "double", 0.5)
-        yield "stand", {**PENDULUM, "pushes": [{"time": 1.0, "duration": 0.1, "force": [*(2.0 * np.array(force)), 0]}]}
-        yield "walk-sideways", {**PENDULUM, **pushed(force, 5, "single", 0.4)}
-        yield "stairs-up", {**PENDULUM, **pushed(tuple(0.5 * np.array(force)), 5, "single", 0.4)}
-    for name in ("walk-backward", "walk-curve", "walk-fast", "slope", "commanded", "waypoints"):
-        yield name, {**PENDULUM, "pushes": [{"time": 4.0, "duration": 0.1, "force": [120, 90, 0]}]}
-    for name in ("stairs-up", "stairs-down", "blocks"):
-        yield name, {"pushes": [{"time": 4.0, "duration": 0.1, "force": [80, 40, 0]}]}
+    """Pushes and punches at random of three robots, from sensors and from the true state."""
+    for seed in range(4):
+        yield "walk", pushed(seed, 0.2, 0.6)
+        yield "walk", {"sensing.preset": None, **pushed(100 + seed, 0.2, 0.6)}
+        yield "walk", {"robot": "g1", "sized_for": "humanoid100", **pushed(200 + seed, 0.2, 0.6)}
+    yield "walk", {"robot": "talos", "sized_for": "humanoid100", "sensing.preset": None, **pushed(300, 0.2, 0.4)}
+    yield "walk", pushed(400, 0.1, 0.3, "left_forearm")
+    yield "stairs-up", pushed(500, 0.05, 0.15)
+    yield "walk", {**PENDULUM, **pushed(600, 0.2, 0.6)}
+    yield "stand", {**PENDULUM, "pushes": [{"time": 1.0, "duration": 0.1, "force": [400, 0, 0]}]}
+
+
+def sensors() -> Iterator[tuple[str, Overrides]]:
+    """Other sensors, none in the feet, and motors that err."""
+    yield "walk", CHEAP
+    yield "stairs-up", CHEAP
+    yield "walk", {**GOOD, "sensing.wrench": "none"}
+    yield "walk-turn", {"sensing.preset": None}
+    yield "walk", {"motors": {"delay": 0.004, "noise": 2.0, "friction_loss": 1.0}}
 
 
 def robots() -> Iterator[tuple[str, Overrides]]:
@@ -69,43 +83,43 @@ def robots() -> Iterator[tuple[str, Overrides]]:
     for name in ("g1", "talos", "alexander"):
         sized = {"robot": name, "sized_for": "humanoid100"}
         yield "walk", sized
-        yield "walk", {**sized, **pushed((40.0, 20.0), 6, "single", 0.3)}
-        yield "stairs-up", {**sized, **PENDULUM}
+        yield "stairs-up", {**sized, "sensing.preset": None}
 
 
-QUICK = ("walk", "paper-push", "stairs-up", "commanded")
-"""Walks in full physics of the quick set, beside all on the pendulum."""
+def walks() -> list[tuple[str, Overrides]]:
+    """Scenario and overrides of each run."""
+    return [*catalogue(), *pushes(), *sensors(), *robots()]
 
 
-def walks(quick: bool) -> list[tuple[str, Overrides]]:
-    """Scenario and overrides of each walk."""
-    every = [*catalogue(), *pushes(), *robots()]
-    if not quick:
-        return every
-    full = [(name, {"fidelity": "full"}) for name in QUICK]
-    return [walk for walk in every if walk[1].get("fidelity") == "pendulum" or walk[0] in CONTROLS or walk in full]
+def label_of(walk: tuple[str, Overrides]) -> str:
+    """Name of a run."""
+    return f"{walk[0]} {json.dumps(walk[1], sort_keys=True)}"
 
 
-def digest(walk: tuple[str, Overrides]) -> tuple[str, str]:
-    """Name of a walk, and what it did in one line."""
+def digests(walk: tuple[str, Overrides]) -> tuple[str, Mapping[str, str]]:
+    """Name of a run, and the digest of each of its channels by topic, with how it ended."""
     name, overrides = walk
-    label = f"{name} {json.dumps(overrides, sort_keys=True)}"
     try:
-        simulation = surefoot.Simulation(surefoot.load(name, {"sensing.source": "truth", **overrides}))
+        with tempfile.TemporaryDirectory() as folder:
+            result = surefoot.run(surefoot.load(name, overrides), out=folder)
+            log = surefoot.read(result.log)
+            found = {topic: channel_digest(log, topic) for topic in log.topics if topic not in OF_THE_CLOCK}
+            return label_of(walk), {"end": json.dumps(log.metadata["end"], sort_keys=True), **found}
     except (surefoot.ScenarioError, surefoot.SetupError) as error:
-        return label, f"refused: {error}"
-    found, ticks = hashlib.sha256(), 0
-    with simulation:
-        while not simulation.done:
-            simulation.advance()
-            ticks += 1
-            if ticks % EVERY == 0 or simulation.done:
-                tick = simulation.look()
-                plan = tick.plan
-                seen = (tick.time, tick.com, tick.com_velocity, tick.zmp, tick.fell, plan.com, plan.zmp_reference)
-                for value in seen:
-                    found.update(np.asarray(value, dtype=np.float64).tobytes())
-        return label, f"{found.hexdigest()[:16]} {ticks} ticks, {simulation.end.kind}"
+        return label_of(walk), {"refused": str(error)}
+
+
+def channel_digest(log: surefoot.Log, topic: str) -> str:
+    """Digest of the times and contents of all messages of a topic in order of time."""
+    found = hashlib.sha256()
+    for stamp, content in sorted(log.messages(topic), key=lambda message: message[0]):
+        found.update(stamp.to_bytes(8, "little") + content)
+    return found.hexdigest()[:16]
+
+
+def moved(before: Mapping[str, str], now: Mapping[str, str]) -> list[str]:
+    """Topics, or what else is told of a run, that are not as before."""
+    return [key for key in {**before, **now} if before.get(key) != now.get(key)]
 
 
 def main() -> int:
@@ -113,25 +127,26 @@ def main() -> int:
     parser = argparse.ArgumentParser(description=__doc__.split("\n", 1)[0])
     parser.add_argument("--out", type=Path, help="file to write the digests to")
     parser.add_argument("--against", type=Path, help="digests to hold these against")
-    parser.add_argument("--quick", action="store_true", help="walks on the pendulum and four in full physics")
-    parser.add_argument("--only", default="", help="walks whose line contains this")
+    parser.add_argument("--only", default="", help="runs whose line contains this")
     parser.add_argument("--jobs", type=int, default=1)
     options = parser.parse_args()
-    chosen = [walk for walk in walks(options.quick) if options.only in f"{walk[0]} {json.dumps(walk[1])}"]
+    chosen = [walk for walk in walks() if options.only in label_of(walk)]
     begin = time.perf_counter()
     with multiprocessing.get_context("spawn").Pool(options.jobs, maxtasksperchild=12) as pool:
-        found = dict(pool.imap_unordered(digest, chosen, chunksize=1))
-    print(f"{len(found)} walks in {time.perf_counter() - begin:.0f} s", file=sys.stderr)
+        found = dict(pool.imap_unordered(digests, chosen, chunksize=1))
+    print(f"{len(found)} runs in {time.perf_counter() - begin:.0f} s", file=sys.stderr)
     if options.out is not None:
         options.out.write_text(json.dumps(found, indent=1, sort_keys=True) + "\n")
     if options.against is None:
         return 0
     before = json.loads(options.against.read_text())
-    moved = [label for label in found if found[label] != before.get(label)]
-    for label in sorted(moved):
-        print(f"{label}\n    before: {before.get(label, 'no such walk')}\n    now:    {found[label]}")
-    print(f"{len(found) - len(moved)} of {len(found)} equal to the bit")
-    return 1 if moved else 0
+    others = {label: moved(before.get(label, {"run": "none"}), now) for label, now in sorted(found.items())}
+    for label, topics in others.items():
+        if topics:
+            print(f"{label}\n    differs in {', '.join(topics)}")
+    count = sum(not topics for topics in others.values())
+    print(f"{count} of {len(others)} equal to the bit")
+    return int(count < len(others))
 
 
 if __name__ == "__main__":

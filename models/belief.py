@@ -118,7 +118,7 @@ def with_joint_losses(description: RobotDescription, damping: float, friction: f
     """
     for name, value in (("damping", damping), ("friction", friction)):
         if not 0.0 <= value < math.inf:
-            what = f"the joints of {description.name} shall have a {name} of {value}"
+            what = f"the joints of {description.name} shall have a {name} of {value:.6g}"
             raise RobotError((name,), what, "it must be at least 0")
     root = ElementTree.fromstring(description.mjcf)
     for joint in (joint for joint in root.iter("joint") if joint.get("name") in description.joint_names):
@@ -134,7 +134,7 @@ def with_load(description: RobotDescription, mass: float, body: str | None = Non
         RobotError: the mass is negative or not finite, or the body is unknown or has no inertial.
     """
     if not 0.0 <= mass < math.inf:
-        what = f"{description.name} shall carry {mass} kg"
+        what = f"{description.name} shall carry {mass:.6g} kg"
         raise RobotError(("mass",), what, "it must be a finite mass of at least 0 kg")
     root = ElementTree.fromstring(description.mjcf)
     inertial = _inertial(root, description, body or description.torso_body)

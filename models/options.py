@@ -29,7 +29,7 @@ def check_foot_size(options: RobotOptions) -> None:
     """
     for key, value in (("foot_length", options.foot_length), ("foot_width", options.foot_width)):
         if value is not None and not 0.01 <= value <= 0.5:
-            raise RobotError((key,), f"robot option {key} is {value} m", "it must lie within 0.01 and 0.5 m")
+            raise RobotError((key,), f"robot option {key} is {value:.6g} m", "it must lie within 0.01 and 0.5 m")
 
 
 def with_soles(description: RobotDescription, length: float | None, width: float | None) -> RobotDescription:
@@ -64,7 +64,7 @@ def check_payload(options: RobotOptions, bodies: Sequence[str]) -> None:
     """
     mass, carrier = options.payload_mass, options.payload_body
     if not (math.isfinite(mass) and mass >= 0):
-        what = f"robot option payload_mass is {mass} kg"
+        what = f"robot option payload_mass is {mass:.6g} kg"
         raise RobotError(("payload_mass",), what, "it must be a finite mass of at least 0 kg")
     if carrier is not None and carrier not in bodies:
         what = f"robot option payload_body '{carrier}' is no body of this robot"

@@ -24,8 +24,8 @@ def pinocchio_model(description: RobotDescription) -> pin.Model:
     model = pin.Model(_read(description.mjcf))
     mass = sum(inertia.mass for inertia in model.inertias)
     if abs(mass - description.mass) > 1e-9 * description.mass:
-        what = f"Pinocchio reads {mass} kg from the MJCF of {description.name}"
-        raise RobotError(("mass",), what, f"it must be {description.mass} kg")
+        what = f"Pinocchio reads {mass:.12g} kg from the MJCF of {description.name}"
+        raise RobotError(("mass",), what, f"it must be {description.mass:.12g} kg")
     joints = tuple(model.names)[2:]
     if joints != description.joint_names:
         what = f"Pinocchio reads the joints {joints} of {description.name}"

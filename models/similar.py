@@ -5,8 +5,11 @@ inertia λ⁵, torques λ⁴ (a weight at a lever). So each quotient without a u
 """
 
 import math
+from collections.abc import Mapping
 from dataclasses import replace
 from xml.etree import ElementTree
+
+import numpy as np
 
 from surefoot.models.mjcf import numbers
 from surefoot.models.types import RobotDescription, RobotError, fixed
@@ -27,7 +30,7 @@ def scaled(description: RobotDescription, factor: float) -> RobotDescription:
     """The similar robot that is larger by a factor [-]; of the same name and with the same joint angles.
 
     Raises:
-        RobotError: the factor is not a positive number.
+        RobotError: the factor is not a positive number, or so small that a link would have no moment of inertia.
     """
     if not 0.0 < factor < math.inf:
         what = f"the size of {description.name} shall be scaled by {factor}"
@@ -40,6 +43,7 @@ def scaled(description: RobotDescription, factor: float) -> RobotDescription:
             if attribute in element.attrib:
                 values = element.attrib[attribute].split()
                 element.set(attribute, numbers(factor**power * float(value) for value in values))
+    _require_moments(root, description.name, factor)
     d = description
     x, y, z = d.imu.position
     return replace(
@@ -56,3 +60,28 @@ def scaled(description: RobotDescription, factor: float) -> RobotDescription:
         com_height=factor * d.com_height,
         imu=replace(d.imu, position=(factor * x, factor * y, factor * z)),
     )
+
+
+_LEAST = 1e-14
+"""Moment of inertia of which MuJoCo still tells that it is positive [kg m^2]."""
+
+
+def _require_moments(root: ElementTree.Element, name: str, factor: float) -> None:
+    """Refuse a size at which a link has no moment of inertia.
+
+    Raises:
+        RobotError: one has none.
+    """
+    for body in root.iter("body"):
+        inertial = body.find("inertial")
+        xx, yy, zz, xy, xz, yz = _moments({} if inertial is None else inertial.attrib)
+        least = float(np.linalg.eigvalsh([[xx, xy, xz], [xy, yy, yz], [xz, yz, zz]])[0])
+        if least < _LEAST:
+            what = f"link '{body.get('name', '')}' of {name} has a moment of {least:.2g} kg m^2 at the scale {factor:g}"
+            raise RobotError(("scale",), what, "choose a larger one")
+
+
+def _moments(inertial: Mapping[str, str]) -> tuple[float, ...]:
+    """Moments about x, y and z, and products of xy, xz and yz; ones where a body has none of its own [kg m^2]."""
+    given = [float(value) for value in inertial.get("fullinertia", inertial.get("diaginertia", "1 1 1")).split()]
+    return (*given, 0.0, 0.0, 0.0)[:6]

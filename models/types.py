@@ -199,7 +199,7 @@ class RobotDescription:
             self._check_names(("imu", "body"), (self.imu.body,), self.bodies, "body")
         self._check_roles()
         if not 0.0 < self.shank_spacing < np.inf:
-            what = f"shank_spacing of {self.name} is {self.shank_spacing} m"
+            what = f"shank_spacing of {self.name} is {self.shank_spacing:.6g} m"
             raise RobotError(("shank_spacing",), what, "it must be a positive distance")
 
     def joint_indices(self, names: Iterable[str]) -> tuple[int, ...]:
@@ -221,7 +221,7 @@ class RobotDescription:
         """Refuse the value of the first wrong joint of an array."""
         if wrong.any():
             joint = int(np.argmax(wrong))
-            what = f"{name} of joint '{self.joint_names[joint]}' of {self.name} is {getattr(self, name)[joint]}"
+            what = f"{name} of joint '{self.joint_names[joint]}' of {self.name} is {getattr(self, name)[joint]:.6g}"
             raise RobotError((name, joint), what, f"it {rule}")
 
     def _check_roles(self) -> None:

@@ -13,7 +13,7 @@ from typing import Any
 import numpy as np
 
 from surefoot import kept
-from surefoot.models.robot_file.document import MESH, Kind, content, signature
+from surefoot.models.robot_file.document import MESH, Kind, content, raw, signature
 from surefoot.models.types import ImuPlace, JointRoles, RobotDescription, RobotError
 
 _ENGINES = ("pin", "coal", "mujoco", "numpy", "scipy", "fast-simplification")
@@ -34,7 +34,7 @@ def digest(files: Iterable[tuple[str, Path | None]]) -> str:
     for reference, file in files:
         key = () if file is None else signature(file)
         if file is not None and key not in read:
-            read[key] = hashlib.sha256(content(file, MESH)).hexdigest()
+            read[key] = hashlib.sha256(raw(file, MESH)).hexdigest()
         sha.update(repr((reference, str(file), read.get(key))).encode())
     return sha.hexdigest()
 

@@ -9,6 +9,7 @@ import pinocchio as pin
 from surefoot.models.robot_file.bindings import rolling, told_rolling
 from surefoot.models.robot_file.imu import find_imu
 from surefoot.models.robot_file.legs import at, find_legs, rest, solved
+from surefoot.models.robot_file.magnitudes import check_figure
 from surefoot.models.robot_file.meshes import decimated
 from surefoot.models.robot_file.reduced import Reduced, reduced
 from surefoot.models.robot_file.schema import RobotFile, matched
@@ -31,6 +32,9 @@ _CLEAR = 0.01
 
 _FREE = 0.04
 """Distance of hanging arms from thighs and trunk, over the leg's length: a push at the trunk swings them [-]."""
+
+_FEWEST = 4
+"""Vertices that a mesh has for an engine."""
 
 _NEAR = 0.005
 """Distance in the posture, over the leg's length, below which links may overlap for good [-]."""
@@ -87,6 +91,7 @@ class _Deriver:
         excluded = self._excluded([straight, posture])
         mjcf = robot_text(self._parts(excluded, looks=True))
         com_height = self._com_height(posture)
+        self._check_figure(com_height)
         description = self._description(mjcf, straight, posture, com_height, excluded)
         self._say(description, excluded)
         return Derived(description, tuple(self.lines), (*self.reduced.notes, *description.left_out))
@@ -131,7 +136,7 @@ class _Deriver:
             joint = names.index(name) + 7
             lower, upper = float(self.model.lowerPositionLimit[joint]), float(self.model.upperPositionLimit[joint])
             if not lower <= angle <= upper:
-                what = f"posture of {self.file.name} has joint '{name}' at {angle} rad"
+                what = f"posture of {self.file.name} has joint '{name}' at {angle:.6g} rad"
                 raise RobotError(("posture", name), what, f"it must lie within {lower:.3f} and {upper:.3f} rad")
         return given
 
@@ -179,8 +184,16 @@ class _Deriver:
         small = decimated([(shape.vertices, shape.faces) for shape in shapes])
         looks: list[list[Shape]] = [[] for _ in range(self.model.njoints)]
         for joint, shape, (vertices, faces) in zip(joints, shapes, small, strict=True):
-            if len(faces):
+            if len(faces) and len(vertices) >= _FEWEST:
                 looks[joint].append(Shape(shape.link, vertices, faces, shape.rgba))
+        lost = [
+            body
+            for body, look, of in zip(self.reduced.bodies, looks[1:], self.reduced.visual[1:], strict=True)
+            if of and not look
+        ]
+        if lost:
+            what = "which is too small or too flat to be seen"
+            self.reduced.left_out.append(f"left out: what is drawn of {', '.join(lost)}, {what}")
         return looks
 
     def _excluded(self, postures: list[Array]) -> list[tuple[str, str]]:
@@ -198,6 +211,12 @@ class _Deriver:
         com = pin.centerOfMass(self.model, data, q)
         leg = self.legs[0]
         return float(com[2] - (data.oMi[leg.joints[-1]] * leg.sole.placement).translation[2])
+
+    def _check_figure(self, com_height: float) -> None:
+        data, leg = at(self.model, rest(self.model)), self.legs[0]
+        centre = max(float(np.linalg.norm(leg.sole.placement.translation)) for leg in self.legs)
+        to_ankle = float(np.linalg.norm(leg.hip - data.oMi[leg.joints[-1]].translation))
+        check_figure(self.file.name, self.leg_length, to_ankle, centre, (self.sole[0], self.sole[1]), com_height)
 
     def _meeting(self, excluded: list[tuple[str, str]]) -> list[tuple[int, int]]:
         """Limbs that can meet, but for those that overlap for good."""

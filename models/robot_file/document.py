@@ -1,14 +1,17 @@
 """Files read with bounds, and XML as a tree whose elements know their lines: whoever wrote them, they cost little."""
 
+import codecs
 import re
 import stat
 from collections.abc import Iterator
 from pathlib import Path
+from shlex import quote
 from typing import NoReturn
 from xml.etree import ElementTree
 from xml.parsers import expat
 
 from surefoot.models.types import RobotError
+from surefoot.pointers import IS_A_POINTER, is_pointer
 from surefoot.values import dataclass
 
 MOST_ELEMENTS = 20_000
@@ -45,8 +48,8 @@ MESH = Kind(("model",), "mesh ", 64 << 20, "give STL, DAE or OBJ")
 MESH_TEXT = Kind(("model",), "mesh ", 32 << 20, "give at most 32 MiB of DAE or OBJ, or binary STL")
 
 
-def content(path: Path, kind: Kind) -> bytes:
-    """What is in a file.
+def raw(path: Path, kind: Kind) -> bytes:
+    """What is in a file, whatever it is.
 
     Raises:
         RobotError: it is no regular file, larger than one of its kind may be, or cannot be read.
@@ -65,16 +68,71 @@ def content(path: Path, kind: Kind) -> bytes:
     raise RobotError(kind.key, f"{kind.noun}{path}: {reason}", kind.right)
 
 
-def text_of(path: Path, kind: Kind) -> str:
-    """Text of a file.
+def content(path: Path, kind: Kind) -> bytes:
+    """What is in a file that is there, and of which nothing else stands in the place.
 
     Raises:
-        RobotError: it cannot be read, or is no UTF-8.
+        RobotError: as `raw`, or it is a Git LFS pointer.
     """
+    data = raw(path, kind)
+    if is_pointer(data):
+        what, _, right = IS_A_POINTER.partition("; ")
+        raise RobotError(kind.key, f"{kind.noun}{path}: {what}", right)
+    return data
+
+
+def text_of(path: Path, kind: Kind) -> str:
+    """Text of a file, in the encoding that it names itself, or else in UTF-8.
+
+    Raises:
+        RobotError: it cannot be read, or is no text in that encoding.
+    """
+    return decoded(content(path, kind), path, kind)
+
+
+_MARKS = {
+    codecs.BOM_UTF8: "utf-8-sig",
+    codecs.BOM_UTF32_LE: "utf-32",
+    codecs.BOM_UTF32_BE: "utf-32",
+    codecs.BOM_UTF16_LE: "utf-16",
+    codecs.BOM_UTF16_BE: "utf-16",
+    b"<\0?\0": "utf-16-le",
+    b"\0<\0?": "utf-16-be",
+}
+"""Encoding by how a file begins: byte order marks, UTF-32 before UTF-16, and XML without one (XML 1.0, appendix F)."""
+
+_DECLARED = re.compile(rb"""\s*<\?xml\s[^>]*?encoding\s*=\s*["']([A-Za-z][A-Za-z0-9._-]*)["']""")
+
+
+_OF_TEXTS = ("ascii", "big5", "cp", "euc", "gb", "iso8859", "koi8", "mac", "shift_jis", "utf-8")
+"""Beginnings of the encodings, as Python calls them, that an XML file may name and that are none of programs."""
+
+
+def decoded(data: bytes, path: Path, kind: Kind) -> str:
+    """Bytes of a file as text: in the encoding that they name themselves where they are text in it, or else in UTF-8.
+
+    Raises:
+        RobotError: they are no such text.
+    """
+    for name in (*_named(data), "utf-8"):
+        try:
+            return data.decode(name)
+        except UnicodeDecodeError:
+            continue
+    told = "".join(f"{name} or " for name in _named(data) if name != "utf-8-sig")
+    raise RobotError(kind.key, f"{kind.noun}{path}: cannot be read, it is no {told}UTF-8 text", kind.right)
+
+
+def _named(data: bytes) -> tuple[str, ...]:
+    """The encoding that bytes name by how they begin, if any; one that its own name contradicts is none."""
+    marked = [name for mark, name in _MARKS.items() if data.startswith(mark)]
+    if marked or not (declared := _DECLARED.match(data)):
+        return tuple(marked[:1])
     try:
-        return content(path, kind).decode("utf-8-sig")
-    except UnicodeDecodeError:
-        raise RobotError(kind.key, f"{kind.noun}{path}: cannot be read, it is no UTF-8 text", kind.right) from None
+        name = codecs.lookup(declared[1].decode()).name
+    except LookupError:
+        return ()
+    return (name,) if name.startswith(_OF_TEXTS) else ()
 
 
 def signature(path: Path) -> tuple[int, ...]:
@@ -84,6 +142,10 @@ def signature(path: Path) -> tuple[int, ...]:
     except (OSError, ValueError):
         return ()
     return status.st_dev, status.st_ino, status.st_size, status.st_mtime_ns, status.st_ctime_ns
+
+
+class UnexpandedError(RobotError):
+    """A file is a xacro that has to be expanded before it is a model."""
 
 
 class Node(ElementTree.Element):
@@ -102,6 +164,13 @@ class Node(ElementTree.Element):
         """Its children."""
         return [child for child in self if isinstance(child, Node)]
 
+    def child(self, tag: str) -> "Node":
+        """A new child at its place."""
+        node = Node(tag)
+        node.file, node.line = self.file, self.line
+        self.append(node)
+        return node
+
     def elements(self) -> "Iterator[Node]":
         """Itself and all below it."""
         yield from (node for node in self.iter() if isinstance(node, Node))
@@ -116,6 +185,7 @@ def read_xml(path: Path, kind: Kind = MODEL) -> Node:
     """The root of an XML file, without text between elements.
 
     Raises:
+        UnexpandedError: something of xacro is left in it.
         RobotError: it cannot be read, is no XML, has entities of its own, or is too large or too deep.
     """
     text = _without_comments(text_of(path, kind))
@@ -149,6 +219,16 @@ class _FoundError(Exception):
         self.root = root
 
 
+_OF_OTHERS = ("gazebo", "ros2_control", "transmission")
+"""Groups of a URDF that other programs read, with places that those fill in."""
+
+_WITHOUT_PREFIX = ("include", "macro", "property", "insert_block", "if", "unless")
+"""Elements of a robot that xacro took for its own when it had no name space, and that no URDF has."""
+
+_FILLED_IN = re.compile(r"\$\{[^}]*\}?|\$\((?:find|arg|eval|env|optenv|dirname|anon)\b[^)]*\)?")
+"""Of a value, what xacro computes or looks up (http://wiki.ros.org/xacro)."""
+
+
 class _Builder:
     """Builds the tree while expat reads, and stops where a bound is passed."""
 
@@ -156,6 +236,7 @@ class _Builder:
         self._path, self._kind, self._first = path, kind, first
         self._open: list[Node] = []
         self._count = 0
+        self._prefixes = {"xacro"}
         self.parser = expat.ParserCreate("utf-8")
         self.parser.StartElementHandler = self._start
         self.parser.EndElementHandler = lambda _tag: self._open.pop()
@@ -174,11 +255,29 @@ class _Builder:
         name = attributes.get("name", "")
         if len(name) > LONGEST_NAME or not name.isprintable():
             self._refuse(f"{tag} has the name '{name[:20]}...'", f"give at most {LONGEST_NAME} printable characters")
+        self._require_expanded(tag, attributes)
         if self._open:
             self._open[-1].append(node)
         else:
             self.root = node
         self._open.append(node)
+
+    def _require_expanded(self, tag: str, attributes: dict[str, str]) -> None:
+        """Refuse an element of xacro, and an attribute that xacro would fill in.
+
+        Raises:
+            UnexpandedError: says which.
+        """
+        spaces = (name for name, value in attributes.items() if name.startswith("xmlns:") and "xacro" in value)
+        self._prefixes |= {name.removeprefix("xmlns:") for name in spaces}
+        prefixed = ":" in tag and tag.partition(":")[0] in self._prefixes
+        left = tag if prefixed or (tag in _WITHOUT_PREFIX and [node.tag for node in self._open] == ["robot"]) else ""
+        if not left and not any(node.tag in _OF_OTHERS for node in self._open) and tag not in _OF_OTHERS:
+            found = (match for value in attributes.values() if (match := _FILLED_IN.search(value)))
+            left = next((match[0][:40] for match in found), "")
+        if left:
+            what = f"{self._path}:{self.parser.CurrentLineNumber}: has xacro's '{left}' left in it"
+            raise UnexpandedError(self._kind.key, what, f"expand it: xacro {quote(str(self._path))} > robot.urdf")
 
     def _refuse(self, what: str, right: str) -> NoReturn:
         raise RobotError(self._kind.key, f"{self._path}:{self.parser.CurrentLineNumber}: {what}", right)

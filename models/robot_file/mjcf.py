@@ -10,7 +10,7 @@ from xml.sax.saxutils import quoteattr
 
 from surefoot.models.robot_file.document import DEEPEST, MOST_ELEMENTS, Node, number, read_xml, refuse
 from surefoot.models.robot_file.paths import is_file, resolve
-from surefoot.models.robot_file.quantities import check_numbers, of_mjcf
+from surefoot.models.robot_file.quantities import TURN, check_numbers, of_mjcf
 from surefoot.models.robot_file.sift import Absent, sift
 from surefoot.models.robot_file.urdf import MOST_SHAPES
 from surefoot.values import dataclass
@@ -78,6 +78,7 @@ class _Assembly:
         self._include(root, main.parent, [*opened], 0)
         self.absent += sift(root)
         check_numbers(root, of_mjcf)
+        _check_angles(root)
         folder = _folder_of_meshes(root)
         for mesh in _assets(root, "mesh"):
             self._add_mesh(mesh, main.parent, folder)
@@ -176,6 +177,21 @@ def _folder_of_meshes(root: Node) -> _Folder:
         for attribute in _FOLDERS:
             compiler.attrib.pop(attribute, None)
     return _Folder(name, strip)
+
+
+def _check_angles(root: Node) -> None:
+    """Refuse Euler angles beyond a turn in a document whose angles are radians.
+
+    Raises:
+        RobotError: says which.
+    """
+    if [unit for compiler in root.findall("compiler") if (unit := compiler.get("angle"))][-1:] != ["radian"]:
+        return
+    for node in root.elements():
+        angles = [number(token) or 0.0 for token in node.get("euler", "").split()]
+        if max(map(abs, angles), default=0.0) > TURN:
+            what = f"euler of {node.tag} '{node.get('name', '')}' is '{node.get('euler')}' in a file of radians"
+            refuse(node, what, f'give at most {TURN:g} rad, or <compiler angle="degree"/>')
 
 
 def _assets(root: Node, tag: str) -> list[Node]:

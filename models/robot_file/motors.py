@@ -92,6 +92,11 @@ def require_limits(model: pin.Model, notes: list[str]) -> None:
     Raises:
         RobotError: a torque limit or a range is missing.
     """
+    ends = zip(tuple(model.names)[2:], model.lowerPositionLimit[7:], model.upperPositionLimit[7:], strict=True)
+    for name, lower, upper in ends:
+        if not -np.inf < lower < upper < np.inf:
+            what = f"joint '{name}' of {model.name} has no range, it turns from {lower:.4g} to {upper:.4g} rad"
+            raise RobotError(("model",), what, "give it limits in the model")
     unknown = _unlimited(model, model.upperEffortLimit)
     if unknown:
         others, have = (f" and {len(unknown) - 1} more", "have") if len(unknown) > 1 else ("", "has")
@@ -107,12 +112,6 @@ def require_limits(model: pin.Model, notes: list[str]) -> None:
         speeds = np.array(model.upperVelocityLimit)
         speeds[[model.joints[model.getJointId(name)].idx_v for name in unknown]] = SPEED
         model.upperVelocityLimit, model.lowerVelocityLimit = speeds, -speeds
-    pairs = zip(tuple(model.names)[2:], model.lowerPositionLimit[7:], model.upperPositionLimit[7:], strict=True)
-    for name, lower, upper in pairs:
-        if not -np.inf < lower < upper < np.inf:
-            raise RobotError(
-                ("model",), f"joint '{name}' of {model.name} turns from {lower} to {upper} rad", "give limits"
-            )
 
 
 def _unlimited(model: pin.Model, limits: Array) -> list[str]:

@@ -1,22 +1,21 @@
 """An MJCF as a Pinocchio model: what MuJoCo compiled of it, with all defaults and includes."""
 
-import re
-from pathlib import Path, PurePath
+from pathlib import Path
 
 import numpy as np
 import pinocchio as pin
 
 from surefoot.engine import mujoco
-from surefoot.models.robot_file.mesh_file import binary_stl, burden, mesh_content, triangles
-from surefoot.models.robot_file.meshes import thinned
+from surefoot.models.robot_file.compiled import Bare
+from surefoot.models.robot_file.magnitudes import Part
 from surefoot.models.robot_file.mjcf import Assembled
 from surefoot.models.robot_file.mjcf_bindings import MjcfBindings
 from surefoot.models.robot_file.mjcf_losses import losses
 from surefoot.models.robot_file.mjcf_motors import rotor, torques
-from surefoot.models.robot_file.paths import is_file
 from surefoot.models.robot_file.schema import RobotFile
 from surefoot.models.robot_file.shapes import (
     Shape,
+    Told,
     box,
     capsule,
     cylinder,
@@ -24,7 +23,6 @@ from surefoot.models.robot_file.shapes import (
     placed,
     require_moderate,
     solid,
-    told_missing,
 )
 from surefoot.models.robot_file.sift import told_absent
 from surefoot.models.robot_file.source import ROOT, Source, physical
@@ -36,14 +34,6 @@ _LEGS = 8
 
 _MESH = int(mujoco.mjtGeom.mjGEOM_MESH)
 
-MOST_COMPILED = 400_000
-"""Triangles of all meshes that MuJoCo compiles, 1.3 kB and 6 us each; dense meshes of more become coarser."""
-
-_MOST_OF_STL = 200_000
-"""Triangles that MuJoCo takes of one STL."""
-
-_INFERRED = 'inertiafromgeom="true"'
-
 
 def read_mjcf(file: RobotFile, path: Path, document: Assembled) -> Source:
     """Read a robot's MJCF.
@@ -52,94 +42,10 @@ def read_mjcf(file: RobotFile, path: Path, document: Assembled) -> Source:
         RobotError: MuJoCo does not compile it, or it is no single robot of hinges.
     """
     notes, left_out = list[str](), list(told_absent(document.absent))
-    try:
-        mj = _bare(path, document, notes).compile()
-    except RobotError:
-        raise
-    except Exception as error:
-        raise RobotError(("model",), f"{path}: {_placed(str(error), document)}", "mend it") from None
+    bare = Bare(path, document, notes)
+    mj = bare.compiled()
+    Told(notes, left_out).missing("visual", bare.unseen)
     return _Reader(mj, file, path, _robot_of(mj, path, left_out), notes, left_out).read()
-
-
-def _bare(path: Path, document: Assembled, notes: list[str]) -> mujoco.MjSpec:
-    """The document without looks that are missing.
-
-    Raises:
-        RobotError: a mesh is missing that the robot touches with, or that says how heavy it is.
-    """
-    files = {name: text.encode() for name, text in document.models.items()}
-    there = {name: mesh for name, mesh in document.meshes.items() if is_file(mesh)}
-    spec = mujoco.MjSpec.from_string(document.text, files, files)
-    missing = {mesh.name: document.meshes[mesh.file] for mesh in spec.meshes if mesh.file and mesh.file not in there}
-    told = []
-    for geom in [geom for geom in spec.geoms if geom.meshname in missing]:
-        body, file = geom.parent, missing[geom.meshname]
-        what = f"body '{body.name}' of {path}: mesh {file.name} is not there"
-        if geom.contype or geom.conaffinity or not body.explicitinertial:
-            raise RobotError(("model",), what, f"put it at {file}")
-        told.append(what)
-        spec.delete(geom)
-    for mesh in [mesh for mesh in spec.meshes if mesh.name in missing]:
-        spec.delete(mesh)
-    notes += told_missing("visual", told)
-    spec.assets = files | _moderate(spec, path, document, there, notes)
-    return spec
-
-
-def _moderate(
-    spec: mujoco.MjSpec, path: Path, document: Assembled, there: dict[str, Path], notes: list[str]
-) -> dict[str, bytes]:
-    """What is in the mesh files of a document, dense ones made coarser where they say nothing of inertia or size.
-
-    Raises:
-        RobotError: a mesh cannot be read, or those that cannot be made coarser have too many triangles.
-    """
-    sources = {name: (mesh, PurePath(name).suffix) for name, mesh in there.items()}
-    contents = {source: mesh_content(*source) for source in dict.fromkeys(sources.values())}
-    costs = {source: burden(source[1], data) for source, data in contents.items()}
-    burdens = {name: costs[source] for name, source in sources.items()}
-    found = {name: contents[source] for name, source in sources.items()}
-    exact, meshes = _exact(spec, document), [mesh for mesh in spec.meshes if mesh.file in there]
-    free = [mesh for mesh in meshes if mesh.name not in exact and not mesh.file.endswith(".msh")]
-    fixed = sum(burdens[mesh.file] for mesh in meshes) - sum(burdens[mesh.file] for mesh in free)
-    if fixed > MOST_COMPILED:
-        what = f"{path}: it has {fixed} triangles in MSH and in meshes by which bodies have inertia or size"
-        raise RobotError(("model",), what, f"give STL and bodies with an inertial, or at most {MOST_COMPILED}")
-    level = _level(sorted(burdens[mesh.file] for mesh in free), max(MOST_COMPILED - fixed, MOST_COMPILED // 4))
-    most, thin = min(level, _MOST_OF_STL), dict[tuple[Path, str], bytes]()
-    for mesh in [mesh for mesh in free if burdens[mesh.file] > most]:
-        source = sources[mesh.file]
-        if source not in thin:
-            thin[source] = binary_stl(thinned(triangles(*source, contents[source]), most))
-        mesh.file = f"thin {PurePath(mesh.file).stem}.stl"
-        mesh.inertia = mujoco.mjtMeshInertia.mjMESH_INERTIA_SHELL  # says nothing here, and a volume may be missing
-        found[mesh.file] = thin[source]
-    if thin:
-        names = ", ".join(sorted({file.name for file, _ in thin}))
-        notes.append(f"meshes are dense and made coarser, with at most {most} triangles each: {names}")
-    used = {mesh.file for mesh in spec.meshes}
-    return {name: data for name, data in found.items() if name in used}
-
-
-def _exact(spec: mujoco.MjSpec, document: Assembled) -> set[str]:
-    """Names of meshes by which a body has its inertia, or a geom of another shape its size."""
-    inferred = any(_INFERRED in text for text in (document.text, *document.models.values()))
-    found = set()
-    for geom in spec.geoms:
-        weightless = geom.mass == 0.0 or (np.isnan(geom.mass) and geom.density == 0.0)
-        weighs = not weightless and (inferred or not geom.parent.explicitinertial)
-        if geom.meshname and (weighs or geom.type != mujoco.mjtGeom.mjGEOM_MESH):
-            found.add(geom.meshname)
-    return found
-
-
-def _level(counts: list[int], most: int) -> int:
-    """Up to what each of some ascending counts may go so that together they are at most `most`."""
-    for at, count in enumerate(counts):
-        if count * (len(counts) - at) > most:
-            return most // (len(counts) - at)
-        most -= count
-    return most + max(counts, default=0)
 
 
 def _robot_of(mj: mujoco.MjModel, path: Path, left_out: list[str]) -> int:
@@ -195,6 +101,7 @@ class _Reader:
             bindings=tuple(found.bindings()),
             notes=self._notes,
             left_out=self._left_out,
+            parts=tuple(map(self._part, self._place)),
         )
         self._add_limits()
         self._add_shapes(source)
@@ -263,6 +170,11 @@ class _Reader:
         repaired = physical(about, float(mj.body_mass[body]), name, self._file, self._path, self._notes)
         return pin.Inertia(float(mj.body_mass[body]), mj.body_ipos[body], about if repaired is None else repaired)
 
+    def _part(self, body: int) -> Part:
+        mj = self._mj
+        moment = float(mj.body_inertia[body].max())
+        return Part(self._name(body), float(mj.body_mass[body]), np.array(mj.body_ipos[body]), moment)
+
     def _add_limits(self) -> None:
         """Torques from the motors; of speeds an MJCF knows nothing."""
         model = self._model
@@ -288,6 +200,9 @@ class _Reader:
                 (collision if touches else visual).extend(self._shape(geom))
                 require_moderate((*visual, *collision))
         source.visual, source.collision = tuple(visual or collision), tuple(collision)
+        if visual and not collision:
+            why = "no geom of the model collides (contype and conaffinity are 0)"
+            self._notes.append(f"{why}, so links touch by what is drawn of them")
 
     def _shape(self, geom: int) -> list[Shape]:
         """The geom as triangles; none for planes and fields."""
@@ -319,14 +234,6 @@ def _free(name: str, taken: set[str]) -> str:
         name += "_"
     taken.add(name)
     return name
-
-
-def _placed(said: str, document: Assembled) -> str:
-    """What MuJoCo says in one line, with the place where it stands in the files."""
-    line = re.search(r",? *\bline (\d+)", said)
-    place = document.places[int(line[1]) - 1] if line and 0 < int(line[1]) <= len(document.places) else ""
-    said = " ".join((said.replace(line[0], "") if line else said).split())[:200]
-    return f"{said}, {place}" if place else said
 
 
 def _placement(position: Array, quaternion: Array) -> pin.SE3:

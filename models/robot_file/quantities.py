@@ -8,6 +8,9 @@ from surefoot.values import dataclass
 LENGTH, MASS, INERTIA = 1e3, 1e5, 1e7
 """Largest length [m], mass [kg] and moment of inertia [kg m^2] of a part."""
 
+TURN = 6.35
+"""Largest angle of an orientation: a turn, and what is lost in rounding [rad]."""
+
 NONE = 1e17
 """Limits as large stand for none in models that other programs wrote."""
 
@@ -44,7 +47,7 @@ _SIZE = Quantity(LENGTH, "m", 1, 0.0)
 _LIMIT = Quantity(NONE, "", 1)
 
 URDF = {
-    "origin": {"xyz": Quantity(LENGTH, "m", 3), "rpy": Quantity(1e4, "rad", 3)},
+    "origin": {"xyz": Quantity(LENGTH, "m", 3), "rpy": Quantity(TURN, "rad, not degrees", 3)},
     "axis": {"xyz": Quantity(1e6, "", 3)},
     "mass": {"value": Quantity(MASS, "kg", 1, 0.0)},
     "inertia": dict.fromkeys(("ixx", "ixy", "ixz", "iyy", "iyz", "izz"), Quantity(INERTIA, "kg m^2", 1)),
@@ -65,9 +68,13 @@ REQUIRED = {
     "capsule": ("radius", "length"),
     "mesh": ("filename",),
     "mass": ("value",),
+    "inertia": ("ixx", "ixy", "ixz", "iyy", "iyz", "izz"),
     "axis": ("xyz",),
 }
 """Attributes of a URDF without which an element says nothing."""
+
+HOLDS = {"inertial": ("mass", "inertia")}
+"""Elements of a URDF without which one says nothing."""
 
 MJCF = {
     **dict.fromkeys(("pos", "fromto", "refpos"), Quantity(LENGTH, "m")),

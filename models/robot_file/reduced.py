@@ -9,6 +9,7 @@ import pinocchio as pin
 from surefoot.models.joints import is_revolute
 from surefoot.models.robot_file.bindings import check_bindings, told_locked
 from surefoot.models.robot_file.files import srdf_of
+from surefoot.models.robot_file.magnitudes import check_angle, check_joints
 from surefoot.models.robot_file.motors import read_srdf, require_limits, set_armature, set_limits
 from surefoot.models.robot_file.schema import RobotFile, matched
 from surefoot.models.robot_file.shapes import Shape, placed
@@ -112,6 +113,7 @@ def reduced(file: RobotFile, source: Source, path: Path) -> Reduced:
     model = _without(full, list(locked), q)
     model.name = file.name
     require_limits(model, notes)
+    notes += check_joints(model)
     frames = tuple(frame_of(model, link, "feet") for link in (feet.left, feet.right))
     turned = _turn(model, frames, file, notes)
     bodies = _bodies(full, tuple(model.names)[1:])
@@ -169,6 +171,7 @@ def _locked(
         if not meant:
             what = f"lock of {file.name} has the pattern '{pattern}', which matches no joint"
             raise RobotError(("lock", pattern), what, nearest(pattern, names))
+        check_angle(f"lock of {file.name} with '{pattern}'", angle or 0.0, ("lock", pattern))
         given |= dict.fromkeys(meant, angle)
     found: dict[int, tuple[str, float]] = {}
     for joint in range(2, model.njoints):

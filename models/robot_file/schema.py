@@ -106,6 +106,8 @@ def read(path: Path) -> RobotFile:
         raise RobotError((), f"{place}: no YAML, {getattr(error, 'problem', None) or error}", "mend it") from None
     except (ValueError, TypeError, AttributeError) as error:  # dates and the like that are none
         raise RobotError((), f"{path}: no YAML, {error}", "give words and numbers") from None
+    if values is None:
+        raise RobotError((), f"{path}: is empty", "write one with: surefoot robot new MODEL --out FILE")
     if not isinstance(values, dict):
         raise RobotError((), f"{path}: no robot file", "give name, model and feet, a line each")
     try:
@@ -155,7 +157,8 @@ def _refusal(path: Path, fault: Any, lines: Mapping[tuple[str, ...], int]) -> Ro
     if fault["type"] == "missing":
         return RobotError(key, f"{place}: lacks {'.'.join(key)}", f"give {_example(key)}")
     rule = fault["msg"][0].lower() + fault["msg"][1:]
-    shown = repr(fault["input"])
+    given = fault["input"]
+    shown = f"{given:.9g}" if isinstance(given, float) else repr(given)
     return RobotError(key, f"{place}: {dotted} is {shown if len(shown) <= _SHOWN else f'{shown[:_SHOWN]}...'}", rule)
 
 

@@ -2,17 +2,16 @@
 
 import itertools
 import math
-from collections.abc import Sequence
+from collections.abc import Mapping, Sequence
 from pathlib import Path
 from xml.etree import ElementTree
 
 import numpy as np
 import pinocchio as pin
 
-from surefoot.models.robot_file.mesh_file import colour_in_file, read_mesh
+from surefoot.models.robot_file.mesh_file import colour_in_file, read_mesh, up_axis_in_file
 from surefoot.models.robot_file.meshes import Faces, hull
 from surefoot.models.robot_file.paths import is_file, resolve
-from surefoot.models.robot_file.quantities import LENGTH
 from surefoot.models.types import Array, RobotError
 from surefoot.values import dataclass
 
@@ -41,12 +40,6 @@ class Shape:
     vertices: Array
     faces: Faces
     rgba: Colour = GREY
-
-    def __post_init__(self) -> None:
-        """Refuse what no engine can hold."""
-        if not np.abs(self.vertices).max(initial=0.0) <= LENGTH:
-            what = f"a shape of link '{self.link}' reaches beyond {LENGTH:g} m"
-            raise RobotError(("model",), what, "give its lengths in metres, or a scale")
 
 
 def require_moderate(shapes: Sequence[Shape]) -> None:
@@ -102,8 +95,40 @@ def _ring(radius: float, height: float) -> Array:
     return np.column_stack((radius * np.cos(_AROUND), radius * np.sin(_AROUND), flat))
 
 
+@dataclass(frozen=True, slots=True)
+class Told:
+    """What is said of shapes while they are read.
+
+    Attributes:
+        notes: what was taken in another way than it is written.
+        left_out: what is not drawn.
+    """
+
+    notes: list[str]
+    left_out: list[str]
+
+    def missing(self, kind: str, faults: Sequence[RobotError]) -> None:
+        """Tell of meshes of a kind, visual or collision, that are missing or cannot be read, by the first of them."""
+        if not faults:
+            return
+        more = f" and {len(faults) - 1} more" if len(faults) > 1 else ""
+        said = f"{faults[0].what}{more} ({faults[0].right})"
+        if kind == "visual":
+            self.left_out.append(f"left out: {said}: what has no visual mesh is not drawn")
+        else:
+            self.notes.append(f"{said}: what has no collision mesh touches by what is drawn")
+
+    def turned(self, kind: str, axes: Mapping[Path, str]) -> None:
+        """Tell of Collada files that say another axis than z is up."""
+        if axes:
+            file, axis = next(iter(axes.items()))
+            more = f" and {len(axes) - 1} more" if len(axes) > 1 else ""
+            what = f"{kind} meshes have the axes of their links, whatever is up in {file.name}{more} (it says {axis})"
+            self.notes.append(f"{what}, as RViz and Pinocchio read them")
+
+
 def urdf_shapes(
-    root: ElementTree.Element, path: Path, kind: str, notes: list[str], drawn: Sequence[Shape] | None = None
+    root: ElementTree.Element, path: Path, kind: str, told: Told, drawn: Sequence[Shape] | None = None
 ) -> tuple[Shape, ...]:
     """Shapes of all links.
 
@@ -111,7 +136,7 @@ def urdf_shapes(
         root: of the URDF.
         path: of the URDF.
         kind: visual or collision.
-        notes: is told of links whose meshes are missing and not needed.
+        told: is told of links whose meshes are missing and not needed.
         drawn: by which links touch where a mesh is missing; None where physics needs no mesh.
 
     Raises:
@@ -122,7 +147,8 @@ def urdf_shapes(
     }
     found: list[Shape] = []
     instead = None if drawn is None else {shape.link for shape in drawn}
-    missing: list[str] = []
+    missing: list[RobotError] = []
+    axes: dict[Path, str] = {}
     for link in root.findall("link"):
         name = link.get("name", "")
         for element in link.findall(kind):
@@ -134,25 +160,21 @@ def urdf_shapes(
             if material is not None:
                 rgba = _rgba(material) or colours.get(material.get("name", ""))
             try:
-                found += _urdf_shape(name, geometry[0], _origin(element), rgba, path)
+                found += _urdf_shape(name, geometry[0], _origin(element), rgba, path, axes)
             except RobotError as error:
-                what = f"link '{name}' of {path}: {error.what}"
+                fault = RobotError(error.key, f"link '{name}' of {path}: {error.what}", error.right)
                 if instead is not None and name not in instead:
-                    raise RobotError(error.key, what, error.right) from None
-                missing.append(what)
+                    raise fault from None
+                missing.append(fault)
             require_moderate((*(drawn or ()), *found))
-    notes += told_missing(kind, missing)
+    told.missing(kind, missing)
+    told.turned(kind, axes)
     return tuple(found)
 
 
-def told_missing(kind: str, missing: Sequence[str]) -> list[str]:
-    """A note on meshes of a kind that are missing, by what the first of them lacks; none where none is."""
-    more = f" and {len(missing) - 1} more" if len(missing) > 1 else ""
-    instead = "is not drawn" if kind == "visual" else "touches by what is drawn"
-    return [f"{missing[0]}{more}: what has no {kind} mesh {instead}"] if missing else []
-
-
-def _urdf_shape(link: str, thing: ElementTree.Element, origin: pin.SE3, rgba: Colour | None, path: Path) -> list[Shape]:
+def _urdf_shape(
+    link: str, thing: ElementTree.Element, origin: pin.SE3, rgba: Colour | None, path: Path, axes: dict[Path, str]
+) -> list[Shape]:
     if thing.tag == "mesh":
         reference = thing.get("filename", "")
         place = resolve(reference, path.parent, "mesh")
@@ -161,10 +183,14 @@ def _urdf_shape(link: str, thing: ElementTree.Element, origin: pin.SE3, rgba: Co
             raise RobotError(("model",), what, f"put it at {place}, or correct the reference")
         vertices, faces = read_mesh(place)
         scale = _floats(thing.get("scale"), (1.0, 1.0, 1.0))
+        if not scale.all():
+            raise RobotError(("model",), f"mesh {reference} has the scale '{thing.get('scale')}'", "give none of 0")
+        if axis := up_axis_in_file(place):
+            axes[place] = axis
         faces = faces if np.prod(scale) > 0 else faces[:, ::-1]
         colour = colour_in_file(place) if rgba is None else None
         rgba = (*colour, 1.0) if colour else rgba or GREY
-        return [Shape(link, placed(vertices * scale, origin), faces, rgba)] if len(faces) else []
+        return [Shape(link, placed(vertices * scale, origin), faces, rgba)]
     size = {name: float(value) for name, value in thing.attrib.items() if name in ("radius", "length")}
     makers = {
         "box": lambda: box(*_floats(thing.get("size"), (0.0, 0.0, 0.0))),
@@ -172,7 +198,10 @@ def _urdf_shape(link: str, thing: ElementTree.Element, origin: pin.SE3, rgba: Co
         "cylinder": lambda: cylinder(size["radius"], size["length"]),
         "capsule": lambda: capsule(size["radius"], size["length"]),
     }
-    return [solid(link, makers[thing.tag](), origin, rgba or GREY)] if thing.tag in makers else []
+    if thing.tag not in makers:
+        right = f"give one of mesh, {', '.join(makers)}"
+        raise RobotError(("model",), f"a shape is a '{thing.tag}'", right)
+    return [solid(link, makers[thing.tag](), origin, rgba or GREY)]
 
 
 def _rgba(material: ElementTree.Element) -> Colour | None:

@@ -9,11 +9,12 @@ import numpy as np
 import pinocchio as pin
 
 from surefoot.models.robot_file.bindings import Binding, Follower
-from surefoot.models.robot_file.document import number
+from surefoot.models.robot_file.document import Node, number
 from surefoot.models.robot_file.files import Document, read_document
+from surefoot.models.robot_file.magnitudes import Part, check_parts
 from surefoot.models.robot_file.quantities import INERTIA, LENGTH, MASS
 from surefoot.models.robot_file.schema import RobotFile
-from surefoot.models.robot_file.shapes import Shape, urdf_shapes
+from surefoot.models.robot_file.shapes import Shape, Told, urdf_shapes
 from surefoot.models.robot_file.sift import told_absent
 from surefoot.models.robot_file.urdf import kinematics
 from surefoot.models.robot_file.urdf_schema import absent_of
@@ -44,6 +45,7 @@ class Source:
         bindings: what else binds joints to each other.
         notes: what was altered while reading.
         left_out: elements of the file that the robot has not, each line beginning with "left out: ".
+        parts: its links, as the file has them.
     """
 
     model: pin.Model
@@ -53,6 +55,7 @@ class Source:
     bindings: tuple[Binding, ...] = ()
     notes: list[str] = field(default_factory=list)
     left_out: list[str] = field(default_factory=list)
+    parts: tuple[Part, ...] = ()
 
 
 def read_source(file: RobotFile, path: Path) -> Source:
@@ -69,6 +72,10 @@ def read_source(file: RobotFile, path: Path) -> Source:
 
         source = read_mjcf(file, path, document.mjcf)
     _check_parts(source.model, path)
+    held = check_parts(source.model, source.parts, source.visual, source.collision, str(path))
+    source.visual = held.drawn
+    source.left_out += held.left_out
+    source.notes += held.notes
     return source
 
 
@@ -76,15 +83,16 @@ def _read_urdf(file: RobotFile, document: Document) -> Source:
     root, path, source_notes = document.root, document.path, list[str]()
     left_out = list(told_absent(absent_of(root)))
     followers = dict(_mended_joints(root, source_notes))
-    _check_inertias(root, file, path, source_notes)
-    visual = urdf_shapes(root, path, "visual", source_notes)
-    collision = urdf_shapes(root, path, "collision", source_notes, visual)
+    parts = tuple(_checked_inertias(root, file, path, source_notes))
+    told = Told(source_notes, left_out)
+    visual = urdf_shapes(root, path, "visual", told)
+    collision = urdf_shapes(root, path, "collision", told, visual)
     try:
         model = pin.buildModelFromXML(kinematics(root), pin.JointModelFreeFlyer(), ROOT)
     except Exception as error:
         raise RobotError(("model",), f"{path}: {_one_line(error)}", "mend it, so that Pinocchio can read it") from None
     model.name = file.name
-    return Source(model, visual, collision, followers, notes=source_notes, left_out=left_out)
+    return Source(model, visual, collision, followers, notes=source_notes, left_out=left_out, parts=parts)
 
 
 def _check_parts(model: pin.Model, path: Path) -> None:
@@ -117,15 +125,20 @@ def _one_line(error: Exception) -> str:
     return " ".join(str(error).split())[:200] or type(error).__name__
 
 
-def _mended_joints(root: ElementTree.Element, notes: list[str]) -> Iterator[tuple[str, Follower]]:
-    """Bound joints that turn without end, since both engines then have one angle for each; yields those that follow."""
-    for joint in root.findall("joint"):
-        name = joint.get("name", "")
-        if joint.get("type") == "continuous":
+def _mended_joints(root: Node, notes: list[str]) -> Iterator[tuple[str, Follower]]:
+    """Bound joints that turn without end, since both engines then have one angle for each; yields those that follow.
+
+    A limit that is not there is zero, which says that a joint has no torque, no speed or no range.
+    """
+    for joint in (node for node in root.nodes if node.tag == "joint"):
+        name, kind = joint.get("name", ""), joint.get("type")
+        limit = joint.find("limit")
+        if limit is None and kind in ("continuous", "revolute", "prismatic"):
+            limit = joint.child("limit")
+        if limit is not None:
+            limit.attrib |= {"effort": "0", "velocity": "0", **limit.attrib}
+        if kind == "continuous" and limit is not None:
             joint.set("type", "revolute")
-            limit = joint.find("limit")
-            if limit is None:
-                limit = ElementTree.SubElement(joint, "limit", effort="0", velocity="0")
             limit.attrib |= {"lower": str(-2 * np.pi), "upper": str(2 * np.pi)}
             notes.append(f"joint '{name}' turns without end in the model and one turn either way here")
         mimic = joint.find("mimic")
@@ -134,8 +147,8 @@ def _mended_joints(root: ElementTree.Element, notes: list[str]) -> Iterator[tupl
             yield name, Follower("mimic", "", mimic.get("joint", ""), number(mimic.get("offset", "0")) or 0.0)
 
 
-def _check_inertias(root: ElementTree.Element, file: RobotFile, path: Path, notes: list[str]) -> None:
-    """Refuse or repair what no body can have.
+def _checked_inertias(root: ElementTree.Element, file: RobotFile, path: Path, notes: list[str]) -> Iterator[Part]:
+    """Refuse or repair what no body can have; yields links as the file has them.
 
     Raises:
         RobotError: an inertia is unphysical and not to be repaired.
@@ -147,7 +160,11 @@ def _check_inertias(root: ElementTree.Element, file: RobotFile, path: Path, note
             continue
         name, kilograms = link.get("name", ""), float(mass.get("value", "0"))
         xx, xy, xz, yy, yz, zz = (float(inertia.get(part, "0")) for part in ("ixx", "ixy", "ixz", "iyy", "iyz", "izz"))
-        repaired = physical(np.array([[xx, xy, xz], [xy, yy, yz], [xz, yz, zz]]), kilograms, name, file, path, notes)
+        about = np.array([[xx, xy, xz], [xy, yy, yz], [xz, yz, zz]])
+        repaired = physical(about, kilograms, name, file, path, notes)
+        origin = None if inertial is None else inertial.find("origin")
+        com = np.array([float(part) for part in ("" if origin is None else origin.get("xyz", "")).split()] or [0.0] * 3)
+        yield Part(name, kilograms, com, float(np.linalg.eigvalsh(about)[2]))
         if repaired is not None:
             for part, (i, j) in {
                 "ixx": (0, 0),
@@ -172,7 +189,7 @@ def physical(inertia: Array, mass: float, link: str, file: RobotFile, path: Path
     moments, axes = np.linalg.eigh(second)
     total = float(np.abs(moments).sum())
     if mass < 0.0:
-        raise RobotError(("model",), f"{path}: link '{link}' has the mass {mass} kg", "give one of at least 0 kg")
+        raise RobotError(("model",), f"{path}: link '{link}' has the mass {mass:.6g} kg", "give one of at least 0 kg")
     if moments[0] >= -1e-6 * total or total < 1e-12:
         return None
     a, b, c = np.linalg.eigvalsh(inertia)

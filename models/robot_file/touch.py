@@ -58,6 +58,9 @@ def find_hulls(reduced: Reduced, legs: tuple[Leg, Leg], upper: Upper) -> dict[in
             vertices, faces = hull(points, MOST_POINTS)
             if abs(np.linalg.det(vertices[faces]).sum()) / 6.0 > _LEAST_VOLUME:
                 found[joint] = Hull(joint, vertices, faces)
+    shaped = [joint for joint in sorted(wanted) if reduced.collision[joint] or reduced.visual[joint]]
+    if flat := [reduced.bodies[joint - 1] for joint in shaped if joint not in found]:
+        reduced.left_out.append(f"left out: contact of links whose shapes have no volume: {', '.join(flat)}")
     return found
 
 

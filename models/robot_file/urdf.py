@@ -3,7 +3,7 @@
 from xml.etree import ElementTree
 
 from surefoot.models.robot_file.document import Node, number, refuse
-from surefoot.models.robot_file.quantities import REQUIRED, URDF, check_numbers, of_urdf
+from surefoot.models.robot_file.quantities import HOLDS, REQUIRED, URDF, check_numbers, of_urdf
 from surefoot.models.types import nearest
 
 MOST_LINKS, MOST_SHAPES = 1_000, 2_000
@@ -37,10 +37,11 @@ def check_urdf(root: Node) -> None:
 
 def _require(part: Node, within: Node) -> None:
     for element in within.elements():
-        for attribute in REQUIRED.get(element.tag, ()):
-            if attribute not in element.attrib:
-                what = f"{element.tag} of {part.tag} '{part.get('name', '')}' lacks {attribute}"
-                refuse(element, what, f"give {attribute}")
+        has = {*element.attrib, *(child.tag for child in element)}
+        for name in (*REQUIRED.get(element.tag, ()), *HOLDS.get(element.tag, ())):
+            if name not in has:
+                what = f"{element.tag} of {part.tag} '{part.get('name', '')}' lacks {name}"
+                refuse(element, what, f"give {name}")
 
 
 def _named(root: Node, tag: str) -> dict[str, Node]:
@@ -100,7 +101,7 @@ def _end(joint: Node, name: str, end: str, links: dict[str, Node]) -> str:
 def _check_chain(links: dict[str, Node], above: dict[str, str], name: str) -> None:
     """Refuse a link from which the way up comes back to it."""
     at = name
-    for _ in above:
+    for _ in range(len(above) + 1):
         if (at := above.get(at, "")) in ("", name):
             break
     if at:

@@ -18,6 +18,7 @@ from surefoot.models.types import same_robot
 from surefoot.planner.laws.profiles import PROFILES
 from surefoot.plugins import OWN_PACKAGE
 from surefoot.scenarios.errors import Key, ScenarioError
+from surefoot.scenarios.file.criteria import Bound
 from surefoot.scenarios.file.schema import Scenario
 from surefoot.scenarios.setup.keys import scenario_key
 from surefoot.scenarios.setup.rehearsal import check_legs, check_turns
@@ -58,13 +59,39 @@ def made_ready(walk: Walk, body: Body) -> "tuple[NDArray[np.float64], LegInertia
         if refusal.key[:1] == ("commands",):
             raise
         found = proposed(walk, body, refusal.key)
-        right = f"take for example {told(found)}" if found else f"nothing calmer suits '{walk.robot.name}' either"
+        right = f"nothing calmer suits '{walk.robot.name}' either"
+        if found:
+            unmet = unmet_by(found, walk)
+            out = f" (which leaves out {', '.join(unmet)} of the criteria)" if unmet else ""
+            right = f"take for example {told(found)}{out}"
         raise ParameterError(refusal.key, refusal.what, right) from None
 
 
 def told(proposal: Proposal) -> str:
     """A proposal as options of a command line, to be copied as they stand."""
     return " ".join(f"--set {quote(f'{key}={_value(value)}')}" for key, value in proposal.items())
+
+
+_FOLLOWS: dict[str, tuple[str, ...]] = {
+    "speed_mean": (*_STRIDE, "single_support", "velocity"),
+    "displacement": (*_STRIDE, "velocity"),
+    "path_length": (*_STRIDE, "velocity"),
+    "heading_change": ("turn", "velocity"),
+}
+"""Metrics that say how fast or how far a walk goes, each with the keys that make it go less."""
+
+
+def unmet_by(proposal: Proposal, walk: Walk) -> tuple[str, ...]:
+    """Criteria that ask a walk to go as fast or as far as it does without the proposal."""
+    changed = {key.rpartition(".")[2] for key in proposal}
+    asked = ((name, walk.keys.criteria.get(name)) for name, keys in _FOLLOWS.items() if changed & set(keys))
+    return tuple(name for name, bound in asked if bound is not None and _asks(bound))
+
+
+def _asks(bound: Bound) -> bool:
+    """Say whether a bound asks for some way, to whichever side; one around zero asks for none."""
+    least, most = (np.atleast_1d(0.0 if limit is None else limit) for limit in (bound.min, bound.max))
+    return bool((least > 0.0).any() or (most < 0.0).any())
 
 
 def _value(value: Any) -> str:
@@ -190,7 +217,11 @@ def _shorter(keys: Scenario, share: float) -> Proposal:
     if not keys.gait.velocity:
         return _times(keys.gait, "gait", _STRIDE, share)
     slower = ({name: _rounded(share * value) for name, value in told} for told in keys.gait.velocity)
-    return {"gait.velocity": [{**one, "time": told.time} for one, told in zip(slower, keys.gait.velocity, strict=True)]}
+    return {
+        "gait.velocity": [
+            {**one, "time": float(f"{told.time:.6g}")} for one, told in zip(slower, keys.gait.velocity, strict=True)
+        ]
+    }
 
 
 def _times(group: Any, name: str, keys: tuple[str, ...], share: float) -> Proposal:

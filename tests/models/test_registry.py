@@ -37,9 +37,9 @@ def test_unknown_robot_gets_the_nearest_name() -> None:
 @pytest.mark.parametrize(
     ("options", "key", "message"),
     [
-        (RobotOptions(foot_length=0.0), "foot_length", "foot_length is 0.0 m; it must lie within"),
+        (RobotOptions(foot_length=0.0), "foot_length", "foot_length is 0 m; it must lie within"),
         (RobotOptions(foot_width=float("nan")), "foot_width", "foot_width is nan m; it must lie within"),
-        (RobotOptions(payload_mass=-1.0), "payload_mass", "payload_mass is -1.0 kg; it must be"),
+        (RobotOptions(payload_mass=-1.0), "payload_mass", "payload_mass is -1 kg; it must be"),
         (RobotOptions(payload_mass=float("inf")), "payload_mass", "payload_mass is inf kg; it must be"),
         (RobotOptions(payload_mass=1.0, payload_body="torsoo"), "payload_body", "did you mean 'torso'"),
         (RobotOptions(payload_body="xyz"), "payload_body", "choose from pelvis"),

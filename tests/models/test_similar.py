@@ -1,5 +1,7 @@
 """A robot and its similar one of another size move alike, once times are scaled."""
 
+from dataclasses import replace
+
 import numpy as np
 import pinocchio as pin
 import pytest
@@ -49,3 +51,14 @@ def test_no_length_of_the_text_is_left_behind():
 def test_a_size_that_is_none_is_refused(factor):
     with pytest.raises(RobotError, match="scaled by"):
         scaled(ROBOT, factor)
+
+
+@pytest.mark.unit
+def test_a_size_at_which_a_link_has_no_moment_is_refused():
+    """MuJoCo would not read it; one a little larger it does."""
+    small = scaled(ROBOT, 0.01)
+    light = 'mass="1e-9" diaginertia="1e-13 1e-13 1e-13"'
+    text = small.mjcf.replace("<inertial ", f'<inertial pos="0 0 0" {light}/><nothing ', 1)
+    with pytest.raises(RobotError, match=r"link '.*' of humanoid100 has a moment of 1e-18 kg m\^2 at the scale 0\.1"):
+        scaled(replace(small, mjcf=text), 0.1)
+    assert EnginePair(small)

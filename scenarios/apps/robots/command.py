@@ -6,7 +6,7 @@ from typing import Annotated
 
 import typer
 
-from surefoot.scenarios.show.options import INTERRUPTED, MISSED, AsJson, Jobs
+from surefoot.scenarios.show.options import INTERRUPTED, MISSED, AsJson, Jobs, Replace
 
 app = typer.Typer(help="Check a robot of one's own, or write a first file for it.", no_args_is_help=True)
 
@@ -50,17 +50,31 @@ def check(
 @app.command()
 def new(
     model: Annotated[str, typer.Argument(help="URDF or MJCF: a path, or package://NAME/...")],
+    out: Annotated[
+        Path | None, typer.Option(help="Write it to this file, once it is made, rather than print it.")
+    ] = None,
+    force: Replace = False,
 ) -> None:
-    """Print a first robot file for a model, to be saved where the model's path is right."""
-    from surefoot.models.robot_file.draft import draft
+    """Print or write a first robot file for a model.
+
+    One that is printed is to be saved where the model's path is right. A xacro is expanded into a URDF beside it, where
+    the package `xacro` is installed.
+    """
     from surefoot.models.types import RobotError
+    from surefoot.scenarios.apps.robots.first import first_file, written
     from surefoot.scenarios.errors import ScenarioError
 
     try:
-        made = draft(model, Path())
+        made, told = first_file(model, Path() if out is None else out.parent)
     except RobotError as error:
         raise ScenarioError([str(error)]) from None
-    typer.echo(made.text, nl=False)
+    for line in told:
+        typer.echo(line, err=True)
+    if out is None:
+        typer.echo(made.text, nl=False)
+    else:
+        written(out, made.text, force)
+        typer.echo(f"robot file: {out}")
     if made.refusal:
         typer.echo(f"not yet usable: {made.refusal}", err=True)
         raise typer.Exit(MISSED)

@@ -161,6 +161,25 @@ def test_a_walk_that_follows_its_refusal_is_accepted(tmp_path, case) -> None:
         assert refusal_of(name, overrides | proposal_in(said)) == ""
 
 
+@pytest.mark.parametrize(
+    ("case", "left_out"),
+    [
+        ("too slow", "speed_mean"),
+        ("too slow to turn", "heading_change"),
+        ("too slow on stairs", ""),
+        ("too weak", "speed_mean"),
+    ],
+)
+def test_a_proposal_says_what_it_leaves_out_of_the_criteria(tmp_path, case, left_out) -> None:
+    """What asks for the speed or for the way of the walk as it was; other postures and lower steps leave none out."""
+    name, given = WALKS[case]
+    path = biped.write(tmp_path, None, biped.FILE + yaml.safe_dump(given))
+    said = refusal_of(name, {"robot": str(path)})
+    assert ("of the criteria)" in said) == bool(left_out)
+    assert f"(which leaves out {left_out} of the criteria)" in said or not left_out
+    assert not re.search(r"\d{10}", said)
+
+
 def test_a_com_height_that_is_proposed_can_be_stood_at(tmp_path) -> None:
     robot = describe(str(biped.write(tmp_path)), RobotOptions())
     for raised in (1.03, 1.1):

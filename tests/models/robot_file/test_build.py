@@ -10,7 +10,7 @@ from surefoot.models.belief import with_com_raised, with_mass_scaled
 from surefoot.models.consistency import EnginePair
 from surefoot.models.pinocchio import pinocchio_model
 from surefoot.models.robot_file import build, cache, derive
-from surefoot.models.robot_file.document import content
+from surefoot.models.robot_file.document import raw
 from surefoot.models.similar import scaled
 
 pytestmark = pytest.mark.unit
@@ -140,7 +140,7 @@ def test_a_file_of_many_references_is_read_once_for_the_key(tmp_path, monkeypatc
     """A mesh of 48 MB that two hundred elements named took 9 s."""
     file, read = tmp_path / "a", []
     file.write_text("same")
-    monkeypatch.setattr(cache, "content", lambda *args: read.append(args) or content(*args))
+    monkeypatch.setattr(cache, "raw", lambda *args: read.append(args) or raw(*args))
     cache.digest([(f"{at}", file) for at in range(200)])
     assert len(read) == 1
 

@@ -1,17 +1,20 @@
 """A robot of an MJCF as MuJoCo compiles it: defaults, welded bodies, joints beside origins, motors of all kinds."""
 
+import biped
 import mujoco
 import needs
 import numpy as np
 import pinocchio as pin
 import pytest
+from mesh_files import stl, text_stl
 from mjcf_biped import DRAWN, LIMITS, TEXT, described, leg, meshed
+from test_meshes import ball
 
 from surefoot.models import RobotError, RobotOptions, describe, explain
 from surefoot.models.consistency import EnginePair
 from surefoot.models.convert import pinocchio_to_mujoco, velocity_map
 from surefoot.models.pinocchio import pinocchio_model
-from surefoot.models.robot_file import mujoco_source
+from surefoot.models.robot_file import compiled
 from surefoot.models.robot_file.mesh_file import burden
 
 pytestmark = pytest.mark.unit
@@ -84,15 +87,15 @@ def test_g1_of_an_mjcf_is_g1_of_its_urdf(tmp_path) -> None:
     )
 
 
-def compiled(monkeypatch):
+def taken(monkeypatch):
     """What MuJoCo gets, by name, of each model that it compiles."""
-    got, before = [], mujoco_source._moderate
-    monkeypatch.setattr(mujoco_source, "_moderate", lambda *args: got.append(before(*args)) or got[-1])
+    got, before = [], compiled._moderate
+    monkeypatch.setattr(compiled, "_moderate", lambda *args: got.append(before(*args)) or got[-1])
     return got
 
 
 def test_meshes_that_are_not_dense_reach_mujoco_as_they_are(tmp_path, monkeypatch) -> None:
-    got = compiled(monkeypatch)
+    got = taken(monkeypatch)
     explain(meshed(tmp_path, 20, DRAWN, 'mass="0"'))
     assert got == [dict.fromkeys(("mesh0.stl", "mesh1.stl"), (tmp_path / "m.stl").read_bytes())]
 
@@ -101,8 +104,8 @@ def test_meshes_that_are_not_dense_reach_mujoco_as_they_are(tmp_path, monkeypatc
 def test_dense_meshes_become_coarser_but_for_those_that_say_how_heavy_a_body_is(tmp_path, monkeypatch, kind) -> None:
     monkeypatch.setenv("XDG_CACHE_HOME", str(tmp_path / "cache"))
     file = meshed(tmp_path, 60, DRAWN, 'mass="0"', weighs=("",), kind=kind)  # 14 400 each
-    whole, got = describe(file, RobotOptions()), compiled(monkeypatch)
-    monkeypatch.setattr(mujoco_source, "MOST_COMPILED", 20_000)
+    whole, got = describe(file, RobotOptions()), taken(monkeypatch)
+    monkeypatch.setattr(compiled, "MOST_COMPILED", 20_000)
     monkeypatch.setenv("XDG_CACHE_HOME", str(tmp_path / "other"))
     told = explain(meshed(tmp_path, 60, DRAWN, 'mass="0"', weighs=("",), kind=kind))
     (files,) = got
@@ -121,7 +124,43 @@ def test_dense_meshes_become_coarser_but_for_those_that_say_how_heavy_a_body_is(
     [("", ""), (f'{DRAWN} type="box"', ""), ('density="1"', '<compiler inertiafromgeom="true"/>')],
 )
 def test_dense_meshes_by_which_bodies_have_inertia_or_size_are_refused(tmp_path, monkeypatch, geom, compiler) -> None:
-    monkeypatch.setattr(mujoco_source, "MOST_COMPILED", 20_000)
+    monkeypatch.setattr(compiled, "MOST_COMPILED", 20_000)
     explain(meshed(tmp_path, 60, DRAWN, DRAWN))
     with pytest.raises(RobotError, match=r"28800 triangles in MSH and in meshes by which .* at most 20000"):
         explain(meshed(tmp_path, 60, geom, geom, compiler=compiler))
+
+
+def test_a_warning_of_mujoco_is_a_note_without_a_path_of_code(tmp_path, recwarn) -> None:
+    text = TEXT.replace('<compiler angle="radian"/>', '<compiler angle="radian" settotalmass="20"/>')
+    path = biped.write(tmp_path, text, biped.FILE.replace("biped.urdf", "biped.xml") + LIMITS, "biped.xml")
+    found = explain(str(path))
+    (told,) = [note for note in found.notes if note.startswith("MuJoCo remarks: ")]
+    assert "settotalmass" in told
+    assert ".py" not in told
+    assert not recwarn.list
+    assert found.description.mass == pytest.approx(20.0)
+
+
+def test_a_model_whose_bodies_never_collide_is_remarked(tmp_path) -> None:
+    """Its links touch by what is drawn; one that collides with the ground alone is none of these."""
+    told = "no geom of the model collides (contype and conaffinity are 0), so links touch by what is drawn of them"
+    notes = {}
+    for way in ('contype="0" conaffinity="0"', 'contype="1" conaffinity="0"', ""):
+        text = TEXT.replace('<geom density="500"/>', f'<geom density="500" {way}/>')
+        path = biped.write(tmp_path, text, biped.FILE.replace("biped.urdf", "biped.xml") + LIMITS, "biped.xml")
+        found = explain(str(path))
+        notes[way] = told in found.notes
+        assert 'name="left_thigh_shape"' in found.description.mjcf
+    assert list(notes.values()) == [True, False, False]
+
+
+def test_a_text_stl_is_read_as_a_binary_one(tmp_path) -> None:
+    vertices, faces = ball(0.05, 8)
+    text = TEXT.replace("<worldbody>", '<asset><mesh name="m" file="m.stl"/></asset><worldbody>', 1)
+    text = text.replace("<freejoint/>", '<freejoint/><geom type="mesh" mesh="m"/>')
+    seen = set()
+    for write in (stl, text_stl):
+        (tmp_path / "m.stl").write_bytes(write(vertices, faces))
+        seen.add(described(tmp_path, text).mass)
+    one, other = seen if len(seen) == 2 else (*seen, *seen)
+    assert one == pytest.approx(other, rel=1e-6)

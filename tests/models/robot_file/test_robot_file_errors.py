@@ -58,7 +58,7 @@ FILES = {
         r"lock of biped has the pattern 'wrist_\*', which matches no joint",
     ),
     "no posture": (biped.FILE + "posture: half_sitting\n", "posture of biped is 'half_sitting', which is no state"),
-    "posture out of range": (biped.FILE + "posture: {left_knee: -1}\n", "'left_knee' at -1.0 rad; it must lie within"),
+    "posture out of range": (biped.FILE + "posture: {left_knee: -1}\n", "'left_knee' at -1 rad; it must lie within"),
     "no torso": (biped.FILE + "torso: chest\n", "torso of biped names 'chest', which is no link"),
     "torso in a leg": (biped.FILE + "torso: left_thigh\n", "which is part of a leg; name a link above"),
     "apart": (biped.FILE + "keep_apart: [[left_shank, left_foot]]\n", "names 'left_foot', which has no contact shape"),

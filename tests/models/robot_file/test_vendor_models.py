@@ -205,7 +205,7 @@ def test_what_is_drawn_may_be_missing(tmp_path, reference) -> None:
     cap = f'<link name="cap"><visual><geometry><mesh filename="{reference}"/></geometry></visual>{{}}</link>'
     fixed = '<joint name="cap_joint" type="fixed"><parent link="base"/><child link="cap"/></joint>'
     found = explained(tmp_path, biped.Biped(extra=cap.format("") + fixed))
-    assert any(note.startswith("link 'cap' of") and note.endswith("is not drawn") for note in found.notes)
+    assert any(note.startswith("left out: link 'cap' of") and note.endswith("is not drawn") for note in found.notes)
     box = '<visual><geometry><box size="0.1 0.1 0.1"/></geometry></visual>'
     touches = cap.replace("visual", "collision").format(box)
     found = explained(tmp_path, biped.Biped(extra=touches + fixed))

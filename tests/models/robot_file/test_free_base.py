@@ -15,7 +15,7 @@ from surefoot.models.robot_file.draft import draft
 
 pytestmark = pytest.mark.unit
 
-LIMIT = '<limit lower="-9" upper="9" effort="{}" velocity="9"/>'
+LIMIT = '<limit lower="-3" upper="3" effort="{}" velocity="9"/>'
 TURN, SLIDE = "revolute", "prismatic"
 SIX = [(kind, axis) for kind in (SLIDE, TURN) for axis in ("1 0 0", "0 1 0", "0 0 1")]
 MJ_SIX = [("slide", axis) for _, axis in SIX[:3]] + [("hinge", axis) for _, axis in SIX[:3]]

@@ -76,4 +76,4 @@ def test_a_picture_that_is_coarse_loses_parts_and_no_walk(tmp_path) -> None:
     (tmp_path / "cap.stl").write_bytes(binary_stl((vertices, faces)))
     found = explain(str(biped.write(tmp_path, biped.Biped(extra=CAP + more))))
     mujoco.MjModel.from_xml_string(found.description.mjcf)
-    assert any("too few triangles, and is left out: cap" in note for note in found.notes), found.notes
+    assert any("what is drawn of cap, which comes to too few triangles" in note for note in found.notes), found.notes

@@ -28,7 +28,9 @@ from surefoot.models.robot_file.sift import told_absent
 from surefoot.models.robot_file.source import ROOT, Source, physical
 from surefoot.models.types import Array, RobotError
 
-_HINGE, _SLIDE = (int(kind) for kind in (mujoco.mjtJoint.mjJNT_HINGE, mujoco.mjtJoint.mjJNT_SLIDE))
+_FREE, _BALL, _HINGE = (
+    int(kind) for kind in (mujoco.mjtJoint.mjJNT_FREE, mujoco.mjtJoint.mjJNT_BALL, mujoco.mjtJoint.mjJNT_HINGE)
+)
 _LEGS = 8
 """Joints that two legs have at least."""
 
@@ -102,6 +104,7 @@ class _Reader:
             notes=self._notes,
             left_out=self._left_out,
             parts=tuple(map(self._part, self._place)),
+            held=self._held(),
         )
         self._add_limits()
         self._add_shapes(source)
@@ -144,24 +147,41 @@ class _Reader:
         """Put a joint at its place in the body; returns it and the body seen from it."""
         mj = self._mj
         name = mj.joint(index).name or _free(f"{body}_joint{index}", self._joints)
-        kind, at = int(mj.jnt_type[index]), mj.jnt_pos[index]
-        if kind not in (_HINGE, _SLIDE):
-            raise RobotError(
-                ("model",), f"{self._path}: joint '{name}' is neither hinge nor slide", "give it as hinges"
-            )
-        if mj.qpos0[mj.jnt_qposadr[index]] != 0.0:
-            raise RobotError(("model",), f"{self._path}: joint '{name}' has a ref", "remove it")
-        unit = mj.jnt_axis[index]
-        joint = pin.JointModelRevoluteUnaligned(unit) if kind == _HINGE else pin.JointModelPrismaticUnaligned(unit)
-        there = pin.SE3(np.eye(3), at)
-        lower, upper = mj.jnt_range[index] if mj.jnt_limited[index] else (-2 * np.pi, 2 * np.pi)
-        one = np.ones(1)
-        added = self._model.addJoint(parent, joint, offset * there, name, one, one, one * lower, one * upper)
+        kind, unit, size = int(mj.jnt_type[index]), mj.jnt_axis[index], 1
+        if kind == _BALL:
+            joint, size = pin.JointModelSpherical(), 3
+        else:
+            joint = pin.JointModelRevoluteUnaligned(unit) if kind == _HINGE else pin.JointModelPrismaticUnaligned(unit)
+        there, ends = pin.SE3(np.eye(3), mj.jnt_pos[index]), self._range(index, name)
+        none = np.ones(size)
+        added = self._model.addJoint(parent, joint, offset * there, name, none, none, *ends)
         self._model.addJointFrame(added)
         self._added[index] = added
-        armature = mj.dof_armature[mj.jnt_dofadr[index]] + rotor(mj, index)
-        self._model.armature[self._model.joints[added].idx_v] = armature
+        first = self._model.joints[added].idx_v
+        self._model.armature[first : first + size] = mj.dof_armature[mj.jnt_dofadr[index]] + rotor(mj, index)
         return added, there.inverse()
+
+    def _range(self, index: int, name: str) -> tuple[Array, Array]:
+        """Ends of a joint, counted from where it stands in the file, as all angles are; none that a ball has."""
+        mj = self._mj
+        if int(mj.jnt_type[index]) == _BALL:
+            return -np.ones(4), np.ones(4)
+        lower, upper = mj.jnt_range[index] if mj.jnt_limited[index] else (-2 * np.pi, 2 * np.pi)
+        ref = float(mj.qpos0[mj.jnt_qposadr[index]])
+        if ref != 0.0:
+            self._notes.append(f"joint '{name}' is at its ref {ref:.6g} in the model, from where its angles count here")
+        ends = np.array([lower, upper]) - ref * bool(mj.jnt_limited[index])
+        return ends[:1], ends[1:]
+
+    def _held(self) -> tuple[str, ...]:
+        """Joints of the base itself; a floating base holds it nowhere."""
+        mj, first = self._mj, int(self._mj.body_jntadr[self._root])
+        joints = range(first, first + int(mj.body_jntnum[self._root]))
+        return tuple(
+            mj.joint(joint).name or f"{self._name(self._root)}_joint{joint}"
+            for joint in joints
+            if int(mj.jnt_type[joint]) != _FREE
+        )
 
     def _inertia(self, body: int, name: str) -> pin.Inertia:
         mj = self._mj

@@ -1,13 +1,14 @@
 """A URDF or MJCF as a Pinocchio model with a floating base, its shapes, and the files that it is made of."""
 
 from collections.abc import Iterator, Mapping
-from dataclasses import dataclass, field
+from dataclasses import dataclass, field, replace
 from pathlib import Path
 from xml.etree import ElementTree
 
 import numpy as np
 import pinocchio as pin
 
+from surefoot.models.robot_file.base import base_frame, based_on, held_by, moved, told
 from surefoot.models.robot_file.bindings import Binding, Follower
 from surefoot.models.robot_file.document import Node, number
 from surefoot.models.robot_file.files import Document, read_document
@@ -46,6 +47,7 @@ class Source:
         notes: what was altered while reading.
         left_out: elements of the file that the robot has not, each line beginning with "left out: ".
         parts: its links, as the file has them.
+        held: joints that hold the base in the world, which the model does not have any more.
     """
 
     model: pin.Model
@@ -56,6 +58,7 @@ class Source:
     notes: list[str] = field(default_factory=list)
     left_out: list[str] = field(default_factory=list)
     parts: tuple[Part, ...] = ()
+    held: tuple[str, ...] = ()
 
 
 def read_source(file: RobotFile, path: Path) -> Source:
@@ -71,12 +74,34 @@ def read_source(file: RobotFile, path: Path) -> Source:
         from surefoot.models.robot_file.mujoco_source import read_mjcf
 
         source = read_mjcf(file, path, document.mjcf)
+    source = _freed(source)
     _check_parts(source.model, path)
     held = check_parts(source.model, source.parts, source.visual, source.collision, str(path))
     source.visual = held.drawn
     source.left_out += held.left_out
     source.notes += held.notes
     return source
+
+
+def _freed(source: Source) -> Source:
+    """Without the joints between the world and the base, which its floating base replaces."""
+    model, chain = source.model, held_by(source.model)
+    joint = chain[-1] if chain else 1
+    masses = {part.link: part.mass for part in source.parts}
+    base, held = base_frame(model, joint, masses), (*source.held, *(model.names[one] for one in chain))
+    if held:
+        data = model.createData()
+        pin.computeSubtreeMasses(model, data)
+        source.notes.append(told(held, data.mass[1] - data.mass[joint]))
+    if not moved(model, joint, base):
+        return source
+    model = based_on(model, joint, base)
+    links = {frame.name for frame in model.frames if frame.type == pin.FrameType.BODY}
+    visual, collision = (
+        tuple(shape for shape in shapes if shape.link in links) for shapes in (source.visual, source.collision)
+    )
+    parts = tuple(part for part in source.parts if part.link in links)
+    return replace(source, model=model, visual=visual, collision=collision, parts=parts)
 
 
 def _read_urdf(file: RobotFile, document: Document) -> Source:

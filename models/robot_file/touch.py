@@ -7,6 +7,7 @@ import numpy as np
 import pinocchio as pin
 
 from surefoot.engine import mujoco
+from surefoot.models.robot_file.engine_mesh import compiled, taken
 from surefoot.models.robot_file.legs import SIDES, Leg
 from surefoot.models.robot_file.meshes import Faces, hull
 from surefoot.models.robot_file.reduced import Reduced, points_of
@@ -58,6 +59,8 @@ def find_hulls(reduced: Reduced, legs: tuple[Leg, Leg], upper: Upper) -> dict[in
             vertices, faces = hull(points, MOST_POINTS)
             if abs(np.linalg.det(vertices[faces]).sum()) / 6.0 > _LEAST_VOLUME:
                 found[joint] = Hull(joint, vertices, faces)
+    sound = taken([(one.vertices, one.faces) for one in found.values()], drawn=False)
+    found = {joint: one for (joint, one), right in zip(found.items(), sound, strict=True) if right}
     shaped = [joint for joint in sorted(wanted) if reduced.collision[joint] or reduced.visual[joint]]
     if flat := [reduced.bodies[joint - 1] for joint in shaped if joint not in found]:
         reduced.left_out.append(f"left out: contact of links whose shapes have no volume: {', '.join(flat)}")
@@ -76,7 +79,7 @@ def overlapping(
         parents: parent of each joint.
         near: the distance [m].
     """
-    model = mujoco.MjModel.from_xml_string(mjcf)
+    model = compiled(mjcf)
     data = mujoco.MjData(model)
     found: dict[tuple[str, str], None] = {}
     for angles in postures:

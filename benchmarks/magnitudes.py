@@ -19,6 +19,7 @@ from surefoot.models.robot_file import magnitudes
 from surefoot.models.robot_file.draft import draft
 from surefoot.models.robot_file.magnitudes import Law
 from surefoot.models.types import RobotError
+from surefoot.scenarios.record.provenance import relevant_versions
 
 LAWS = {name: law for name, law in vars(magnitudes).items() if isinstance(law, Law)}
 HEADS = ("law", "ratio", "model", "models")
@@ -89,8 +90,10 @@ def main(arguments: Sequence[str] | None = None) -> None:
         print(f"{row.law:<9} {row.ratio:>9.3g} {row.model} of {row.models}")
     if given.csv:
         with given.csv.open("w", newline="", encoding="utf-8") as file:
+            code = relevant_versions()
             file.write("# python -m benchmarks.magnitudes FOLDER...\n")
-            writer = csv.writer(file)
+            file.write(f"# surefoot {code['surefoot']}, source_digest {code['source_digest']}\n")
+            writer = csv.writer(file, lineterminator="\n")
             writer.writerow(HEADS)
             writer.writerows((row.law, f"{row.ratio:.3g}", row.model, row.models) for row in rows)
 

@@ -19,7 +19,6 @@ import yaml
 from pydantic import BaseModel
 from pydantic.fields import FieldInfo
 
-from surefoot.models.robot_file import magnitudes
 from surefoot.models.robot_file.schema import RobotFile
 from surefoot.planner.laws.profiles import PROFILES, Profile
 from surefoot.scenarios import catalogue
@@ -231,35 +230,7 @@ def _walked_row(name: str, found: Any) -> list[str]:
     return [f"`{name}`", *(str(len(found[kind])) for _, kind in CATALOGUE), lacks]
 
 
-def magnitudes_table() -> str:
-    """Each law on the sizes of a robot, with the public humanoid that comes nearest to its bounds."""
-    nearest = {row["law"]: row for row in _magnitudes()}
-    laws = ((name, law) for name, law in vars(magnitudes).items() if isinstance(law, magnitudes.Law))
-    rows = ([_said(law), law.over.format("y"), _bounds(law), law.then, _nearest(nearest[name])] for name, law in laws)
-    return table(("what is said", "x over", "may be", "otherwise", "nearest"), rows)
-
-
-def _magnitudes() -> list[dict[str, str]]:
-    lines = (FOLDER / "results" / "magnitudes.csv").read_text(encoding="utf-8").splitlines()
-    return list(csv.DictReader(line for line in lines if not line.startswith("#")))
-
-
-def _said(law: magnitudes.Law) -> str:
-    return law.said.format(what="NAME", value=f"x {law.unit}")
-
-
-def _bounds(law: magnitudes.Law) -> str:
-    if law.most == math.inf:
-        return f"at least {law.least:g}"
-    return f"{law.least:g} to {law.most:g}" if law.least else f"at most {law.most:g}"
-
-
-def _nearest(row: dict[str, str]) -> str:
-    return f"{row['ratio']}, {row['model']}"
-
-
 TABLES: dict[str, tuple[str, Callable[[], str]]] = {
-    "magnitudes": ("robot-files.md", magnitudes_table),
     "catalogue": ("robots.md", catalogue_table),
     "keys": ("scenarios.md", keys_table),
     "profiles": ("profiles.md", profiles_table),
@@ -289,7 +260,7 @@ _COMMANDS = {"help": "--help", "list": "list", "show": "show walk", "schema": "s
 VALUES: dict[str, str] = {
     "chunk": f"{CHUNK_PERIOD_NS / 1e6:g} ms",
     "scenarios": str(len(catalogue.OWN)),
-    "models": max((row["models"] for row in _magnitudes()), key=int),
+    "models": result_tables.models_held(),
     "knees": f"{standing.measured('walk', 'knee_angle_mean'):.0f}",
     **{f"{kind}calls": str(_LIMITS[name]["calls of a tick without a plan"]) for kind, name in _CALLS.items()},
     **{f"{kind}calls_plan": str(_LIMITS[name]["calls of a tick with a plan"]) for kind, name in _CALLS.items()},

@@ -12,6 +12,7 @@ from typing import Any
 from measured import HEEL_OFF, HIDDEN, RESULTS, ROUGH, SENSED, WITHOUT, head, limit_of, rows, searches
 from page_table import table
 
+from surefoot.models.robot_file import magnitudes
 from surefoot.scenarios.judge.metrics import OWN
 from surefoot.scenarios.study.campaigns.spec import text
 from surefoot.scenarios.study.campaigns.thresholds import Found
@@ -255,7 +256,35 @@ def solvers_table() -> str:
     return table(["solver", "median", "failures", "KKT residual", "largest difference to DAQP"], cells)
 
 
+def magnitudes_table() -> str:
+    """Each law on the sizes of a robot, with the public humanoid that comes nearest to its bounds."""
+    nearest = {row["law"]: row for row in rows("magnitudes")}
+    laws = ((name, law) for name, law in vars(magnitudes).items() if isinstance(law, magnitudes.Law))
+    cells = ([_said(law), law.over.format("y"), _bounds(law), law.then, _nearest(nearest[name])] for name, law in laws)
+    return table(("what is said", "x over", "may be", "otherwise", "nearest"), cells)
+
+
+def models_held() -> str:
+    """How many public models the laws on sizes were held against."""
+    return max((row["models"] for row in rows("magnitudes")), key=int)
+
+
+def _said(law: magnitudes.Law) -> str:
+    return law.said.format(what="NAME", value=f"x {law.unit}")
+
+
+def _bounds(law: magnitudes.Law) -> str:
+    if law.most == math.inf:
+        return f"at least {law.least:g}"
+    return f"{law.least:g} to {law.most:g}" if law.least else f"at most {law.most:g}"
+
+
+def _nearest(row: dict[str, str]) -> str:
+    return f"{row['ratio']}, {row['model']}"
+
+
 TABLES: dict[str, tuple[str, Callable[[], str]]] = {
+    "magnitudes": ("robot-files.md", magnitudes_table),
     "push-map-pendulum": ("campaigns.md", partial(push_table, "push-map-pendulum")),
     "push-map": ("campaigns.md", partial(push_table, "push-map")),
     "push-gains": ("campaigns.md", partial(gains_table, "push-map-pendulum")),

@@ -171,7 +171,7 @@ def test_the_robots_that_come_along_are_within_every_bound() -> None:
     for name in ("talos", "g1", "alexander", "jvrc1", "gr3"):
         found = explain(name)
         assert not [note for note in found.notes if " times " in note], name
-        assert not [line for line in found.description.left_out if "drawn" in line or "shape" in line], name
+        assert not [line for line in found.description.left_out if "drawn" in line or "contact" in line], name
 
 
 def test_what_is_drawn_in_another_unit_is_left_out(tmp_path) -> None:

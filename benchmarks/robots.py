@@ -316,11 +316,11 @@ def main() -> None:
     for row in side_by_side(examined, tasks, given.jobs, _lost):
         rows[row.model.name] = row
         print(" ".join(cells(row)), *(f"\n  - {told}" for told in _remarks(row)), flush=True)
-    print(table([rows[model.name] for model, *_ in tasks]))
-    found = [rows[model.name] for model, *_ in tasks]
-    moved = [] if given.against is None else list(moved_from(found, given.against))
+    done = [rows[model.name] for model, *_ in tasks]
+    print(table(done))
+    moved = [] if given.against is None else list(moved_from(done, given.against))
     if given.csv is not None:
-        write(found, given.csv)
+        write(done, given.csv)
     if given.against is not None:
         print("\n".join(moved) or f"as in {given.against}")
         raise SystemExit(1 if moved else 0)

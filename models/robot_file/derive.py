@@ -151,7 +151,7 @@ class _Deriver:
         if not self.upper.arms:
             return posture
         near = _FREE * self.leg_length
-        others = {1, self.upper.torso, *(leg.joints[leg.knee - 1] for leg in self.legs)}
+        others = {1, self.upper.torso, *(leg.thigh for leg in self.legs)}
         arms = {joint for arm in self.upper.arms for joint in arm[2:]}
         hulls = {joint: hull for joint, hull in self.hulls.items() if joint in others | arms}
         text = robot_text(self._parts((), looks=False, hulls=hulls))

@@ -118,3 +118,22 @@ def test_rows_that_moved_are_told_by_what_moved(robots, tmp_path) -> None:
         "robot: pushed was 4 of 4, is 3 of 4",
         f"other: not in {tmp_path / 'before.csv'}",
     ]
+
+
+def test_a_table_is_held_against_that_of_before_from_the_command_line(robots, monkeypatch, tmp_path, capsys) -> None:
+    """The exit code is 0 where no row has moved, and 1 where one has."""
+    model = robots.Model("robot", "robot.urdf", "somewhere")
+    (tmp_path / "robot.urdf").write_text("", encoding="utf-8")
+    rows = [robots.Row(model, reads=True), robots.Row(model, reads=True, derives=True)]
+    monkeypatch.setattr(robots, "MODELS", (model,))
+    monkeypatch.setattr(robots, "side_by_side", lambda *_given: iter([rows[0]]))
+    table = str(tmp_path / "table.csv")
+    monkeypatch.setattr("sys.argv", ["robots.py", str(tmp_path), "--csv", table])
+    robots.main()
+    monkeypatch.setattr("sys.argv", ["robots.py", str(tmp_path), "--against", table])
+    for code in (0, 1):
+        with pytest.raises(SystemExit) as end:
+            robots.main()
+        assert end.value.code == code
+        monkeypatch.setattr(robots, "side_by_side", lambda *_given: iter([rows[1]]))
+    assert "robot: derives was –, is yes" in capsys.readouterr().out

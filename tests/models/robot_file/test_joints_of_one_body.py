@@ -13,6 +13,7 @@ import surefoot
 from surefoot.models import RobotError, RobotOptions, describe, explain
 from surefoot.models.consistency import EnginePair
 from surefoot.models.convert import pinocchio_to_mujoco, velocity_map
+from surefoot.models.facts import shank_outline
 from surefoot.models.pinocchio import pinocchio_model
 from surefoot.scenarios.run.run import run_scenario
 
@@ -198,6 +199,17 @@ def _joined(robot) -> str:
         text += f'<body pos="0 0 {-biped.THIGH}">{hinge("knee", "0 1 0")}{mass(f"{side}_shank")}'
         text += f'<body pos="0 0 {-biped.SHANK}">{ankle}{mass(f"{side}_foot")}</body></body></body>'
     return f"{text}</body></worldbody></mujoco>"
+
+
+def test_a_shank_of_two_joints_touches_and_clears_edges(tmp_path) -> None:
+    """Its shapes are on the last of its joints, and the knee is the first."""
+    knee = '<joint name="{0}_knee" axis="0 1 0" pos="0.01 0 0.01" range="0.1 2"/>'
+    twist = '<joint name="{0}_twist" axis="0 0 1" pos="0 0 -0.02" actuatorfrcrange="-30 30"/>'
+    pairs = {side: (knee.format(side), knee.format(side) + twist.format(side)) for side in ("left", "right")}
+    one, two = (explain(str(_written(tmp_path, source))).description for source in (text(), text(**pairs)))
+    assert "left_twist" in two.roles.left_leg and two.roles.knees == one.roles.knees
+    assert {name for pair in two.kept_apart for name in pair} == {name for pair in one.kept_apart for name in pair}
+    np.testing.assert_allclose(shank_outline(two, 0), shank_outline(one, 0), atol=1e-6)
 
 
 def test_a_joint_that_moves_nothing_is_locked(tmp_path) -> None:

@@ -5,7 +5,8 @@ import importlib
 import json
 import shutil
 import sys
-from collections.abc import Callable, Iterable
+from collections.abc import Callable, Iterable, Iterator
+from dataclasses import replace
 from pathlib import Path
 from shlex import quote
 from types import ModuleType
@@ -43,6 +44,20 @@ class Problem:
     def __reduce__(self) -> tuple[type["Problem"], tuple[Key, str, str, bool]]:
         """Survive the way between processes, where what says what would be right may not be known."""
         return type(self), (self.key, self.what, self._told, self.at_key)
+
+
+LONGEST_HINT = 200
+"""Characters of what would be right that are told once only, where many problems have the same."""
+
+
+def told_once(problems: Iterable[Problem]) -> Iterator[Problem]:
+    """The problems; of those with the same long hint only the first has it."""
+    told: set[str] = set()
+    for problem in problems:
+        hint = problem._told
+        yield replace(problem, right="see the first of these" if hint in told else hint)
+        if len(hint) > LONGEST_HINT:
+            told.add(hint)
 
 
 LONGEST_SENTENCE = 2000

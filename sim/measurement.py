@@ -8,6 +8,11 @@ from surefoot.values import dataclass
 Array = NDArray[np.float64]
 
 
+def is_rotation(quaternion: Array) -> bool:
+    """Whether four numbers, shape (4,), are those of a rotation but for rounding."""
+    return bool(0.81 < float(np.vdot(quaternion, quaternion)) < 1.21)
+
+
 @dataclass(frozen=True, slots=True)
 class Measurement:
     """Sensors and truth at one instant; the joint order is that of the robot description.
@@ -29,7 +34,8 @@ class Measurement:
             frame, shape (2, 6) [N, N m]; NaN where no foot feels any.
         q: true configuration in Pinocchio's convention, shape (7 + nj,) [m, -, rad].
         v: true velocity in Pinocchio's convention, shape (6 + nj,) [m/s, rad/s].
-        external_force: sum of the pushes, mean over the `World.advance` that ended at `time`, world, shape (3,) [N].
+        external_force: sum of the pushes, mean over the `World.advance` that ended at `time`, world, shape (3,) [N];
+            NaN where it is not known.
         nonfoot_contact: whether anything but the feet touches the terrain.
         self_contact: whether the robot touches itself; a foot's wrench then holds that touch, too.
     """
@@ -49,7 +55,13 @@ class Measurement:
 
     @classmethod
     def of_state(
-        cls, time: float, q: Array, v: Array, joint_torque: Array | None = None, wrench: Array | None = None
+        cls,
+        time: float,
+        q: Array,
+        v: Array,
+        joint_torque: Array | None = None,
+        wrench: Array | None = None,
+        external_force: Array | None = None,
     ) -> "Measurement":
         """What is seen of a robot whose state is known from elsewhere, with no IMU and nothing that touches it.
 
@@ -59,8 +71,10 @@ class Measurement:
             v: velocity in Pinocchio's convention, shape (6 + nj,) [m/s, rad/s].
             joint_torque: shape (nj,) [N m]; None where it is not known.
             wrench: of the soles in their frames, shape (2, 6) [N, N m]; likewise.
+            external_force: sum of the pushes, mean since the measurement before, world, shape (3,) [N]; likewise.
         """
         torque = np.full(len(v) - 6, np.nan) if joint_torque is None else joint_torque
         felt = np.full((2, 6), np.nan) if wrench is None else wrench
         unseen = np.full(3, np.nan)
-        return cls(time, q[7:], v[6:], torque, v[3:6], unseen, felt, q, v, np.zeros(3), False, False)
+        pushed = unseen if external_force is None else external_force
+        return cls(time, q[7:], v[6:], torque, v[3:6], unseen, felt, q, v, pushed, False, False)

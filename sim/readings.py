@@ -11,7 +11,7 @@ from surefoot.readings import Reading, Readings
 from surefoot.sim.compiled import CompiledSensors
 from surefoot.sim.imu_motion import ImuChain, ImuMotion, turn_between
 from surefoot.sim.measurement import Array, Measurement
-from surefoot.sim.sensor_errors import Delivery, SensorErrors
+from surefoot.sim.sensor_errors import SOON, Delivery, SensorErrors
 from surefoot.sim.world import World
 from surefoot.similarity import GRAVITY
 from surefoot.streams import Stream, generator
@@ -19,9 +19,6 @@ from surefoot.values import maker
 
 BLOCK = 64
 """Ticks for which noise is drawn at once, which changes none of the numbers and costs a fifth."""
-
-_SOON = 1e-9
-"""What arrives so shortly after a tick is there at the tick [s]."""
 
 _NOISE, _BIAS, _WALK, _OFFSET, _VELOCITY, _TURN, _SHIFT, _JITTER, _DROPOUT = range(9)
 """Parts of a stream of random numbers, so that no term of a sensor moves the numbers of another."""
@@ -280,7 +277,7 @@ class _Line:
             return [_a_reading(values, 0.0, True) for values in sample]
         self._send(tick, sample)
         period, taken = self._period, self._taken
-        now, before = tick * period + _SOON, taken
+        now, before = tick * period + SOON, taken
         newest = now - self._delivery.latency
         for arrival, sent, values in self._under_way:
             if sent * period > newest:  # none of the rest can have arrived

@@ -18,6 +18,10 @@ def _term(default: float, scales: str = "-") -> Any:
     return quantity(default, scales)
 
 
+SOON = 1e-9
+"""What arrives so shortly after a tick is there at the tick, so that no shorter time is late [s]."""
+
+
 @dataclass(frozen=True, slots=True)
 class Delivery:
     """How readings of one group of sensors come to the controller.

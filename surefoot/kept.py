@@ -7,6 +7,7 @@ the folder cannot be written, nothing is kept.
 import hashlib
 import json
 import os
+import stat
 import sys
 from collections.abc import Callable
 from contextlib import suppress
@@ -28,13 +29,27 @@ def opened(key: str, data: bytes) -> bytes | None:
     return text if seal == _seal(key, text) else None
 
 
+def read(entry: Path) -> bytes:
+    """What is in a file, where that is one: a pipe or a device, which may have no end, is not waited for.
+
+    Raises:
+        OSError: it is none, or cannot be read.
+    """
+    with os.fdopen(os.open(entry, os.O_RDONLY | getattr(os, "O_NONBLOCK", 0)), "rb") as file:
+        if not stat.S_ISREG(os.fstat(file.fileno()).st_mode):
+            raise OSError(f"{entry} is no regular file")
+        return file.read()
+
+
 def store(room: str, key: str, text: bytes, most: int) -> None:
     """Keep a text, at once or not at all, and of a room's entries no more than so many, of which the oldest go."""
     entry = place(room, key)
     with suppress(OSError):
         entry.parent.mkdir(parents=True, exist_ok=True)
         unfinished = entry.with_suffix(f".{os.getpid()}")
-        unfinished.write_bytes(_seal(key, text) + b"\n" + text)
+        unfinished.unlink(missing_ok=True)
+        with unfinished.open("xb") as file:  # which waits for nobody, whatever lies there
+            file.write(_seal(key, text) + b"\n" + text)
         unfinished.replace(entry)
         for old in sorted(entry.parent.glob("*.json"), key=lambda file: file.lstat().st_mtime)[:-most]:
             old.unlink()
@@ -51,7 +66,7 @@ def from_sources(name: str, make: Callable[[], str]) -> str:
     """
     key = hashlib.sha256(repr((name, __file__, sys.prefix, sys.version)).encode()).hexdigest()
     with suppress(OSError, RuntimeError):
-        kept = opened(key, place("texts", key).read_bytes())
+        kept = opened(key, read(place("texts", key)))
         if kept is not None:
             found = json.loads(kept)
             if all(_digest(file) == digest for file, digest in found["sources"].items()):
@@ -72,7 +87,7 @@ def _imported() -> list[str]:
 
 
 def _digest(file: str) -> str:
-    return hashlib.sha256(Path(file).read_bytes()).hexdigest()
+    return hashlib.sha256(read(Path(file))).hexdigest()
 
 
 def _seal(key: str, text: bytes) -> bytes:

@@ -24,6 +24,9 @@ if TYPE_CHECKING:
 
 __all__ = ["OWN_PACKAGE", "Declared", "PluginError", "Registry", "entry_points", "package_of"]
 
+AFRESH = "install its package again where entry points have changed"
+"""What makes entry points known that were added or renamed in a package which is installed already."""
+
 T = TypeVar("T")
 S = TypeVar("S")
 
@@ -60,6 +63,11 @@ class Registry(Mapping[str, T]):
         """Names that are not this package's own, sorted."""
         found = {entry.name for entry in entry_points(group=self.group)} | set(self._added)
         return sorted(found - set(self._names)) if found else []
+
+    @property
+    def hint(self) -> str:
+        """What may be wrong with a name that there is not, to be said after the names; empty where no package is."""
+        return f"; if a package brings it, {AFRESH}" if self.others() else ""
 
     def add(self, name: str, thing: T) -> T:
         """Register an object for the running process, over one of the same name that was added before.
@@ -260,4 +268,6 @@ def _load(entry: "EntryPoint") -> object:
         raise
     except BaseException as error:
         what = f"'{entry.name}' of package {package_of(entry)} cannot be loaded, {said(error)}"
-        raise PluginError(what, "mend or remove it") from error
+        # Of an editable package the entry points are those of its installation, whatever has been written since.
+        gone = isinstance(error, ImportError | AttributeError)
+        raise PluginError(what, f"mend or remove it, and {AFRESH}" if gone else "mend or remove it") from error

@@ -1,6 +1,9 @@
 """What is kept in the user's cache folder: found again of the same sources, and never of others."""
 
+import os
+import subprocess
 import sys
+from pathlib import Path
 from types import ModuleType
 
 import pytest
@@ -97,3 +100,33 @@ def test_the_oldest_entries_go(cache):
         kept.store("texts", f"{number}", b"text", most=3)
     assert len(list(cache.glob("*"))) == 3
     assert kept.opened("4", kept.place("texts", "4").read_bytes()) == b"text"
+
+
+@pytest.mark.parametrize("how", ["pipe", "folder", "device"])
+def test_what_is_no_file_in_place_of_an_entry_is_not_waited_for(how, source, cache):
+    make = Maker()
+    kept.from_sources("a", make)
+    (entry,) = cache.glob("*.json")
+    entry.unlink()
+    {"pipe": os.mkfifo, "folder": Path.mkdir, "device": lambda path: path.symlink_to("/dev/zero")}[how](entry)
+    assert kept.from_sources("a", make) == "made 2 ✓"
+    assert kept.from_sources("a", make) == ("made 3 ✓" if how == "folder" else "made 2 ✓")
+    pipe = entry.with_suffix(f".{os.getpid()}")
+    if not pipe.exists():
+        os.mkfifo(pipe)
+    kept.store("texts", "b", b"text", most=16)
+    assert kept.opened("b", kept.read(kept.place("texts", "b"))) == b"text"
+
+
+def test_the_page_says_where_it_is_and_how_to_remove_it(monkeypatch, tmp_path):
+    page = (Path(__file__).parents[1] / "docs" / "how-to" / "install.md").read_text(encoding="utf-8")
+    (line,) = [line for line in page.splitlines() if line.startswith("rm ")]
+    for variable, base in (("XDG_CACHE_HOME", tmp_path / "cache"), ("HOME", tmp_path / "home" / ".cache")):
+        monkeypatch.delenv("XDG_CACHE_HOME")
+        monkeypatch.setenv(variable, str(base.parent if variable == "HOME" else base))
+        kept.store("texts", "a", b"text", most=16)
+        assert kept.place("texts", "a").is_file()
+        assert kept.place("texts", "a").is_relative_to(base / "surefoot")
+        subprocess.run(["sh", "-c", line], check=True)
+        assert not (base / "surefoot").exists()
+        monkeypatch.setenv("XDG_CACHE_HOME", "")

@@ -9,7 +9,7 @@ import pytest
 from surefoot import plugins
 from surefoot.models.registry import ROBOTS
 from surefoot.planner.laws.profiles import PROFILES
-from surefoot.plugins import OWN_PACKAGE, Declared, PluginError, Registry
+from surefoot.plugins import AFRESH, OWN_PACKAGE, Declared, PluginError, Registry
 from surefoot.scenarios.catalogue import SCENARIOS
 from surefoot.scenarios.judge.metrics import METRICS
 from surefoot.scenarios.run.full import PLANTS
@@ -179,3 +179,17 @@ def test_what_is_said_of_a_part_before_it_is_imported_is_what_it_says_itself():
     assert dict(ESTIMATORS.said) == {name: first_line(ESTIMATORS[name]) for name in ESTIMATORS}
     assert dict(PROFILES.said) == {name: profile.doc for name, profile in PROFILES.items()}
     assert dict(METRICS.said) == {name: metric.meaning for name, metric in METRICS.items()}
+
+
+def test_a_renamed_entry_point_says_that_its_package_is_to_be_installed_again(lengths, others):
+    others(moved="counted:GONE", lost="nowhere:X")
+    for name in ("moved", "lost"):
+        with pytest.raises(PluginError) as refused:
+            lengths[name]
+        assert refused.value.right == f"mend or remove it, and {AFRESH}"
+
+
+def test_a_name_that_there_is_not_hints_at_that_beside_packages_alone(lengths, others):
+    assert lengths.hint == ""
+    others(old="counted:LONG")
+    assert lengths.hint == f"; if a package brings it, {AFRESH}"

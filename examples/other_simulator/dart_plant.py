@@ -64,7 +64,7 @@ class DartPlant:
         self._root = self._robot.getRootJoint()
         self._limit = walk.true_robot.torque_limit
         self._torque = np.zeros(len(self._joints))
-        self._pushes: list[Push] = list(walk.pushes)
+        self._pushes: list[Push] = []
         self._pushed = np.zeros(3)
         self._dofs = np.array([joint.getIndexInSkeleton(0) for joint in self._joints])
         self._tick = 0

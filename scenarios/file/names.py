@@ -7,7 +7,7 @@ from pydantic import GetCoreSchemaHandler, GetJsonSchemaHandler
 from pydantic_core import PydanticCustomError, core_schema
 
 from surefoot.models.names import is_file
-from surefoot.plugins import OWN_PACKAGE, Registry
+from surefoot.plugins import AFRESH, OWN_PACKAGE, Registry
 from surefoot.scenarios.errors import Key, Problem, dotted
 from surefoot.scenarios.file.registries import DEFAULTS, REGISTRIES
 
@@ -41,7 +41,7 @@ class OneOf:
         names = [repr(name) for name in known]
         expected = " or ".join((", ".join(names[:-1]), names[-1])) if len(names) > 1 else "".join(names)
         expected = expected or "one that an installed package brings, and none does"
-        raise PydanticCustomError("literal_error", "{expected}", {"expected": expected})
+        raise PydanticCustomError("literal_error", "{expected}", {"expected": f"{expected}{self._names.hint}"})
 
 
 def unusable(keys: Any) -> list[Problem]:
@@ -53,7 +53,7 @@ def unusable(keys: Any) -> list[Problem]:
 def unknown(keys: Any) -> list[Problem]:
     """List a scenario's names, among plain values, that no installed package brings; no package is loaded."""
     return [
-        Problem(key, f"{dotted(key)} '{name}' is not known here", "install the package that brings it")
+        Problem(key, f"{dotted(key)} '{name}' is not known here", f"install the package that brings it; {AFRESH}")
         for key, name, registry in _named(keys)
         if name != DEFAULTS.get(str(key[0])) and name not in registry
     ]

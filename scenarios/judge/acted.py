@@ -6,9 +6,10 @@ from collections.abc import Iterator, Mapping, Sequence
 import numpy as np
 
 from surefoot.planner.geometry import headings
+from surefoot.scenarios.errors import LogError
 from surefoot.scenarios.file.criteria import Bound
 from surefoot.scenarios.file.schema import CommandSettings
-from surefoot.scenarios.judge.digest import CONTROL_TOPICS, Array, RunView
+from surefoot.scenarios.judge.digest import CONTROL_TOPICS, Array, Reads, RunView
 from surefoot.scenarios.judge.feet import terrain_of
 from surefoot.scenarios.judge.walking import fall_time, runs_of
 from surefoot.scenarios.record.provenance import END_RECORD
@@ -106,6 +107,39 @@ def _asked(command: CommandSettings) -> Iterator[str]:
     for name in ("place", "single_support", "double_support", "swing_height"):
         if getattr(command, name) is not None:
             yield name
+
+
+READS: Reads = {"/command": ("velocity", "yaw_rate", "followed_velocity", "followed_yaw_rate")}
+"""Of commands, what `bent_commands` compares."""
+
+_AS_ASKED = 1e-3
+"""Share of a velocity by which the one that is followed may be another for rounding [-]."""
+
+
+def bent_commands(run: RunView) -> Iterator[str]:
+    """Say how many of the velocities that a walk was told were out of reach, and what it did in place of the first."""
+    if not run.has("/command"):
+        return
+    told = run.log["/command"]
+    try:
+        asked, followed = (
+            np.column_stack([told.field(f"{kind}velocity"), told.field(f"{kind}yaw_rate")])
+            for kind in ("", "followed_")
+        )
+    except LogError:  # of a version that did not tell
+        return
+    away = np.linalg.norm(followed - asked, axis=1) > _AS_ASKED * np.linalg.norm(asked, axis=1)
+    rows = np.flatnonzero(away)
+    if not len(rows):
+        return
+    first, given = rows[0], int(np.isfinite(asked).all(axis=1).sum())
+    what = f"commanded velocities out of reach, bent to what is not: {len(rows)} of {given}, the first at"
+    yield f"{what} {told.time[first]:.6g} s from {_velocity(asked[first])} to {_velocity(followed[first])}"
+
+
+def _velocity(values: Array) -> str:
+    v_x, v_y, yaw_rate = values
+    return f"v_x {v_x:.3g} m/s, v_y {v_y:.3g} m/s, yaw_rate {yaw_rate:.3g} rad/s"
 
 
 def unmet_ground(run: RunView) -> Iterator[str]:

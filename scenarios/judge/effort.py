@@ -121,7 +121,7 @@ def speed_mean(run: RunView) -> float | None:
         return None
     com = run.field("/truth", "com")[run.walking, :2]
     time = run.time[run.walking]
-    return float(np.linalg.norm(com[-1] - com[0]) / (time[-1] - time[0])) if len(time) > 1 else None
+    return float(np.linalg.norm(com[-1] - com[0]) / (time[-1] - time[0])) if time[-1] > time[0] else None
 
 
 @metric(unit="m", needs=("/truth",), reads={"/footstep": ()}, least=0.0, tolerance=(0.003, 0.001))

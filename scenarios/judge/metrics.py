@@ -12,7 +12,19 @@ from surefoot.errors import PartError
 from surefoot.guard import Guard, MisfitError, shown
 from surefoot.plugins import Declared, PluginError
 from surefoot.scenarios.errors import LogError, Problem, nearest
-from surefoot.scenarios.judge import balance, computing, effort, feet, health, linked, names, sensed, walking
+from surefoot.scenarios.judge import (
+    acted,
+    balance,
+    computing,
+    effort,
+    feet,
+    health,
+    linked,
+    names,
+    pushed,
+    sensed,
+    walking,
+)
 from surefoot.scenarios.judge.digest import Digest, Reads, RunView, Source
 from surefoot.scenarios.judge.metric import Metric, Reduction
 from surefoot.scenarios.judge.placed import PLACED
@@ -77,9 +89,8 @@ def _unknown(name: Any) -> Iterator[Problem]:
 
 
 def _meant(name: str) -> str:
-    return nearest(
-        name, [bounded for metric in map(known, METRICS) if metric is not None for bounded in metric.bounded]
-    )
+    names = [bounded for metric in map(known, METRICS) if metric is not None for bounded in metric.bounded]
+    return f"{nearest(name, names)}{METRICS.hint}"
 
 
 def _usable(name: str) -> Metric[Any]:
@@ -199,7 +210,7 @@ def digest(log: "Log") -> Digest:
                         failed.add(reduction)  # its metric will say so, computing it anew
         return found
 
-    reads: list[Reads] = [health.READS, PLACED, *(metric.reads for metric in metrics)]
+    reads: list[Reads] = [health.READS, PLACED, pushed.READS, acted.READS, *(metric.reads for metric in metrics)]
     gathered = Digest(log, constants, reads, reduce)
     for reduction in failed:
         gathered.reduced.forget(reduction)

@@ -103,9 +103,9 @@ def zmp_at_edge(run: RunView) -> Finding:
 
 
 def _push(run: RunView) -> Array:
-    """Sum of the pushes, shape (n, 3) [N]."""
+    """Sum of the pushes, zero where it was not measured, shape (n, 3) [N]."""
     topic = "/measurement" if run.has("/measurement") else "/truth"
-    return run.field(topic, "external_force")
+    return np.nan_to_num(run.field(topic, "external_force"))
 
 
 def torque_saturation(run: RunView) -> Finding:

@@ -69,7 +69,7 @@ def estimation_yaw(run: RunView) -> float | None:
 def estimation_yaw_rate(run: RunView) -> float | None:
     """How fast the estimated heading of the base goes off, mean over the run after the estimate has settled [rad/s]."""
     off, time = _settled(run, "yaw_error"), run.time[run.time >= SETTLED * run.constants.similarity.time]
-    if len(time) < 2:
+    if len(time) < 2 or not time[-1] > time[0]:
         return None
     return abs(float(np.unwrap(off)[-1] - off[0])) / float(time[-1] - time[0])
 
@@ -123,7 +123,7 @@ def ghost_moment_max(run: RunView) -> float:
 
 def _ghost(run: RunView, name: str) -> float:
     ticks = round(PUSH_LASTS * run.constants.similarity.time * run.constants.control_rate)
-    pushed = np.flatnonzero(run.field("/measurement", "external_force").any(axis=1))
+    pushed = np.flatnonzero(np.nan_to_num(run.field("/measurement", "external_force")).any(axis=1))
     quiet = np.ones(run.ticks, dtype=bool)
     for tick in pushed:
         quiet[tick : tick + ticks] = False

@@ -2,26 +2,28 @@
 
 import json
 import math
-from collections.abc import Iterator, Mapping
+from collections.abc import Iterable, Iterator, Mapping
 from dataclasses import replace
 from html import escape
 from io import BytesIO
+from itertools import islice
 from pathlib import Path
 from typing import Any
 
 from pydantic import ValidationError
 
 from surefoot.scenarios import palette
-from surefoot.scenarios.errors import LogError, Problem, ScenarioError, nearest
+from surefoot.scenarios.errors import LogError, Problem, ScenarioError, nearest, told_once
 from surefoot.scenarios.file.criteria import Bound
 from surefoot.scenarios.file.dumped import dumped_values
 from surefoot.scenarios.file.names import unknown
 from surefoot.scenarios.file.schema import Scenario
 from surefoot.scenarios.file.source import decoded
 from surefoot.scenarios.file.translate import without
-from surefoot.scenarios.judge.acted import contradictions, idle_commands, not_there, unmet_ground
+from surefoot.scenarios.judge.acted import bent_commands, contradictions, idle_commands, not_there, unmet_ground
 from surefoot.scenarios.judge.digest import Digest, RunView
 from surefoot.scenarios.judge.metrics import digest, known, measure
+from surefoot.scenarios.judge.pushed import unacted_pushes
 from surefoot.scenarios.judge.walking import steps_added
 from surefoot.scenarios.log import Log
 from surefoot.scenarios.output import write_whole
@@ -107,6 +109,23 @@ def _degraded(metrics: Mapping[str, Any], added: int) -> Iterator[str]:
         yield f"the whole-body QP had no solution at {fallbacks} ticks, which used the fallback torque"
     elif failures:
         yield f"the whole-body QP needed its second solver at {failures} ticks"
+
+
+_FEW = 20
+"""Reasons of one kind that are told."""
+
+
+def _few(reasons: Iterable[str]) -> Iterator[str]:
+    """The first reasons of a kind, and how many more there are."""
+    found = iter(reasons)
+    yield from islice(found, _FEW)
+    yield from _more(sum(1 for _ in found))
+
+
+def _more(count: int) -> Iterator[str]:
+    """That there are more reasons of a kind than were told, if there are."""
+    if count > 0:
+        yield f"and {count} more like these"
 
 
 _LOSSES_SAID = 3
@@ -196,15 +215,16 @@ def judge(log: Log, gathered: Digest | None = None) -> Verdict:
     agenda = agenda_of(log, scenario)
     idle = (
         *_unacted(log, agenda, run.constants.control_rate),
+        *_few(unacted_pushes(run)),
         *idle_commands(run, scenario.commands),
         *unmet_ground(run),
     )
     undone = (*idle, *not_there(measured.values, criteria, size.length))
-    reasons = (*untrue, *map(str, absent), *undone, *missed(measured.values, criteria))
+    reasons = (*untrue, *_few(map(str, told_once(absent))), *undone, *missed(measured.values, criteria))
     skipped = [name for name in scenario.criteria if name not in criteria]
     idle_keys = [note for note in agenda.notes if note not in agenda.standing or not run.has("/command")]
     unasked = (f"criterion {name} is not asked: a pendulum has no such metric" for name in skipped)
-    said = (*unasked, *idle_keys, *_degraded(measured.values, steps_added(run)), *measured.notes)
+    said = (*unasked, *idle_keys, *bent_commands(run), *_degraded(measured.values, steps_added(run)), *measured.notes)
     return Verdict(not reasons, reasons, said, measured.values, criteria)
 
 
@@ -231,8 +251,12 @@ def _known_part(log: Log) -> tuple[Scenario, list[Problem]]:
 
 
 def missed(metrics: Mapping[str, Any], criteria: Mapping[str, Bound]) -> list[str]:
-    """Say which criteria are not met."""
-    return [reason for name, bound in criteria.items() for reason in _missed(name, bound, metrics)]
+    """Say which criteria are not met; of those on metrics that are not known here no more than a few."""
+    unknown = [name for name in criteria if name.partition(".")[0] not in metrics]
+    untold = set(unknown[_FEW:])
+    told = (pair for pair in criteria.items() if pair[0] not in untold)
+    reasons = [reason for name, bound in told for reason in _missed(name, bound, metrics)]
+    return [*reasons, *_more(len(untold))]
 
 
 def _missed(name: str, bound: Bound, metrics: Mapping[str, Any]) -> Iterator[str]:

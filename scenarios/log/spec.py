@@ -61,6 +61,11 @@ class FieldSpec:
             name = f"{self.name}.{names[place[0]]}" if names else "_".join((self.name, *map(str, place)))
             yield Column(name, units[place[-1]] if place else self.unit, place)
 
+    def element(self, place: tuple[int, ...], joints: Sequence[str] = ()) -> str:
+        """An element in a sentence: by its joint where that is known, else by its indices, such as ``com[2]``."""
+        names = self._joint_names(joints)
+        return f"{self.name}.{names[place[0]]}" if names else self.name + "".join(f"[{index}]" for index in place)
+
     def _element_units(self) -> tuple[str, ...]:
         """Unit of each element of the last axis: of several, each is of three elements, or of four without a unit."""
         *first, last = self.unit.split(", ")

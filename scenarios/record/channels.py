@@ -45,6 +45,9 @@ def _int(name: str, doc: str, *shape: int) -> FieldSpec:
     return FieldSpec(name, shape, "-", "", doc, "int")
 
 
+_PUSHED = "sum of pushes, mean over the tick that ends at the message's time; NaN where a plant does not measure it"
+
+
 @cache
 def measurement(n: Sizes) -> ChannelSpec:
     """What the sensors give, every control tick."""
@@ -56,7 +59,7 @@ def measurement(n: Sizes) -> ChannelSpec:
         _real("accelerometer", 3, "m/s^2", "imu", "specific force"),
         _real("wrench_left", 6, "N, N m", "left sole", "contact wrench at the sole centre"),
         _real("wrench_right", 6, "N, N m", "right sole", "contact wrench at the sole centre"),
-        _real("external_force", 3, "N", "world", "sum of pushes, mean over the tick that ends at the message's time"),
+        _real("external_force", 3, "N", "world", _PUSHED),
     )
     return ChannelSpec("/measurement", "Measurement", fields, doc_of(measurement))
 

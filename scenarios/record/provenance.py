@@ -8,7 +8,7 @@ import platform
 import re
 import subprocess
 from collections.abc import Iterator, Mapping
-from dataclasses import asdict, field, fields
+from dataclasses import asdict, field, fields, replace
 from functools import cache
 from importlib.metadata import PackageNotFoundError, distribution
 from pathlib import Path
@@ -16,6 +16,7 @@ from types import MappingProxyType
 
 from pydantic import TypeAdapter
 
+from surefoot.forces import Push
 from surefoot.native.library import library
 from surefoot.scenarios.errors import LogError
 from surefoot.similarity import Similarity
@@ -41,6 +42,9 @@ AFTER_FALL = 0.3
 
 PUSH_RECORD = "push "
 """Beginning of the names of metadata records that hold a push given while the run went on, each with its number."""
+
+BEGUN_RECORD = "begun "
+"""Beginning of the names of those that hold a push which waited for a point of the gait, as it began."""
 
 COMMAND_RECORD = "command "
 """Likewise of those that hold a command, in the words of a scenario's `commands`."""
@@ -212,11 +216,71 @@ class Event:
 
 
 @dataclass(frozen=True, slots=True)
+class AskedPush:
+    """A push that a plant was asked for, as a log tells it.
+
+    Attributes:
+        time: at which it begins [s].
+        duration: how long it acts [s].
+        force: world [N].
+        body: that it acts on; empty for the point mass.
+        live: whether it was given by hand, so that nothing was promised of it.
+    """
+
+    time: float
+    duration: float
+    force: tuple[float, float, float]
+    body: str = ""
+    live: bool = False
+
+    @classmethod
+    def of(cls, push: Push, live: bool = False) -> "AskedPush":
+        """What is told of a push."""
+        x, y, z = (float(part) for part in push.force)
+        return cls(float(push.time), float(push.duration), (x, y, z), push.body, live)
+
+    def to_metadata(self) -> dict[str, str]:
+        """Write as the metadata of a record of its own: JSON."""
+        return {"push": json.dumps(asdict(self))}
+
+
+def asked_pushes(records: Mapping[str, Mapping[str, str]], log_name: str) -> tuple[AskedPush, ...]:
+    """All pushes that a plant was asked for, in the order of their times; of an older log those given by hand.
+
+    Args:
+        records: the metadata of a log.
+        log_name: what to call the log in messages.
+
+    Raises:
+        LogError: what the log tells of them cannot be read.
+    """
+    agenda = Agenda.from_metadata(records, log_name)
+    told = () if agenda is None else agenda.pushes
+    begun = _pushes_of(records, BEGUN_RECORD, log_name)
+    given = (replace(push, live=True) for push in _pushes_of(records, PUSH_RECORD, log_name))
+    pushes = (*told, *begun, *given)
+    if not all(math.isfinite(part) for push in pushes for part in (push.time, push.duration, *push.force)):
+        raise LogError(f"{log_name}: tells pushes that are not finite; give a log that `surefoot run` has written")
+    return tuple(sorted(pushes, key=lambda push: push.time))
+
+
+def _pushes_of(records: Mapping[str, Mapping[str, str]], kind: str, log_name: str) -> Iterator[AskedPush]:
+    for name, record in records.items():
+        if name.startswith(kind):
+            try:
+                yield TypeAdapter(AskedPush).validate_json(record["push"])
+            except (KeyError, ValueError, RecursionError):
+                what = f"its record '{name}' tells no push"
+                raise LogError(f"{log_name}: {what}; give a log that `surefoot run` has written") from None
+
+
+@dataclass(frozen=True, slots=True)
 class Agenda:
     """What only the setup of a run knows of its scenario: when its events act, and which of its keys do nothing.
 
     Attributes:
         events: pushes and faults that are to act; pushes that were given by hand are not among them.
+        pushes: that begin at a time, as the plant is asked for them.
         bodies: that the pushes act on, each once.
         notes: what else is to be known of the scenario, one sentence each.
         standing: those of the notes that hold only while nobody tells the robot by hand how to walk.
@@ -226,6 +290,7 @@ class Agenda:
     bodies: tuple[str, ...] = ()
     notes: tuple[str, ...] = ()
     standing: tuple[str, ...] = ()
+    pushes: tuple[AskedPush, ...] = ()
 
     def to_metadata(self) -> dict[str, str]:
         """Write as metadata: JSON by name."""

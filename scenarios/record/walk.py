@@ -7,6 +7,7 @@ from collections.abc import Callable
 import numpy as np
 from numpy.typing import NDArray
 
+from surefoot.forces import Push
 from surefoot.native.library import library
 from surefoot.planner.geometry import frame_rotation
 from surefoot.planner.plan import IN_POINT, PlanSample, WalkPlan
@@ -17,6 +18,7 @@ from surefoot.scenarios.log import LogWriter
 from surefoot.scenarios.log.rows import Place, RowLayout
 from surefoot.scenarios.record import channels
 from surefoot.scenarios.record.channels import SUPPORT_VERTICES, Sizes
+from surefoot.scenarios.record.provenance import BEGUN_RECORD, AskedPush
 from surefoot.values import dataclass
 
 Array = NDArray[np.float64]
@@ -107,6 +109,7 @@ class WalkRecorder:
         timing = writer.channel(channels.timing(sizes))
         self._timing = writer.rows(RowLayout((), ((timing, [field.name for field in timing.spec.fields]),)))
         self._process = writer.channel(channels.process(sizes))
+        self._writer, self._begun = writer, 0
         self._looked = -1
         self._support = np.zeros(2 * SUPPORT_VERTICES)
         self._polygon = b""
@@ -154,6 +157,11 @@ class WalkRecorder:
         foot = planned.foot
         actual = np.append(feet.position[foot], feet.yaw[foot])
         self._footstep.put(time_ns, index=planned.step, foot=int(foot), planned=_pose(planned), actual=actual)
+
+    def begun(self, push: Push, live: bool) -> None:
+        """A push that has waited for its point of the gait; ``live`` if it was once given by hand."""
+        self._begun += 1
+        self._writer.add_metadata(f"{BEGUN_RECORD}{self._begun}", AskedPush.of(push, live).to_metadata())
 
     def command(self, time_ns: int, orders: Command) -> None:
         """What the walk is told from now on."""

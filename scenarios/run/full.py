@@ -27,7 +27,7 @@ from surefoot.scenarios.run.assembly import Parts
 from surefoot.scenarios.run.controller import Controller
 from surefoot.scenarios.run.driven import Somebody
 from surefoot.scenarios.run.planning import FaultSchedule, Planning, RunFault
-from surefoot.scenarios.run.plant import Plant, PlantMaker, Sensors, completed, made, push_plant
+from surefoot.scenarios.run.plant import Plant, PlantMaker, Sensors, completed, made, measured_tick, push_plant
 from surefoot.scenarios.run.skeleton import ClosedLoop
 from surefoot.scenarios.run.tick import Look, Spent
 from surefoot.scenarios.setup.hardware import refuse_unread
@@ -173,7 +173,9 @@ class WholeBody:
         self._readings = measurement if self._sensors is None else self._sensors.read(measurement, tick)
         if self._own_truth is not None:
             self._own_truth.place(measurement.q, measurement.v)
-        return self.plant.control_tick if self._says_tick else tick  # type: ignore[attr-defined]
+        if not self._says_tick:
+            return tick
+        return measured_tick(self.plant.control_tick, tick, self.mind.walk.rates.control)  # type: ignore[attr-defined]
 
     def control(self, tick: int, now: float) -> tuple[PlanSample, Spent]:
         """See `Walker`."""

@@ -9,12 +9,13 @@ import numpy as np
 
 from surefoot.errors import ParameterError
 from surefoot.forces import Push
-from surefoot.guard import Guard, Guarded, taken_for
+from surefoot.guard import Guard, Guarded, MisfitError, taken_for
 from surefoot.joints import JointCommand
 from surefoot.readings import Readings
+from surefoot.scenarios.run.planning import RunFault
 from surefoot.scenarios.setup.parts import fit
 from surefoot.scenarios.setup.walk import Walk
-from surefoot.sim.measurement import Array, Measurement
+from surefoot.sim.measurement import Array, Measurement, is_rotation
 
 
 class Plant(Protocol):
@@ -23,7 +24,8 @@ class Plant(Protocol):
     The loop calls `reset`, and then in turn `measure` and `act`, once each in a control tick. What a plant raises ends
     the run with a fault that names it. Two methods more are asked only of plants that have them: ``push``, which takes
     a `surefoot.forces.Push` before it begins, and ``read``, which gives `surefoot.Readings` of a `Measurement`
-    and the number of the control tick, to estimators that sense.
+    and the number of the control tick, to estimators that sense. The impulse of a push is judged by the external forces
+    that are measured.
     """
 
     def reset(self, q: Array, v: Array | None = None, torque: Array | None = None) -> None:
@@ -107,13 +109,37 @@ def _measured(joints: int) -> Callable[..., Measurement]:
         taken_for(Measurement)(answer)
         fit(answer.q, (7 + joints,), "q")
         fit(answer.v, (6 + joints,), "v")
+        if not is_rotation(answer.q[3:7]):
+            raise MisfitError("gave q whose quaternion is no rotation")
+        if not math.isfinite(answer.time):
+            raise MisfitError(f"gave time {answer.time}, which should be one")
         for name in ("joint_position", "joint_velocity", "joint_torque"):
             fit(getattr(answer, name), (joints,), name, finite=False)
         fit(answer.wrench, (2, 6), "wrench", finite=False)
-        fit(answer.external_force, (3,), "external_force")
+        fit(answer.external_force, (3,), "external_force", finite=False)
         return answer
 
     return take
+
+
+MOST_SKIPPED = 10.0
+"""Time that a plant may be ahead of its controller, since states have got lost [s]."""
+
+
+def measured_tick(tick: int, due: int, rate: int) -> int:
+    """Number of the control tick that a plant says it has measured.
+
+    Args:
+        tick: that it says.
+        due: the one after that which it measured before.
+        rate: of control ticks [Hz].
+
+    Raises:
+        RunFault: it is not that which is due, nor a later one within reach.
+    """
+    if not due <= tick <= due + MOST_SKIPPED * rate:
+        raise RunFault(f"the plant has measured at control tick {tick}, where {due} is due")
+    return tick
 
 
 def completed(measurement: Measurement, wrench: Array, torque: Array) -> Measurement:

@@ -20,7 +20,7 @@ from surefoot.planner.steps.commands import Command
 from surefoot.scenarios.errors import LogError, nearest
 from surefoot.scenarios.file.schema import CommandSettings, Scenario
 from surefoot.scenarios.log import LogWriter, NoLog
-from surefoot.scenarios.record.provenance import COMMAND_RECORD, PUSH_RECORD, STOPPED
+from surefoot.scenarios.record.provenance import COMMAND_RECORD, PUSH_RECORD, STOPPED, AskedPush
 from surefoot.scenarios.run.assembly import Parts
 from surefoot.scenarios.run.planning import RunFault
 from surefoot.scenarios.run.run import closed_loop, note_parts, one_thread, open_log, write_end
@@ -298,8 +298,7 @@ class Simulation:
         push = Push(self.time, float(duration), vector, body)
         self._loop.walker.push(push)
         self._pushes += 1
-        keys = {"time": push.time, "duration": push.duration, "force": vector.tolist(), "body": body}
-        self._writer.add_metadata(f"{PUSH_RECORD}{self._pushes}", {"push": json.dumps(keys)})
+        self._writer.add_metadata(f"{PUSH_RECORD}{self._pushes}", AskedPush.of(push, live=True).to_metadata())
 
     def reset(self) -> None:
         """Begin anew, without the pushes and commands that were given from outside.

@@ -275,8 +275,10 @@ class ClosedLoop:
             begin = max(now, plan.time + point.left(plan.phase))
             # At the end of the tick too: there the next phase may begin, which does not know the point any more.
             if begin < now + (1.0 + ROUNDING) / self.rate:
-                self._begun.append((point, replace(push, time=begin)))
-                self.walker.push(self._begun[-1][1])
+                begun = replace(push, time=begin)
+                self._begun.append((point, begun))
+                self.walker.push(begun)
+                self._recorder.begun(begun, live=not point.promised)
             else:
                 self._pushes.append((point, push))
 

@@ -5,6 +5,9 @@ from bisect import bisect_right
 from collections.abc import Iterator, Sequence
 from dataclasses import replace
 
+import numpy as np
+from numpy.typing import NDArray
+
 from surefoot.errors import ParameterError
 from surefoot.planner.check import check_durations
 from surefoot.planner.geometry import wrap_angle
@@ -16,10 +19,21 @@ from surefoot.scenarios.file.schema import CommandSettings, Fault, PushSettings,
 from surefoot.scenarios.file.sensing import MOTOR_SIZES, SENSOR_SIZES
 from surefoot.scenarios.file.units import meant
 from surefoot.scenarios.record.provenance import Event
-from surefoot.scenarios.setup.gait import command_of, gait_of, push_time, twist_of, uncommanded, velocities_of
+from surefoot.scenarios.setup.gait import (
+    command_of,
+    gait_of,
+    push_force,
+    push_time,
+    twist_of,
+    uncommanded,
+    velocities_of,
+)
 from surefoot.scenarios.setup.walk import Walk
 from surefoot.sim.pushes import physics_window
+from surefoot.sim.sensor_errors import SOON
 from surefoot.values import dataclass
+
+Array = NDArray[np.float64]
 
 LEAST = 1e-9
 """Least impulse per kilogram that pushes, with which a robot moves by a nanometre in a second, and the least of other
@@ -89,7 +103,7 @@ def due(walk: Walk) -> Iterator[Due]:
     Raises:
         ParameterError: the gait cannot be walked, so that its phases have no times.
     """
-    rates = walk.keys.rates
+    rates, cancelled = walk.keys.rates, _cancelled(walk)
     for index, push in _promised(walk):
         key, name = ("pushes", index), f"pushes.{index}"
         # Whether a walk that is told where to go comes to a step, the run will show.
@@ -99,6 +113,9 @@ def due(walk: Walk) -> Iterator[Due]:
         if stop <= start:
             what = f"{name}.duration {push.duration:g} s rounds to nothing on a clock of {rates.physics} Hz"
             idle = Problem((*key, "duration"), what, "give it at least 1e-6 s")
+        elif idle is None and index in cancelled:
+            what = f"{name} never acts: other pushes on the same body cancel it all the while"
+            idle = Problem(key, what, "let them differ in force or in time, or leave them out")
         yield Due.of((*key, "time" if push.time is not None else "step"), f"{name} begins at", time, idle)
     for index, fault in enumerate(walk.keys.faults):
         key, name, idle = ("faults", index), f"faults.{index}", None
@@ -175,6 +192,41 @@ def _weak(key: Key, push: PushSettings) -> Iterator[Problem]:
         yield Problem((*key, given), what, f"give at least {LEAST:g} {unit}, or no push")
 
 
+def _cancelled(walk: Walk) -> set[int]:
+    """Numbers of the promised pushes beside which no net force is left on their body as long as they last.
+
+    Raises:
+        ParameterError: the gait cannot be walked, so that its phases have no times.
+    """
+    by_body: dict[tuple[str, bool], list[tuple[int, float, float, Array]]] = {}
+    for index, push in _promised(walk):
+        if push.time is None and walk.told:
+            continue
+        begin = push_time(walk.asked_gait, push)
+        body = push.body if push.body is not None and walk.walker.has_body else ""
+        # How forces and impulses per kilogram add up, only the robot's mass tells.
+        alike = by_body.setdefault((body, push.impulse is None), [])
+        alike.append((index, round(begin, 9), round(begin + push.duration, 9), push_force(push, 1.0)))
+    return {index for pushes in by_body.values() if len(pushes) > 1 for index in _without_net(pushes)}
+
+
+def _without_net(pushes: Sequence[tuple[int, float, float, Array]]) -> Iterator[int]:
+    """Numbers of pushes, each from an instant to another [s], as long as which all add up to nothing but rounding."""
+    begins, ends = (np.array([push[place] for push in pushes]) for place in (1, 2))
+    forces = np.array([push[3] for push in pushes])
+    steps = np.column_stack([forces, np.linalg.norm(forces, axis=1)])
+    cuts = np.unique([*begins, *ends])
+    total = np.zeros((len(cuts), 4))
+    for times, sign in ((begins, 1.0), (ends, -1.0)):
+        np.add.at(total, np.searchsorted(cuts, times), sign * steps)
+    total = np.cumsum(total, axis=0)
+    acts = np.append(0, np.cumsum(np.linalg.norm(total[:, :3], axis=1) > LEAST * total[:, 3]))
+    for index, begin, end, _ in pushes:
+        first, last = np.searchsorted(cuts, (begin, end))
+        if acts[last] == acts[first]:
+            yield index
+
+
 _SIZES = (
     ("robot_options", ("payload_mass",)),
     ("terrain", ("riser", "height_noise", "angle")),
@@ -196,8 +248,12 @@ def slight(walk: Walk) -> Iterator[Problem]:
     sizes += [(("errors", "payload", "mass"), errors.payload.mass)] if errors.payload is not None else []
     sizes += [(("errors", "ground", index, "height"), box.height) for index, box in enumerate(errors.ground or ())]
     sizes += [(("motors", name), getattr(keys.motors, name) or 0.0) for name in MOTOR_SIZES if keys.motors is not None]
+    late = {("sensing", name) for name in SENSOR_SIZES if name.endswith(("latency", "jitter"))}
     for key, size in sizes:
-        if size and abs(size) < LEAST:
+        if key in late and 0.0 < size <= SOON:
+            what = f"{'.'.join(map(str, key))} {size:g} s is too short to make any sample late"
+            yield Problem(key, what, f"use 0, or more than {SOON:g} s")
+        elif size and abs(size) < LEAST:
             what = f"{'.'.join(map(str, key))} {size:g} is too small to change anything"
             yield Problem(
                 key, what, f"use {'' if key[-1] == 'height' or key[0] == 'motors' else '0, or '}at least {LEAST:g}"

@@ -16,7 +16,7 @@ from pydantic import ValidationError
 from surefoot.errors import ParameterError, PartError
 from surefoot.models.names import is_file
 from surefoot.scenarios import catalogue
-from surefoot.scenarios.errors import Key, LogError, Problem, ScenarioError, SetupError
+from surefoot.scenarios.errors import Key, LogError, Problem, ScenarioError, SetupError, told_once
 from surefoot.scenarios.file.criteria import Bound
 from surefoot.scenarios.file.names import unusable
 from surefoot.scenarios.file.schema import Scenario
@@ -290,7 +290,9 @@ def _told(source: Source, alone: list[Problem], together: list[Problem]) -> list
         together: of values that do not fit together.
     """
     found = sorted(((*alone, *together)), key=source.spot)
-    told = [source.describe(problem, problem in together) for problem in found[:MOST_TOLD]]
+    first = found[:MOST_TOLD]
+    shortened = zip(first, told_once(first), strict=True)
+    told = [source.describe(short, problem in together) for problem, short in shortened]
     rest = len(found) - len(told)
     return [*told, f"{source.name}: {rest} problems more; mend these first"] if rest else told
 

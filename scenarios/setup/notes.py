@@ -8,7 +8,7 @@ from surefoot.plugins import PluginError
 from surefoot.scenarios.file.registries import DEFAULTS
 from surefoot.scenarios.file.schema import PendulumSettings, Rates, Scenario, TerrainSettings
 from surefoot.scenarios.file.units import meant
-from surefoot.scenarios.record.provenance import Agenda
+from surefoot.scenarios.record.provenance import Agenda, AskedPush
 from surefoot.scenarios.setup.events import events
 from surefoot.scenarios.setup.gait import EQUAL_STEPS, commanded
 from surefoot.scenarios.setup.sized import clock, default_of
@@ -34,6 +34,7 @@ def agenda(walk: Walk) -> Agenda:
         bodies=tuple(dict.fromkeys(push.body for push in pushes)),
         notes=said,
         standing=tuple(note for note in said if note not in driven),
+        pushes=tuple(map(AskedPush.of, walk.pushes)),
     )
 
 

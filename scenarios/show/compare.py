@@ -177,7 +177,17 @@ def describe(channel: ChannelDifference) -> str:
         if channel.only_one is None:
             return f"{channel.topic} does not part"
         return f"{channel.topic} at {channel.only_one:.3f} s: only one log has a message there"
-    return f"{channel.topic} {at.field} at {at.time:.3f} s: {at.a!r} and {at.b!r}"
+    return f"{channel.topic} {at.field} at {at.time:.3f} s: {' and '.join(told_apart(at.a, at.b))}"
+
+
+def told_apart(a: float, b: float) -> tuple[str, str]:
+    """Two numbers that differ, with five digits; where these are the same, by how much the second is more or less."""
+    one, other = f"{a:.5g}", f"{b:.5g}"
+    if one != other:
+        return one, other
+    if not math.isfinite(b - a):
+        return one, "with other bits"
+    return one, f"{abs(b - a):.2g} {'more' if b > a else 'less'}"
 
 
 def _own(log: Log) -> tuple[str, ...]:
@@ -230,7 +240,7 @@ def _channels(channels: tuple[ChannelDifference, ...]) -> Iterator[tuple[str, ..
     """Times at which each channel parts, with the value that differs beyond the tolerance, or else by a bit."""
     for one in channels:
         shown = one.tolerated or one.exact
-        values = (shown.field, f"{shown.a:.5g}", f"{shown.b:.5g}") if shown else ()
+        values = (shown.field, *told_apart(shown.a, shown.b)) if shown else ()
         counts = " / ".join(str(count) for count in dict.fromkeys(one.messages))
         times = ("identical", "-") if one.same else (_time(one.exact), _time(one.tolerated))
         yield one.topic, counts, *times, *values

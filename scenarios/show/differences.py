@@ -1,6 +1,7 @@
 """Where two runs part, channel by channel, bit by bit and by a tolerance; and what their logs were made of."""
 
-from collections.abc import Iterator, Mapping
+from collections.abc import Callable, Iterator, Mapping
+from functools import partial
 from operator import itemgetter
 from typing import Any
 
@@ -31,7 +32,7 @@ class FirstDifference:
 
     Attributes:
         time: of the message [s].
-        field: that differs, with the index of the element, such as ``com[2]``.
+        field: that differs, with the joint or the index of the element, such as ``q.left_knee`` or ``com[2]``.
         a: its value in the first log.
         b: its value in the second log.
     """
@@ -128,8 +129,9 @@ def _compare(a: ChannelData, b: ChannelData, tolerance: float, reach_ns: int) ->
     for field in a.fields:
         if _same_layout(field, shared.get(field.name)):
             values = a.field(field.name)[rows_a], b.field(field.name)[rows_b]
-            exact += _first(field.name, times, _bits_differ(*values), *values)
-            tolerated += _first(field.name, times, _values_differ(*values, tolerance), *values)
+            named = partial(field.element, joints=a.joints or b.joints)
+            exact += _first(named, times, _bits_differ(*values), *values)
+            tolerated += _first(named, times, _values_differ(*values, tolerance), *values)
     return ChannelDifference(
         topic=a.topic,
         messages=(len(a), len(b)),
@@ -171,15 +173,19 @@ def _earliest(found: list[tuple[int, FirstDifference]]) -> FirstDifference | Non
 
 
 def _first(
-    name: str, times_ns: NDArray[np.int64], differs: NDArray[np.bool_], a: NDArray[Any], b: NDArray[Any]
+    named: Callable[[tuple[int, ...]], str],
+    times_ns: NDArray[np.int64],
+    differs: NDArray[np.bool_],
+    a: NDArray[Any],
+    b: NDArray[Any],
 ) -> list[tuple[int, FirstDifference]]:
     """The first row at which a field differs, and its first element there; empty if it does not."""
     rows = np.flatnonzero(differs.reshape(len(differs), -1).any(axis=1)) if len(differs) else np.zeros(0, np.intp)
     if not len(rows):
         return []
     row, element = int(rows[0]), tuple(int(i) for i in np.argwhere(differs[rows[0]])[0])
-    place, values = name + "".join(f"[{i}]" for i in element), (float(a[row][element]), float(b[row][element]))
-    return [(row, FirstDifference(float(times_ns[row]) * 1e-9, place, *values))]
+    values = float(a[row][element]), float(b[row][element])
+    return [(row, FirstDifference(float(times_ns[row]) * 1e-9, named(element), *values))]
 
 
 def _bits_differ(a: NDArray[Any], b: NDArray[Any]) -> NDArray[np.bool_]:

@@ -1,6 +1,7 @@
 """What is installed: one import name, whole, wherever it is built from, and no name that can get in a user's way."""
 
 import os
+import re
 import subprocess
 import sys
 import sysconfig
@@ -10,6 +11,7 @@ import zipfile
 from pathlib import Path
 
 import pytest
+import yaml
 from packaging.tags import Tag, sys_tags
 
 from surefoot.native.build import LIBRARY, is_built, platform_tag
@@ -60,6 +62,19 @@ def test_a_wheel_with_compiled_kernels_is_of_its_platform_and_of_any_python(dist
     *_, python, abi, system = distributions[0].stem.split("-")
     assert (python, abi, system) == ("py3", "none", platform_tag() if built else "any")
     assert Tag(python, abi, system) in set(sys_tags()), "which an installer takes here"
+
+
+def test_the_workflow_of_the_page_for_github_installs_the_wheel_that_is_built(distributions, tmp_path):
+    (text,) = re.findall(r"(?s)```yaml\n(# \.github/.*?)```", (ROOT / "docs" / "checking.md").read_text("utf-8"))
+    job = yaml.safe_load(text)["jobs"]["check"]
+    (install,) = [step["run"] for step in job["steps"] if step.get("run", "").startswith("pip install")]
+    (tmp_path / "wheels").mkdir()
+    (tmp_path / "wheels" / distributions[0].name).touch()
+    told = subprocess.run(
+        ["sh", "-c", f"printf '%s\\n' {install}"], cwd=tmp_path, env={**os.environ, **job["env"]},
+        capture_output=True, text=True, check=True,
+    ).stdout.split("\n")  # fmt: skip
+    assert f"wheels/{distributions[0].name}" in told
 
 
 def test_the_tag_names_the_oldest_glibc_that_has_the_symbols_of_the_library(monkeypatch):

@@ -115,7 +115,12 @@ class Host:
             tick: that it answers; what is older than the newest one counts no more.
             command: for the joints.
             now: when it comes, by the plant's clock; None for at this tick [s].
+
+        Raises:
+            LinkError: there has been no such tick.
         """
+        if not 0 <= tick <= self.tick + 1:  # a controller that has heard nothing for too long answers the next one
+            raise LinkError(f"a command that answers the state of tick {tick}, where {self.tick} is the last")
         self._line.send(self.time if now is None else now, tick, command)
 
     def damp(self, why: str) -> None:

@@ -5,7 +5,7 @@ such as the pose of its base, is in a part of its own.
 """
 
 import json
-from collections.abc import Mapping
+from collections.abc import Iterable, Mapping
 from dataclasses import asdict
 from functools import lru_cache
 from typing import Any
@@ -17,7 +17,7 @@ from surefoot.forces import Push
 from surefoot.joints import JointCommand, Servo
 from surefoot.readings import Reading, Readings
 from surefoot.scenarios.errors import LinkError
-from surefoot.sim.measurement import Array, Measurement
+from surefoot.sim.measurement import Array, Measurement, is_rotation
 from surefoot.values import dataclass
 
 
@@ -70,6 +70,15 @@ _TRUE = {
     "time": "time",
 }
 """Fields of a measurement by those of a state that hold them."""
+
+
+_KNOWN = ("time", "true_q", "true_dq", "true_gyroscope", "configuration", "velocity")
+_PERHAPS_KNOWN = ("true_tau", "true_accelerometer", "true_external_force", "true_wrench")
+_SENSED = (
+    *("q", "dq", "tau_est", "gyroscope", "mean_gyroscope", "accelerometer", "foot_wrench"),
+    *(f"{group}_age" for group in _GROUPS),
+)
+"""Fields of a state that are numbers in each, that are NaN where a plant does not know them, and of sensors."""
 
 
 @lru_cache(maxsize=4)
@@ -129,16 +138,38 @@ def command_of(payload: bytes, joints: int) -> tuple[int, JointCommand]:
     """Tick and command of a message; without gains it is one of torques alone.
 
     Raises:
-        LinkError: it is of another robot, or not of finite numbers.
+        LinkError: it is of another robot, or not of numbers that joints can be told.
     """
     message = _read(payload, low_cmd(joints), "command")
-    q, dq, tau, kp, kd = (message[name] for name in ("q", "dq", "tau", "kp", "kd"))
-    if not np.isfinite(q.sum() + dq.sum() + tau.sum() + kp.sum() + kd.sum()):
-        raise LinkError("a command whose numbers are not finite")
+    q, dq, tau, kp, kd = numbers = [message[name] for name in ("q", "dq", "tau", "kp", "kd")]
+    _refuse_unsound(numbers, "command")
     if kp.min() < 0.0 or kd.min() < 0.0:
         raise LinkError("a command with a negative gain")
     servo = Servo(q, dq, kp, kd) if kp.any() or kd.any() else None
     return int(message["tick"]), JointCommand(tau, servo)
+
+
+GREATEST = 1e9
+"""Size of a number beyond which none is of a robot, in SI units."""
+
+
+def _refuse_unsound(numbers: Iterable[Array], what: str, known: bool = True) -> None:
+    """Refuse numbers that are greater than any of a robot, and those that are none where all must be ``known``.
+
+    Raises:
+        LinkError: there is one.
+    """
+    sizes = np.abs(np.concatenate([part.ravel() for part in numbers]))
+    if known and not np.isfinite(sizes).all():
+        raise LinkError(f"a {what} whose numbers are not finite")
+    if (sizes > GREATEST).any():
+        raise LinkError(f"a {what} with a number of the size {np.nanmax(sizes):.3g}; none may be over {GREATEST:g}")
+
+
+def _refuse_unturned(quaternion: Array, what: str) -> None:
+    """Refuse numbers that turn nothing; errors as of `_refuse_unsound`."""
+    if not is_rotation(quaternion):
+        raise LinkError(f"a {what} whose base has no attitude")
 
 
 def _read(payload: bytes, layout: np.dtype[Any], what: str) -> NDArray[np.void]:
@@ -198,9 +229,14 @@ def state_of(payload: bytes, joints: int, rate: int, senses: bool) -> State:
         senses: whether what sensors say is wanted.
 
     Raises:
-        LinkError: it is of another robot.
+        LinkError: it is of another robot, or not of numbers that a robot has.
     """
     message = _read(payload, low_state(joints), "state")
+    _refuse_unsound([message[name] for name in _KNOWN], "state")
+    _refuse_unsound([message[name] for name in _PERHAPS_KNOWN], "state", known=False)
+    if senses:
+        _refuse_unsound([message[name] for name in _SENSED], "state")
+    _refuse_unturned(message["configuration"][3:7], "state")
     flags = {"nonfoot_contact", "self_contact"}
     true: dict[str, Any] = {
         field: bool(message[name]) if name in flags else float(message[name]) if name == "time" else message[name]
@@ -210,6 +246,8 @@ def state_of(payload: bytes, joints: int, rate: int, senses: bool) -> State:
     answered = Answered(
         int(message["cmd_tick"]), int(message["missed"]), int(message["limited"]), bool(message["damped"])
     )
+    if not -1 <= answered.tick <= tick + 1:
+        raise LinkError(f"a state of tick {tick} with a command in force that answers tick {answered.tick}")
     return State(tick, Measurement(**true), _readings(message, tick / rate) if senses else None, answered)
 
 
@@ -262,8 +300,8 @@ def start_of(payload: bytes, joints: int) -> Start:
     """
     message = _read(payload, _reset(joints), "start")
     q, v, torque = message["q"], message["v"], message["torque"]
-    if not np.isfinite(q.sum() + v.sum() + torque.sum()) or not 0.9 < np.linalg.norm(q[3:7]) < 1.1:
-        raise LinkError("a start whose numbers are not those of a configuration")
+    _refuse_unsound((q, v, torque), "start")
+    _refuse_unturned(q[3:7], "start")
     return Start(q, v, torque, bool(message["senses"]))
 
 
@@ -276,14 +314,16 @@ def push_of(payload: bytes) -> Push:
     """The push of a message.
 
     Raises:
-        LinkError: it is none.
+        LinkError: it is none, or not of finite numbers.
     """
     keys = json_of(payload, "push")
     try:
         force = np.array([float(part) for part in keys["force"]])
-        return Push(float(keys["time"]), float(keys["duration"]), force, str(keys["body"]))
-    except (KeyError, TypeError, ValueError):
+        push = Push(float(keys["time"]), float(keys["duration"]), force, str(keys["body"]))
+    except (KeyError, TypeError, ValueError, OverflowError):
         raise LinkError("a push without time, duration, force and body") from None
+    _refuse_unsound((force, np.array([push.time, push.duration])), "push")
+    return push
 
 
 def json_bytes(keys: Mapping[str, Any]) -> bytes:

@@ -27,6 +27,7 @@ from surefoot.scenarios.errors import LinkError
 from surefoot.scenarios.log import LogWriter
 from surefoot.scenarios.record.link import LinkRecorder
 from surefoot.scenarios.run.planning import RunFault
+from surefoot.scenarios.run.plant import measured_tick
 from surefoot.scenarios.setup.walk import Walk
 from surefoot.sim.measurement import Array, Measurement
 from surefoot.values import dataclass
@@ -179,6 +180,7 @@ class RemotePlant:
             self._state = state_of(frame.payload, self._joints, self._rate, self._senses)
         except LinkError as fault:
             raise RunFault(f"the plant sends {fault}") from None
+        measured_tick(self._state.tick, self.control_tick + 1, self._rate)
         if self._recorder is not None:
             said = self._state.answered
             self._recorder.state(

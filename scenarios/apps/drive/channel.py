@@ -42,7 +42,12 @@ class PageChannel:
     def __init__(self, take: Callable[[Mapping[str, Any]], None], left: Callable[[], None]) -> None:
         self._take, self._left = take, left
         self._lock, self._watchers = threading.Lock(), set[_OpenPage]()
-        self._number, self._text = 0, ""
+        self._number, self._text, self._looked_at = 0, "", False
+
+    @property
+    def looked_at(self) -> bool:
+        """Whether a page has been open until now."""
+        return self._looked_at
 
     @property
     def drawn(self) -> bool:
@@ -63,6 +68,7 @@ class PageChannel:
         watcher = _OpenPage(asyncio.get_running_loop())
         with self._lock:
             self._watchers.add(watcher)
+            self._looked_at = True
         watcher.news.set()
         telling = asyncio.create_task(self._tell(connection, watcher))
         try:

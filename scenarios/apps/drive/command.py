@@ -3,7 +3,6 @@
 from collections.abc import Callable
 from contextlib import suppress
 from pathlib import Path
-from queue import SimpleQueue
 from typing import TYPE_CHECKING, Annotated
 
 import typer
@@ -12,7 +11,6 @@ from surefoot.scenarios.errors import LogError
 from surefoot.scenarios.show.options import INTERRUPTED, Seed, Settings, overrides, scenarios_from
 
 if TYPE_CHECKING:
-    from surefoot.scenarios.apps.drive.session import Input
     from surefoot.scenarios.file.schema import Scenario
     from surefoot.scenarios.run.simulation import Simulation
 
@@ -64,7 +62,7 @@ def drive_scenario(scenario: "Scenario", out: Path, port: int | None, say: Calla
         SetupError: a part refuses the scenario.
     """
     from surefoot.scenarios.apps.drive.page import opened
-    from surefoot.scenarios.apps.drive.session import Session
+    from surefoot.scenarios.apps.drive.session import Inputs, Session
     from surefoot.scenarios.record.provenance import LOG_NAME
     from surefoot.scenarios.run.interrupts import held_back
     from surefoot.scenarios.run.run import own_folder
@@ -84,9 +82,9 @@ def drive_scenario(scenario: "Scenario", out: Path, port: int | None, say: Calla
         say(f"log: {folder / LOG_NAME}")
         return simulation
 
-    inputs: SimpleQueue[Input] = SimpleQueue()
+    inputs = Inputs()
     with held_back() as interrupts, opened(port, inputs) as page:
-        say(f"{page.address} drives {scenario.name}; Ctrl-C ends it")
+        say(f"{page.address} drives {scenario.name} once it is open; Ctrl-C ends it")
         session = Session(begin, page, inputs)
         try:
             session.run(lambda: interrupts.count > 0)

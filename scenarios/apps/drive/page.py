@@ -4,12 +4,11 @@ import html
 import json
 import math
 from collections.abc import Iterator, Mapping
-from contextlib import closing, contextmanager
+from contextlib import closing, contextmanager, suppress
 from dataclasses import asdict
 from functools import partial
 from http.client import HTTPConnection
 from importlib.resources import files
-from queue import SimpleQueue
 from typing import TYPE_CHECKING, Any
 
 import numpy as np
@@ -19,7 +18,7 @@ from surefoot.planner.types import Twist
 from surefoot.scenarios import palette
 from surefoot.scenarios.apps.drive.channel import DRAWN, PageChannel
 from surefoot.scenarios.apps.drive.picture import Picture, Pictures
-from surefoot.scenarios.apps.drive.session import DriveStatus, GaitInput, Input, PaceInput, PushInput, Reset
+from surefoot.scenarios.apps.drive.session import DriveStatus, GaitInput, Input, Inputs, PaceInput, PushInput, Reset
 from surefoot.scenarios.run.simulation import Simulation, Tick
 from surefoot.scenarios.setup.walk import Walk
 from surefoot.scenarios.show.replay.content import Array
@@ -74,7 +73,7 @@ _SOON = "<!doctype html><meta http-equiv=refresh content=1><title>surefoot drive
 class DrivePage:
     """Shows the runs of a session in a viewer, and puts what the user does into its inputs; see `session.DriveView`."""
 
-    def __init__(self, viewer: "viser.ViserServer", gate: Gate, inputs: "SimpleQueue[Input]") -> None:
+    def __init__(self, viewer: "viser.ViserServer", gate: Gate, inputs: Inputs) -> None:
         self._viewer, self._gate, self._inputs = viewer, gate, inputs
         self._follow, self._size = True, REFERENCE_SIZE
         self._impulse: float | None = None
@@ -104,6 +103,11 @@ class DrivePage:
         """See `session.DriveView`."""
         self._pictures.pushed(push, time)
         self._pushed = {**self._told(np.array(push.impulse)), "body": push.body, "time": time}
+
+    @property
+    def looked_at(self) -> bool:
+        """See `session.DriveView`."""
+        return self._channel.looked_at
 
     @property
     def drawn(self) -> bool:
@@ -157,7 +161,7 @@ class DrivePage:
             return
         x, y, _ = direction.tolist()
         if (length := math.hypot(x, y)) > 1e-6:
-            self._inputs.put(PushInput((self._impulse * x / length, self._impulse * y / length, 0.0), body))
+            self._push(PushInput((self._impulse * x / length, self._impulse * y / length, 0.0), body))
 
     async def _dragged(self, body: str, event: Any) -> None:
         """Pull towards the pointer when it is released; an arrow shows how until then."""
@@ -171,10 +175,14 @@ class DrivePage:
         if event.phase == "end":
             self._pull, self._arrow.visible = None, False
             if size > self._size.times(LEAST_PULL, "N·s"):
-                self._inputs.put(PushInput(tuple(impulse.tolist()), body))
+                self._push(PushInput(tuple(impulse.tolist()), body))
         else:
             self._pull, self._arrow.points = impulse, np.stack([start, start + impulse / pull])[None]
             self._arrow.visible = True
+
+    def _push(self, push: PushInput) -> None:
+        with suppress(ValueError):  # of more pushes than anyone can click the last are left out
+            self._inputs.put(push)
 
     def _told(self, impulse: Array) -> dict[str, float]:
         size = float(np.linalg.norm(impulse))
@@ -298,7 +306,7 @@ def _page(viewer: str, walk: Walk) -> str:
 
 
 @contextmanager
-def opened(port: int | None, inputs: "SimpleQueue[Input]") -> Iterator[DrivePage]:
+def opened(port: int | None, inputs: Inputs) -> Iterator[DrivePage]:
     """A page for as long as the context lasts; errors as of `serving`."""
     gate = Gate(port)
     with serving(gate) as viewer:

@@ -6,7 +6,7 @@ from collections import deque
 from collections.abc import Callable
 from contextlib import suppress
 from dataclasses import asdict, replace
-from queue import SimpleQueue
+from queue import Queue
 from typing import Any, Protocol
 
 from surefoot.errors import ParameterError
@@ -48,6 +48,27 @@ class Reset:
 
 
 Input = Twist | GaitInput | PushInput | PaceInput | Reset
+
+MOST_WAITING = 1000
+"""Inputs that may wait until they are taken; a session takes all that wait every few milliseconds."""
+
+
+class Inputs(Queue[Input]):
+    """What waits to take effect, from any thread.
+
+    Of velocities and of resets only the last one waits, which therefore always finds room. Others are refused by a
+    ValueError while `MOST_WAITING` wait.
+    """
+
+    def _put(self, item: Input) -> None:
+        waiting = self.queue
+        if isinstance(item, Twist | Reset):
+            for same in [one for one in waiting if type(one) is type(item)]:
+                waiting.remove(same)
+        elif len(waiting) >= MOST_WAITING:
+            raise ValueError(f"{MOST_WAITING} inputs wait to be taken; send fewer at once")
+        waiting.append(item)
+
 
 PUSH_TIME = 0.1
 """How long a push acts, simulated [s]."""
@@ -103,6 +124,10 @@ class DriveView(Protocol):
     """Where the robot is seen."""
 
     @property
+    def looked_at(self) -> bool:
+        """Whether anybody has looked until now."""
+
+    @property
     def drawn(self) -> bool:
         """Whether all that was shown has been drawn where somebody looks."""
 
@@ -117,7 +142,7 @@ class DriveView(Protocol):
 
 
 class Session:
-    """Runs one after another, each in real time.
+    """Runs one after another, each in real time; the first goes on from its first tick once somebody looks.
 
     Control ticks are never left out; pictures are, where the ticks leave no time for them.
 
@@ -132,11 +157,11 @@ class Session:
         self,
         begin: Callable[[], Simulation],
         page: DriveView,
-        inputs: "SimpleQueue[Input]",
+        inputs: Inputs,
         clock: Callable[[], float] = time.perf_counter,
     ) -> None:
         self._make, self._page, self._inputs, self._clock = begin, page, inputs, clock
-        self._speed, self._paused = 1.0, False
+        self._speed, self._paused, self._waits = 1.0, False, True
         self._gait = GaitInput()
         self._runs = 0
         self._robot: Simulation
@@ -156,7 +181,8 @@ class Session:
         """Do what is due now; gives the time until there is more to do [s]."""
         self._take_inputs()
         now = self._clock()
-        moving = not (self._paused or self._robot.done)
+        self._waits = self._waits and not self._page.looked_at
+        moving = not (self._still or self._robot.done)
         if not moving:
             self._anchor(now)
             self._passed.clear()
@@ -214,7 +240,7 @@ class Session:
     def _step_until(self, deadline: float) -> None:
         """Simulate what is due, or as much of it as there is time for."""
         robot, now = self._robot, self._clock()
-        while not (robot.done or self._paused) and robot.time < self._due(now) - 1e-9 and now < deadline:
+        while not (robot.done or self._still) and robot.time < self._due(now) - 1e-9 and now < deadline:
             self._send()
             with suppress(RunFault):
                 robot.advance()
@@ -222,8 +248,13 @@ class Session:
         if robot.done and not self._over:
             self._over, self._note = True, _ending(robot.end)
 
+    @property
+    def _still(self) -> bool:
+        """Whether time stands still."""
+        return self._paused or self._waits
+
     def _take_inputs(self) -> None:
-        while not self._inputs.empty():  # nobody else takes them
+        for _ in range(self._inputs.qsize()):  # nobody else takes them; what comes meanwhile waits for the next look
             self._take(self._inputs.get_nowait())
 
     def _take(self, given: Input) -> None:

@@ -224,7 +224,8 @@ class BodyView:
 
     def events(self, time_ns: int, measurement: Measurement, report: WbcReport, plan: WalkPlan, fallen: bool) -> None:
         """Say what has changed since the last control tick."""
-        pushed, status = any(measurement.external_force.tolist()), plan.status
+        x, y, z = measurement.external_force.tolist()
+        pushed, status = x * x + y * y + z * z > 0.0, plan.status  # which NaN, of a plant that does not tell, is not
         fallback = report.status >= _FALLBACK or status.solver is _HELD
         self._events.update(time_ns, report.active, pushed, fallback, status.falling, fallen)
 

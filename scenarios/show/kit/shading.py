@@ -165,7 +165,7 @@ def _phases(view: LogView) -> tuple[Stretch, ...]:
 def _pushes(view: LogView) -> tuple[Stretch, ...]:
     for topic in ("/measurement", "/truth"):
         try:
-            pushed = np.any(view.field(topic, "external_force", 3) != 0.0, axis=1)
+            pushed = np.any(np.nan_to_num(view.field(topic, "external_force", 3)) != 0.0, axis=1)
         except MissingError:
             continue
         found = [s for s in stretches(view.time(topic), pushed[:, None]) if s.value[0]]

@@ -129,7 +129,7 @@ def _facts(run: RunView, frames: Frames, pushed: Array) -> content.Facts:
         planned = run.log["/footsteps"]
         then = rows_at(planned.time, frames.time)
         ahead, ahead_foot = planned.field("next")[then], planned.field("next_foot")[then]
-    push = run.field("/measurement", "external_force")
+    push = np.nan_to_num(run.field("/measurement", "external_force"))
     return content.Facts(
         com=run.field("/truth", "com")[rows],
         dcm=run.field("/estimate", "dcm")[rows],

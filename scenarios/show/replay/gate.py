@@ -10,6 +10,7 @@ import contextlib
 import importlib
 import io
 import logging
+import re
 import secrets
 import socket
 import warnings
@@ -17,7 +18,6 @@ from collections.abc import Awaitable, Callable, Iterator, Mapping
 from dataclasses import dataclass, field, replace
 from http import HTTPStatus
 from typing import TYPE_CHECKING, Any
-from urllib.parse import urlsplit
 from weakref import WeakSet
 
 from surefoot.scenarios.errors import LogError, require
@@ -31,7 +31,7 @@ if TYPE_CHECKING:
 LOCALHOST = "127.0.0.1"
 """A viewer is for this machine alone."""
 
-HOSTS = (LOCALHOST, "localhost", "::1")
+HOSTS = (LOCALHOST, "localhost", "[::1]")
 """Names of this machine; the port may be another one, that of a tunnel."""
 
 PORT = 8080
@@ -88,7 +88,7 @@ class Gate:
     def refusal(self, request: "Request") -> str | None:
         """Why a request is not answered, if so."""
         hosts, origins = (request.headers.get_all(name) for name in ("Host", "Origin"))
-        if len(hosts) != 1 or _hostname(hosts[0]) not in HOSTS:
+        if len(hosts) != 1 or not is_here(hosts[0]):
             return f"this address is not served; open {LOCALHOST} or localhost"
         if origins and [origin.lower() for origin in origins] != [f"http://{hosts[0].lower()}"]:
             return "pages of others are not answered"
@@ -165,12 +165,12 @@ def is_heard(message: str | bytes) -> bool:
     return False
 
 
-def _hostname(host: str) -> str | None:
-    try:
-        split = urlsplit(f"//{host}")
-        return split.hostname if split.netloc == host and "@" not in host else None
-    except ValueError:
-        return None
+_HERE = re.compile(rf"(?:{'|'.join(map(re.escape, HOSTS))})(?::[0-9]{{0,5}})?", re.IGNORECASE)
+
+
+def is_here(host: str) -> bool:
+    """Whether the host of a request is a name of this machine, with a port or none behind it."""
+    return _HERE.fullmatch(host) is not None
 
 
 @contextlib.contextmanager

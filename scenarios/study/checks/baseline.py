@@ -3,7 +3,7 @@
 import contextlib
 import json
 import math
-from collections.abc import Iterator, Mapping
+from collections.abc import Iterable, Iterator, Mapping
 from pathlib import Path
 from typing import Any, Literal
 
@@ -91,23 +91,37 @@ class Baseline:
     trace: Trace
 
     @classmethod
-    def of(cls, scenario: str, settings: str, metrics: Mapping[str, Any], log: Log) -> "Baseline":
-        """What is kept of a run.
+    def of(
+        cls, scenario: str, settings: str, metrics: Mapping[str, Any], log: Log, criteria: Iterable[str]
+    ) -> "Baseline":
+        """What is kept of a run; of metrics of other packages only those that a criterion names.
+
+        Args:
+            scenario: its name.
+            settings: of it, in YAML.
+            metrics: of the run, by name.
+            log: of the run.
+            criteria: names of the metrics that the scenario bounds.
 
         Raises:
             LogError: the world that the log carries is damaged.
         """
-        kept = {name: value for name, value in metrics.items() if (m := known(name)) is not None and m.repeatable}
+        counted = _counted(criteria)
+        here = {name: found for name in metrics if name in counted and (found := known(name)) is not None}
+        kept = {name: metrics[name] for name, metric in here.items() if metric.repeatable}
         return cls(scenario, settings, _world(log), kept, Trace.of(log))
 
     def gaps(self, now: "Baseline", criteria: Mapping[str, Bound]) -> list[str]:
         """What there is of a run that this says nothing about, so that it could be anything; a sentence, or none."""
-        asked = {name.partition(".")[0] for name in criteria}
-        missing = [name for name in now.metrics if name not in self.metrics and (name in OWN or name in asked)]
+        counted = _counted(criteria)
+        missing = [name for name in now.metrics if name not in self.metrics and name in counted]
         missing += [f"the trace's {column}" for column in now.trace.values if column not in self.trace.values]
         missing += [f"the world's {option}" for option in now.world if option not in self.world]
         more = [f"{len(missing) - _GAPS_TOLD} more"] if len(missing) > _GAPS_TOLD else []
-        return [f"the baseline says nothing of {', '.join((*missing[:_GAPS_TOLD], *more))}"] if missing else []
+        gaps = [f"the baseline says nothing of {', '.join((*missing[:_GAPS_TOLD], *more))}"] if missing else []
+        unknown = [name for name in self.metrics if name in counted and known(name) is None]
+        right = "install the package that has this metric"
+        return [*gaps, *(f"{name} of the baseline is not known here; {right}" for name in unknown)]
 
     def other_world(self, now: "Baseline") -> list[str]:
         """Which options of the world are not as here, a sentence each."""
@@ -116,11 +130,11 @@ class Baseline:
         return [f"the world's {name} is {shown[name]}, {_flow(was)} in the baseline" for name, was in other.items()]
 
     def moves(self, metrics: Mapping[str, Any], criteria: Mapping[str, Bound]) -> Iterator[Move]:
-        """Metrics that moved by more than their tolerance; those that the baseline has not got are no moves."""
+        """Metrics that moved by more than their tolerance; those that only one side has, or nobody counts, do not."""
+        counted = _counted(criteria)
         for name, before in self.metrics.items():
-            metric = known(name)
+            metric = known(name) if name in counted else None
             if metric is None:
-                yield Move(name, None, None, 0.0, "", "other")
                 continue
             for label, old, new in _elements(name, before, metrics.get(name)):
                 allowed = 0.0 if isinstance(old, bool) else metric.allowed(old)
@@ -153,6 +167,14 @@ class Baseline:
         lines += ["trace:  # lift-off to lift-off; SI units", *(f"  - {row}" for row in _table(self.trace))]
         settings = "\n".join(f"  {line}" for line in self.settings.splitlines())
         return "\n".join([*lines, f"settings: |\n{settings}\n"])
+
+
+def _counted(criteria: Iterable[str]) -> set[str]:
+    """Names of metrics that are compared: ours, and of those of other packages what a criterion names.
+
+    Which packages are installed beside Surefoot says nothing of a walk.
+    """
+    return {*OWN, *(name.partition(".")[0] for name in criteria)}
 
 
 def read_baseline(path: Path) -> Baseline:

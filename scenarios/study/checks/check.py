@@ -125,7 +125,7 @@ def _unfolded(reference: str) -> list[str]:
     folder = Path(reference)
     if reference in catalogue.OURS or not folder.is_dir():
         return [reference]
-    files = sorted(str(path) for path in folder.glob("*.yaml") if not path.name.endswith(ENDING))
+    files = sorted(str(path) for path in folder.iterdir() if _is_scenario(path))
     if not files:
         raise ScenarioError([f"{reference}: holds no scenario; give a folder with *.yaml files"])
     return files
@@ -139,9 +139,16 @@ def strays(case: Case) -> tuple[Path, ...]:
     folder = case.baseline.parent
     if not folder.is_dir():
         return (folder,) if os.path.lexists(folder) else ()
-    own = {f"{_name(path)}{ENDING}" for path in Path(case.reference).parent.glob("*.yaml")}
+    beside = (path for path in Path(case.reference).parent.iterdir() if path.suffix.lower() in (".yaml", ".yml"))
+    own = {f"{_name(path)}{ENDING}" for path in beside}
     found = sorted(path for path in folder.rglob("*") if _MEANT.search(path.name))
     return tuple(path for path in found if path.parent != folder or path.name not in own)
+
+
+def _is_scenario(path: Path) -> bool:
+    """Whether a path in a folder is named as a scenario, in great or small letters."""
+    name = path.name.lower()
+    return name.endswith(".yaml") and not name.endswith(ENDING)
 
 
 def _name(file: Path) -> str:
@@ -157,7 +164,8 @@ def run_case(case: Case, out: Path) -> Checked:
     begin = time.perf_counter()
     try:
         result = run_scenario(case.scenario, out)
-        now = Baseline.of(case.scenario.name, case.settings, result.verdict.metrics, read(result.log))
+        metrics, criteria = result.verdict.metrics, case.scenario.criteria
+        now = Baseline.of(case.scenario.name, case.settings, metrics, read(result.log), criteria)
     except (ScenarioError, SetupError, PluginError, LogError) as refusal:
         return Checked(case, "could not run", (" ".join(str(refusal).split()),), took=time.perf_counter() - begin)
     found = _held_against_baseline(case, result.verdict, now)

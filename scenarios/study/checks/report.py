@@ -7,7 +7,6 @@ from xml.etree import ElementTree as Xml
 
 import typer
 
-from surefoot.scenarios.judge.metrics import known
 from surefoot.scenarios.judge.verdict import shown_unit, value_text
 from surefoot.scenarios.output import write_whole
 from surefoot.scenarios.study.checks.baseline import Move
@@ -34,8 +33,6 @@ _LEAST_WINDOW = 0.2
 def move_text(move: Move) -> str:
     """One move: from where to where, how it is meant, and what would have been allowed."""
     name = move.name.partition("[")[0]
-    if known(name) is None:
-        return f"{name} is not known here; install the package that has this metric"
     unit = shown_unit(name)
     before, now = (value_text(name, value) for value in (move.before, move.now))
     allowed = "" if not move.allowed else f", {value_text(name, move.allowed)} {unit} is allowed".replace("  ", " ")

@@ -3,6 +3,7 @@
 import pytest
 
 import surefoot
+from surefoot.scenarios.judge.verdict import judge
 from surefoot.scenarios.run.simulation import Simulation
 
 POINT = {"fidelity": "pendulum", "criteria": {"fell": False}, "gait.initial_stand": 0.1}
@@ -89,3 +90,27 @@ def test_ground_that_no_foot_meets_is_no_test(tmp_path):
     standing = {"fidelity": "full", "gait.steps": 0, "duration": 0.5}
     (reason,) = reasons(tmp_path, **standing, **{"errors.ground_noise": 0.003})
     assert reason.startswith("errors.ground_noise never acted")
+
+
+@pytest.mark.unit
+@pytest.mark.parametrize(("v_x", "bent"), [(9.9, True), (0.2, False)])
+def test_a_velocity_that_is_bent_to_what_is_possible_is_told(tmp_path, v_x, bent):
+    keys = {"gait.steps": 0, "duration": 3.0, "commands": [{"time": 0.5, "v_x": v_x}, {"time": 2.0, "v_x": 0.0}]}
+    verdict = surefoot.run(surefoot.load("walk", {**POINT, **keys}), out=tmp_path).verdict
+    assert verdict.passed
+    told = [note for note in verdict.notes if "out of reach" in note]
+    assert bool(told) == bent
+    assert all(
+        "1 of 2, the first at 0.5 s from v_x 9.9 m/s, v_y 0 m/s, yaw_rate 0 rad/s to v_x 0." in one for one in told
+    )
+
+
+@pytest.mark.unit
+def test_a_velocity_that_is_told_by_hand_and_bent_is_told_too(tmp_path):
+    scenario = surefoot.load("walk", {**POINT, "gait.steps": 0, "duration": 1.0})
+    with surefoot.Simulation(scenario, log=tmp_path / "told.mcap") as sim:
+        sim.command(v_x=3.0, yaw_rate=1.0)
+        while not sim.done:
+            sim.advance()
+    (note,) = [note for note in judge(surefoot.read(tmp_path / "told.mcap")).notes if "out of reach" in note]
+    assert "1 of 1, the first at 0 s from v_x 3 m/s, v_y 0 m/s, yaw_rate 1 rad/s to v_x" in note

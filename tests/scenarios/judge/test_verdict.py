@@ -12,6 +12,7 @@ from surefoot.scenarios.file.schema import Scenario
 from surefoot.scenarios.judge.verdict import judge, missed
 from surefoot.scenarios.log import read
 from surefoot.scenarios.log.recover import recover
+from surefoot.scenarios.record.provenance import SCENARIO_FILE
 from surefoot.scenarios.run.run import run_scenario
 from surefoot.scenarios.run.skeleton import End
 
@@ -149,3 +150,15 @@ def test_a_bound_holds_to_the_last_digit(value):
             over = math.nextafter(value, beyond)
             assert missed({"speed_mean": given}, criteria) == []
             assert len(missed({"speed_mean": [over] if isinstance(limit, tuple) else over}, criteria)) == 1
+
+
+def test_thousands_of_unknown_criteria_make_no_long_verdict(tmp_path, robot, motion, two_steps):
+    log = read(run_scenario(two_steps, tmp_path, None, motion(), robot).log)
+    text = log.attachments[SCENARIO_FILE].decode()
+    head, _, rest = text.partition("criteria:\n")
+    unknown = "".join(f"  nobody_knows_{number}: {{max: 1.0}}\n" for number in range(3000))
+    log.attachments[SCENARIO_FILE] = f"{head}criteria:\n{unknown}{rest}".encode()
+    reasons = judge(log).reasons
+    assert reasons[0].startswith("nobody_knows_0 is not known here")
+    assert sum(map(len, reasons)) < 10_000
+    assert "and 2980 more like these" in reasons

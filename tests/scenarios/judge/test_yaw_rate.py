@@ -29,3 +29,7 @@ def test_it_is_the_mean_after_the_estimate_has_settled_whatever_it_is_off_at_fir
 def test_a_run_that_ends_before_that_has_none():
     time = np.array([0.0, 0.4])
     assert estimation_yaw_rate(view(np.zeros(2), time)) is None
+
+
+def test_a_run_whose_time_stands_still_has_none():
+    assert estimation_yaw_rate(view(np.zeros(3), np.full(3, 2.0 * SETTLED))) is None

@@ -47,6 +47,42 @@ def test_what_never_acts_is_refused_with_its_place(settings, key, words):
     assert f"--set {key}" in problem
 
 
+BACK = "{step: 1, phase: single, impulse: 0.1, direction: 3.141592653589793}"
+OPPOSED = "{time: 1, impulse: 0.1}, {time: 1.02, impulse: 0.06, duration: 0.06, direction: 3.141592653589793}"
+
+
+@pytest.mark.parametrize(
+    ("pushes", "idle"),
+    [
+        ("{time: 1, force: [1, 0, 0]}, {time: 1, force: [-1, 0, 0]}", [0, 1]),
+        (f"{{step: 1, phase: single, impulse: 0.1}}, {BACK}", [0, 1]),
+        (OPPOSED, [1]),
+        (f"{OPPOSED}, {{time: 1.04, force: [0, 1, 0]}}", [1]),
+        ("{time: 1, force: [1, 0, 0]}, {time: 1, force: [-1, 0, 0], duration: 0.11}", [0]),
+    ],
+)
+def test_pushes_that_cancel_one_another_are_refused(pushes, idle):
+    with pytest.raises(ScenarioError) as refused:
+        load("walk", [*SHORT, f"pushes=[{pushes}]"])
+    found = refused.value.problems
+    assert len(found) == len(idle)
+    assert all(f"pushes.{index} never acts: other pushes" in found[place] for place, index in enumerate(idle))
+
+
+def test_pushes_that_cancel_one_another_in_part_or_on_two_bodies_are_taken():
+    one = "{time: 1, force: [1, 0, 0]}"
+    load("walk", [*SHORT, f"pushes=[{one}, {{time: 1.05, force: [-1, 0, 0]}}]"])
+    load("walk", [*SHORT, f"pushes=[{one}, {{time: 1, force: [-1, 0, 0], live: true}}]"])
+    load("walk", ["gait.steps=2", f"pushes=[{one}, {{time: 1, force: [-1, 0, 0], body: pelvis}}]"])
+
+
+@pytest.mark.parametrize("name", ["latency", "imu_latency", "wrench_jitter"])
+def test_a_time_that_makes_no_sample_late_is_refused(name):
+    with pytest.raises(ScenarioError, match=f"sensing.{name} 1e-09 s is too short to make any sample late"):
+        load("walk", [f"sensing.{name}=1.0e-9"])
+    load("walk", [f"sensing.{name}=2.0e-9"])
+
+
 @pytest.mark.parametrize(
     "settings",
     [

@@ -3,16 +3,19 @@
 import json
 import random
 
+import numpy as np
 import pytest
 from mcap.writer import Writer
 
 from surefoot.scenarios.apps import cli
 from surefoot.scenarios.errors import LogError
 from surefoot.scenarios.log import AttachedFile, ChannelSpec, LogWriter, read
+from surefoot.scenarios.record import channels
 from surefoot.scenarios.run.run import run_scenario
+from surefoot.scenarios.run.skeleton import End
 from surefoot.scenarios.setup.load import load as load_scenario
 from surefoot.scenarios.show.compare import _metric as compare_metric
-from surefoot.scenarios.show.compare import compare
+from surefoot.scenarios.show.compare import compare, told_apart
 from surefoot.scenarios.show.differences import Difference
 from surefoot.scenarios.show.figures.page import plot
 
@@ -61,6 +64,45 @@ def test_two_seeds_part_with_the_true_state(logs):
     assert [(one.name, one.a, one.b) for one in found.settings] == [("seed", 1, 2)]
     assert (found.first.topic, found.first.exact.field, found.first.time) == ("/truth", "com[0]", 0.0)
     assert found.summary.startswith("first divergence: /truth com[0] at 0.000 s: ")
+
+
+@pytest.mark.parametrize(
+    ("a", "b", "told"),
+    [
+        (1.0, 2.5, ("1", "2.5")),
+        (0.1 + 0.2, 0.3, ("0.3", "5.6e-17 less")),
+        (-1.2345678, -1.2345671, ("-1.2346", "7e-07 more")),
+        (0.0, -0.0, ("0", "-0")),
+        (np.nan, np.nan, ("nan", "with other bits")),
+        (np.inf, 1.0, ("inf", "1")),
+    ],
+)
+def test_numbers_that_differ_are_told_apart_with_few_digits(a, b, told):
+    assert told_apart(a, b) == told
+
+
+def test_an_element_of_a_joint_is_told_by_its_name(tmp_path, robot, two_steps):
+    def torques(more):
+        def loop(walk, writer, on_progress):
+            channel = writer.channel(channels.torque(channels.Sizes(nj=4, nq=11, nv=10, horizon=50)))
+            for tick in range(3):
+                channel.append(tick * 2_000_000, np.array([30.0, -40.0, 5.0 + tick * more, 0.0]), 0.4)
+            return End("completed", 0.006)
+
+        return run_scenario(two_steps, tmp_path, None, loop, robot).log
+
+    found, _, _ = compare(torques(0.0), torques(1e-9))
+    assert found.summary == "first divergence: /torque command.right_hip at 0.002 s: 5 and 1e-09 more"
+
+
+def test_an_element_without_a_joint_is_told_by_its_place():
+    sizes = channels.Sizes(nj=4, nq=11, nv=10, horizon=50)
+    names = ("hip", "knee", "ankle", "toe")
+    (com, *_) = channels.plan(sizes).fields
+    assert com.element((3, 2), names) == "com[3][2]"
+    (q, *_) = channels.truth(sizes).fields
+    assert [q.element((place,), names) for place in (0, 7)] == ["q.base_x", "q.hip"]
+    assert q.element((7,)) == "q[7]"
 
 
 def test_a_truncated_log_is_compared_as_far_as_it_goes(logs, tmp_path):

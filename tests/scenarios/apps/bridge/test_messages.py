@@ -28,6 +28,7 @@ def measurement():
     arrays |= {
         f"joint_{name}": numbers(JOINTS, seed=9 + k) for k, name in enumerate(("position", "velocity", "torque"))
     }
+    arrays["q"][3:7] /= np.linalg.norm(arrays["q"][3:7])
     return Measurement(
         time=0.1 + 0.2, wrench=np.full((2, 6), np.nan), nonfoot_contact=True, self_contact=False, **arrays
     )
@@ -99,6 +100,7 @@ def broken(**wrong):
     [
         (broken(tau=np.nan), "not finite"),
         (broken(q=np.inf), "not finite"),
+        (broken(tau=1e308), "a command with a number of the size 1e\\+308; none may be over 1e\\+09"),
         (broken(kd=-1.0), "negative gain"),
         (broken()[:-8], "of a robot with other joints"),
         (b"", "a command of 0 bytes"),
@@ -112,7 +114,7 @@ def test_a_command_that_nobody_may_obey_is_refused(payload, said):
 
 def test_a_start_that_is_no_configuration_is_refused():
     start = Start(np.zeros(7 + JOINTS), np.zeros(6 + JOINTS), np.zeros(JOINTS), senses=False)
-    with pytest.raises(LinkError, match="not those of a configuration"):
+    with pytest.raises(LinkError, match="a start whose base has no attitude"):
         messages.start_of(messages.start_bytes(start), JOINTS)
 
 

@@ -6,7 +6,6 @@ import threading
 import time
 from collections.abc import Iterator
 from pathlib import Path
-from queue import SimpleQueue
 from typing import Any
 
 import pytest
@@ -17,7 +16,7 @@ from surefoot.planner.types import Twist
 from surefoot.scenarios.apps.drive.channel import DRAWN, LONGEST_INPUT, PageChannel, read_object
 from surefoot.scenarios.apps.drive.command import drive_scenario
 from surefoot.scenarios.apps.drive.page import CHANNEL, GREATEST_IMPULSE, DrivePage, opened
-from surefoot.scenarios.apps.drive.session import Input, PaceInput, Reset
+from surefoot.scenarios.apps.drive.session import MOST_WAITING, Inputs, PaceInput, Reset
 from surefoot.scenarios.show.replay.gate import Gate, serving
 
 pytestmark = pytest.mark.unit
@@ -121,13 +120,13 @@ def test_what_is_no_input_is_refused_in_a_sentence(given: str | bytes) -> None:
 
 
 @pytest.fixture
-def page() -> Iterator[tuple[DrivePage, "SimpleQueue[Input]"]]:
-    inputs: SimpleQueue[Input] = SimpleQueue()
+def page() -> Iterator[tuple[DrivePage, Inputs]]:
+    inputs = Inputs()
     with opened(None, inputs) as made:
         yield made, inputs
 
 
-def test_every_bad_input_gets_an_answer_and_none_acts(page: tuple[DrivePage, "SimpleQueue[Input]"], capfd: Any) -> None:
+def test_every_bad_input_gets_an_answer_and_none_acts(page: tuple[DrivePage, Inputs], capfd: Any) -> None:
     made, inputs = page
     bad = [
         '{"kind": "pace", "paused": "x"}',
@@ -160,6 +159,30 @@ def test_every_bad_input_gets_an_answer_and_none_acts(page: tuple[DrivePage, "Si
     assert capfd.readouterr() == ("", "")
 
 
+def test_more_inputs_than_may_wait_are_refused_and_a_stop_never_is(page: tuple[DrivePage, Inputs]) -> None:
+    made, inputs = page
+    with client.connect(f"{made.address.replace('http', 'ws')}{CHANNEL}") as socket:
+        for _ in range(MOST_WAITING + 1):
+            socket.send('{"kind": "gait", "swing_height": 0.05}')
+        refused = json.loads(socket.recv(timeout=10))["refused"]
+        assert refused == "1000 inputs wait to be taken; send fewer at once"
+        for _ in range(50):
+            socket.send('{"kind": "velocity", "v_x": 0.1, "v_y": 0, "yaw_rate": 0}')
+            socket.send('{"kind": "reset"}')
+    assert eventually(lambda: inputs.queue[-1] == Twist())  # who leaves, stops it
+    waiting = [inputs.get() for _ in range(inputs.qsize())]
+    assert len(waiting) == MOST_WAITING + 2
+    assert waiting[-2:] == [Reset(), Twist()]
+
+
+def test_it_has_been_looked_at_once_a_page_was_open(page: tuple[DrivePage, Inputs]) -> None:
+    made, _ = page
+    assert not made.looked_at
+    with client.connect(f"{made.address.replace('http', 'ws')}{CHANNEL}"):
+        assert eventually(lambda: made.looked_at)
+    assert made.looked_at
+
+
 def mutated(chance: random.Random) -> str:
     """Something like an input."""
     values = [
@@ -185,7 +208,7 @@ def mutated(chance: random.Random) -> str:
     return text[:cut]
 
 
-def attack(made: DrivePage, inputs: "SimpleQueue[Input]", sockets: int, requests: int, seed: int) -> None:
+def attack(made: DrivePage, inputs: Inputs, sockets: int, requests: int, seed: int) -> None:
     """Send inputs like honest ones on many sockets; each is taken or answered, and what is taken may be asked for."""
     chance, address = random.Random(seed), f"{made.address.replace('http', 'ws')}{CHANNEL}"
     pages = [client.connect(address) for _ in range(sockets)]
@@ -209,9 +232,7 @@ def attack(made: DrivePage, inputs: "SimpleQueue[Input]", sockets: int, requests
 @pytest.mark.parametrize(
     ("sockets", "requests"), [(3, 500), pytest.param(30, 20_000, marks=[pytest.mark.long])], ids=["slice", "whole"]
 )
-def test_an_attack_on_the_page(
-    page: tuple[DrivePage, "SimpleQueue[Input]"], capfd: Any, sockets: int, requests: int
-) -> None:
+def test_an_attack_on_the_page(page: tuple[DrivePage, Inputs], capfd: Any, sockets: int, requests: int) -> None:
     attack(*page, sockets, requests, seed=28)
     assert ask(page[0].address)[0] == 200
     assert capfd.readouterr() == ("", "")

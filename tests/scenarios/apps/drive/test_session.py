@@ -2,7 +2,6 @@
 
 import itertools
 from dataclasses import replace
-from queue import SimpleQueue
 from types import SimpleNamespace
 from typing import Any
 
@@ -15,6 +14,7 @@ from surefoot.scenarios.apps.drive.session import (
     PUSH_TIME,
     DriveStatus,
     GaitInput,
+    Inputs,
     PaceInput,
     PushInput,
     Reset,
@@ -86,7 +86,7 @@ class DriveView:
 
     def __init__(self, clock: Clock, cost: float) -> None:
         self._clock, self._cost = clock, cost
-        self.begun, self.pushes, self.drawn = 0, [], True
+        self.begun, self.pushes, self.drawn, self.looked_at = 0, [], True, True
         self.shown: list[tuple[float, DriveStatus]] = []
 
     def begin(self, robot: Any) -> None:
@@ -101,10 +101,13 @@ class DriveView:
 
 
 class Drive:
-    def __init__(self, tick: float = 0.0008, picture: float = 0.005, falls_at: float = 1e9) -> None:
+    def __init__(
+        self, tick: float = 0.0008, picture: float = 0.005, falls_at: float = 1e9, looked_at: bool = True
+    ) -> None:
         self.clock = Clock()
         self.robots: list[DrivenRobot] = []
-        self.page, self.inputs = DriveView(self.clock, picture), SimpleQueue()
+        self.page, self.inputs = DriveView(self.clock, picture), Inputs()
+        self.page.looked_at = looked_at
 
         def begin() -> DrivenRobot:
             self.robots.append(DrivenRobot(self.clock, tick, falls_at))
@@ -309,3 +312,39 @@ def test_it_runs_until_it_is_stopped():
     slept = []
     drive.session.run(lambda: next(rounds) == 3, slept.append)
     assert len(slept) == 3
+
+
+def test_the_first_run_waits_until_somebody_looks_and_others_do_not() -> None:
+    drive = Drive(looked_at=False)
+    drive.inputs.put(Twist(0.3, 0.0, 0.0))
+    for _ in range(100):
+        drive.clock.now += 0.1
+        drive.session.advance()
+    assert drive.robot.ticks == 1
+    drive.page.looked_at = True
+    drive.session.advance()
+    begin = drive.clock.now
+    while drive.clock.now < begin + 1.0:
+        drive.clock.now += max(drive.session.advance(), 1e-4)
+    assert drive.robot.time == pytest.approx(1.0, abs=0.05)  # the time before is not caught up
+    drive.page.looked_at = False
+    drive.inputs.put(Reset())
+    drive.session.advance()
+    drive.clock.now += 0.5
+    drive.session.advance()
+    assert drive.robot.ticks > 1
+
+
+def test_inputs_that_go_on_coming_do_not_hold_up_a_run() -> None:
+    drive, taken = Drive(), []
+    take = drive.session._take
+
+    def again(given: Any) -> None:
+        taken.append(given)
+        drive.inputs.put(given)
+        take(given)
+
+    drive.session._take = again
+    drive.inputs.put(PaceInput(speed=1.0))
+    drive.session.advance()
+    assert len(taken) == 1

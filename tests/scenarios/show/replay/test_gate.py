@@ -13,7 +13,7 @@ from surefoot.scenarios.errors import LogError
 from surefoot.scenarios.log import Log
 from surefoot.scenarios.show.replay.content import ReplayWindow
 from surefoot.scenarios.show.replay.extract import extract
-from surefoot.scenarios.show.replay.gate import LONGEST_MESSAGE, Gate, is_heard, serving
+from surefoot.scenarios.show.replay.gate import LONGEST_MESSAGE, Gate, is_heard, is_here, serving
 from surefoot.scenarios.show.replay.live import serve
 
 pytestmark = pytest.mark.unit
@@ -51,6 +51,34 @@ def test_a_refusal_says_what_would_be_right(address):
     answer = exchange(address, b"POST /input HTTP/1.1\r\nContent-Length: 9000\r\n\r\n" + 9000 * b"[")
     assert answer.startswith("HTTP/1.1 405")
     assert "through their websockets" in answer
+
+
+@pytest.mark.parametrize(
+    ("host", "here"),
+    [
+        ("127.0.0.1", True),
+        ("127.0.0.1:80", True),
+        ("LocalHost:9000", True),
+        ("[::1]:8080", True),
+        ("127.0.0.1:", True),
+        ("127.0.0.1:80:80", False),
+        ("127.0.0.1:80x", False),
+        ("[::1]x:80", False),
+        ("::1", False),
+        ("127.0.0.1:٨٠", False),
+        ("127.0.0.1 ", False),
+        ("a@127.0.0.1", False),
+        ("127.0.0.1.evil.example", False),
+        ("127.0.0.1/x", False),
+        ("", False),
+    ],
+)
+def test_a_host_is_this_machine_or_it_is_not(host, here):
+    assert is_here(host) == here
+
+
+def test_a_host_with_two_ports_is_not_answered(address):
+    assert "open 127.0.0.1" in ask(address, Host="127.0.0.1:80:80")[1]
 
 
 def test_a_live_view_is_behind_the_gate_and_on_one_port(log_path):

@@ -10,7 +10,8 @@ import yaml
 
 from surefoot.scenarios.errors import LogError, ScenarioError
 from surefoot.scenarios.file.criteria import Bound
-from surefoot.scenarios.judge.metrics import OWN, known
+from surefoot.scenarios.judge.metric import metric
+from surefoot.scenarios.judge.metrics import METRICS, OWN, known, register
 from surefoot.scenarios.show.figures.page import FIGURES
 from surefoot.scenarios.study.checks import check as checking
 from surefoot.scenarios.study.checks import report
@@ -95,6 +96,12 @@ def test_a_list_moves_by_element_and_a_value_that_is_gone_is_worse(kept):
     assert (gone.name, gone.now, gone.direction) == ("speed_mean", None, "worse")
 
 
+def test_scenarios_of_a_folder_are_found_in_great_letters_too(tmp_path):
+    for name in ("one.yaml", "two.YAML", "three.baseline.yaml", "four.txt"):
+        (tmp_path / name).write_text(WALK.replace("stroll", name.partition(".")[0]))
+    assert [case.scenario.name for case in cases([str(tmp_path)])] == ["one", "two"]
+
+
 def test_a_tolerance_is_the_metrics_own_or_of_its_unit_and_counts_may_not_differ_at_all():
     assert known("steps_taken").allowed(20) == 0.0
     assert known("fell").allowed(False) == 0.0
@@ -103,10 +110,10 @@ def test_a_tolerance_is_the_metrics_own_or_of_its_unit_and_counts_may_not_differ
 
 
 def test_no_tolerance_is_so_wide_that_a_count_or_a_centimetre_of_the_walk_gets_lost():
-    for name, metric in OWN.items():
-        if metric.repeatable and metric.unit == "m":
-            assert metric.allowed(0.1) <= 0.0055, name
-        assert metric.allowed(3) == 0.0 or metric.tolerance is not None
+    for name, own in OWN.items():
+        if own.repeatable and own.unit == "m":
+            assert own.allowed(0.1) <= 0.0055, name
+        assert own.allowed(3) == 0.0 or own.tolerance is not None
 
 
 def moved(trace, column, stage, by):
@@ -133,12 +140,36 @@ def test_a_run_whose_trace_parts_has_moved_and_is_told_where_first_and_most(kept
     assert f"look at: surefoot plot {found.log} --what soles --from {end:g}" in lines
 
 
-def test_a_metric_of_a_package_that_is_not_here_is_named(kept, tmp_path):
+def test_a_metric_of_a_package_that_is_not_here_is_not_compared_unless_a_criterion_names_it(kept, tmp_path):
     case, baseline = kept
     changed(case, baseline, com_sway=0.1)
     found = run_case(case, tmp_path / "again")
-    assert found.status == "moved"
-    assert report.lines_of(found)[0] == "com_sway is not known here; install the package that has this metric"
+    assert (found.status, found.moves, found.reasons) == ("same", (), ())
+    asked = replace(case, scenario=case.scenario.model_copy(update={"criteria": {"com_sway": Bound(max=1.0)}}))
+    held = compared(asked, read_baseline(case.baseline), found.now)
+    assert held.status == "incomplete baseline"
+    assert held.reasons == ("com_sway of the baseline is not known here; install the package that has this metric",)
+
+
+def test_a_package_of_metrics_gets_into_no_baseline_unless_a_criterion_names_it(kept, tmp_path, request):
+    case, baseline = kept
+
+    @metric(unit="m", reads={"/truth": ("com",)})
+    def com_sway(run):
+        """How far the CoM sways [m]."""
+        return float(np.std(run.field("/truth", "com")[:, 1]))
+
+    register(com_sway)
+    request.addfinalizer(lambda: METRICS.discard("com_sway"))
+    here = run_case(case, tmp_path / "here")
+    assert here.status == "same"
+    assert "com_sway" not in here.now.metrics
+    # Of a baseline that has it from such an environment it is not compared either.
+    changed(case, baseline, com_sway=7.0)
+    assert run_case(case, tmp_path / "with").status == "same"
+    asked = replace(case, scenario=case.scenario.model_copy(update={"criteria": {"com_sway": Bound(max=1.0)}}))
+    assert run_case(asked, tmp_path / "asked").now.metrics["com_sway"] < 1.0
+    assert [move.name for move in run_case(asked, tmp_path / "moved").moves] == ["com_sway"]
 
 
 def test_each_figure_that_is_pointed_to_is_there():

@@ -72,6 +72,30 @@ def test_a_baseline_with_a_mistyped_ending_and_one_in_place_of_the_folder_are_no
         (folder / name).unlink()
 
 
+def test_an_ending_in_great_letters_or_a_short_one_is_collected_too(tmp_path):
+    (tmp_path / "pytest.ini").write_text("[pytest]\n")
+    for name in ("one.scenario.YAML", "Two.Scenario.Yaml", "three.scenario.yml"):
+        (tmp_path / name).write_text(GOOD)
+    assert "3 passed" in pytest_in(tmp_path).stdout
+
+
+def test_what_is_named_as_a_scenario_and_is_no_file_fails(tmp_path):
+    (tmp_path / "pytest.ini").write_text("[pytest]\n")
+    inner = tmp_path / "inner"
+    (inner / "folder.scenario.yaml").mkdir(parents=True)
+    (inner / "__init__.py").write_text("")
+    (inner / "folder.scenario.yaml" / "test_in.py").write_text("def test_it():\n    pass\n")
+    (tmp_path / "dangling.scenario.yaml").symlink_to("nowhere")
+    (tmp_path / "good.scenario.yaml").write_text(GOOD)
+    (tmp_path / "linked.scenario.yaml").symlink_to("good.scenario.yaml")
+    done = pytest_in(tmp_path)
+    assert "2 failed, 3 passed" in done.stdout
+    assert f"{tmp_path / 'dangling.scenario.yaml'}: is named as a scenario and is a link to nothing" in done.stdout
+    assert f"{inner / 'folder.scenario.yaml'}: is named as a scenario and is no regular file" in done.stdout
+    assert "Traceback" not in done.stdout
+    assert "1 failed, 1 passed" in pytest_in(tmp_path, "inner").stdout
+
+
 def test_more_values_than_a_file_may_hold_are_refused_before_they_are_composed():
     with pytest.raises(ScenarioError, match=r"^x:1:302: .*more than 100 values"):
         parse("a: [" + 9000 * "1, " + "]", "x", most_values=100)

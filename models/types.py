@@ -161,6 +161,7 @@ class RobotDescription:
         bodies: all body names.
         kept_apart: pairs of named contact shapes of different limbs that the controller keeps apart.
         imu: where its own IMU is, whose readings an estimator gets.
+        left_out: parts of its model that this description has not, one line each; the verdict of each run tells them.
     """
 
     name: str
@@ -187,6 +188,7 @@ class RobotDescription:
     bodies: tuple[str, ...]
     kept_apart: tuple[tuple[str, str], ...]
     imu: ImuPlace = ImuPlace()
+    left_out: tuple[str, ...] = ()
 
     def __post_init__(self) -> None:
         """Refuse what contradicts itself."""

@@ -86,7 +86,7 @@ class _Deriver:
         com_height = self._com_height(posture)
         description = self._description(mjcf, straight, posture, com_height, excluded)
         self._say(description, excluded)
-        return Derived(description, tuple(self.lines), tuple(self.reduced.notes))
+        return Derived(description, tuple(self.lines), (*self.reduced.notes, *description.left_out))
 
     def _leg_length(self) -> float:
         """Hip centre to sole, the longer one of both straight legs [m]."""
@@ -247,6 +247,7 @@ class _Deriver:
             bodies=self.reduced.bodies,
             kept_apart=kept_apart(self.reduced, self.file, self.hulls, self._meeting(excluded), self.legs),
             imu=self.imu,
+            left_out=tuple(self.reduced.left_out),
         )
 
     def _say(self, robot: RobotDescription, excluded: list[tuple[str, str]]) -> None:

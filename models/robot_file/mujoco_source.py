@@ -47,14 +47,14 @@ def read_mjcf(file: RobotFile, path: Path, document: Assembled) -> Source:
     Raises:
         RobotError: MuJoCo does not compile it, or it is no single robot of hinges.
     """
-    notes: list[str] = []
+    notes, left_out = list[str](), list[str]()
     try:
         mj = _bare(path, document, notes).compile()
     except RobotError:
         raise
     except Exception as error:
         raise RobotError(("model",), f"{path}: {_placed(str(error), document)}", "mend it") from None
-    return _Reader(mj, file, path, _robot_of(mj, path, notes), notes).read()
+    return _Reader(mj, file, path, _robot_of(mj, path, left_out), notes, left_out).read()
 
 
 def _bare(path: Path, document: Assembled, notes: list[str]) -> mujoco.MjSpec:
@@ -140,7 +140,7 @@ def _level(counts: list[int], most: int) -> int:
     return most + max(counts, default=0)
 
 
-def _robot_of(mj: mujoco.MjModel, path: Path, notes: list[str]) -> int:
+def _robot_of(mj: mujoco.MjModel, path: Path, left_out: list[str]) -> int:
     """The body in the world that is a robot: the only one, or the only one with joints enough for two legs.
 
     Raises:
@@ -154,14 +154,16 @@ def _robot_of(mj: mujoco.MjModel, path: Path, notes: list[str]) -> int:
         raise RobotError(("model",), f"{path}: has the bodies {names} in its world", "give a file with one robot alone")
     others = [f"'{mj.body(body).name}'" for body in roots if body not in robots]
     if others:
-        notes.append(f"left out, beside the robot in the world of its model: {', '.join(others)}")
+        left_out.append(f"left out: {', '.join(others)}, beside the robot in the world of its model")
     return robots[0]
 
 
 class _Reader:
     """Goes through the bodies of a compiled model; welded ones become part of what they are welded to."""
 
-    def __init__(self, mj: mujoco.MjModel, file: RobotFile, path: Path, root: int, notes: list[str]) -> None:
+    def __init__(
+        self, mj: mujoco.MjModel, file: RobotFile, path: Path, root: int, notes: list[str], left_out: list[str]
+    ) -> None:
         self._mj, self._file, self._path, self._root = mj, file, path, root
         self._model = pin.Model()
         self._model.name = file.name
@@ -170,7 +172,7 @@ class _Reader:
         self._names = [mj.body(body).name or _free(f"body{body}", self._links) for body in range(mj.nbody)]
         self._place: dict[int, tuple[int, pin.SE3]] = {}
         self._added: dict[int, int] = {}
-        self._notes = notes
+        self._notes, self._left_out = notes, left_out
 
     def read(self) -> Source:
         """The whole robot."""
@@ -179,11 +181,11 @@ class _Reader:
             if mj.body_rootid[body] == self._root:
                 self._add_body(body)
         self._add_sites()
-        source = Source(self._model, (), (), (), self._notes)
+        source = Source(self._model, (), (), (), self._notes, self._left_out)
         self._add_limits()
         self._add_shapes(source)
         if mj.dof_damping[6:].any() or mj.dof_frictionloss[6:].any():
-            self._notes.append("damping and friction of joints in the model are left out")
+            self._left_out.append("left out: damping and friction of joints")
         return source
 
     def _add_body(self, body: int) -> None:

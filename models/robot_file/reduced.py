@@ -39,6 +39,7 @@ class Reduced:
         turned: angle about z by which the base's frame was turned [rad].
         states: postures of the SRDF by name.
         notes: what was derived or altered.
+        left_out: see `Source`.
     """
 
     model: pin.Model
@@ -49,6 +50,7 @@ class Reduced:
     turned: float
     states: dict[str, dict[str, float]]
     notes: list[str]
+    left_out: list[str]
 
     def joint_of(self, link: str, key: str) -> int:
         """The joint that moves a link.
@@ -105,7 +107,7 @@ def reduced(file: RobotFile, source: Source, path: Path) -> Reduced:
     bodies = _bodies(full, tuple(model.names)[1:])
     _require_inertias(model, bodies, {full.names[joint] for joint in left | right}, file, notes)
     visual, collision = (_by_joint(model, shapes) for shapes in (source.visual, source.collision))
-    return Reduced(model, bodies, (frames[0], frames[1]), visual, collision, turned, states, notes)
+    return Reduced(model, bodies, (frames[0], frames[1]), visual, collision, turned, states, notes, source.left_out)
 
 
 def _above(model: pin.Model, left: set[int], right: set[int]) -> set[int]:

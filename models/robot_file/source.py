@@ -37,7 +37,8 @@ class Source:
         visual: what is drawn.
         collision: what touches.
         mimics: joints that follow others.
-        notes: what was altered or left out while reading.
+        notes: what was altered while reading.
+        left_out: elements of the file that the robot has not, each line beginning with "left out: ".
     """
 
     model: pin.Model
@@ -45,6 +46,7 @@ class Source:
     collision: tuple[Shape, ...]
     mimics: tuple[str, ...] = ()
     notes: list[str] = field(default_factory=list)
+    left_out: list[str] = field(default_factory=list)
 
 
 def read_source(file: RobotFile, path: Path) -> Source:

@@ -1,4 +1,4 @@
-"""What to know of a scenario that passes the checks: keys that have no effect in it, and times that look mistaken."""
+"""What to know of a scenario that passes the checks: keys without effect, odd times, and what its robot lacks."""
 
 from collections.abc import Iterable, Iterator
 
@@ -21,7 +21,8 @@ _PLANT_READS = {"pendulum": ("feedback",), "cart_table": ()}
 def notes(walk: Walk, driven: bool = False) -> tuple[str, ...]:
     """List them, one sentence each; those of a robot that was told by hand how to walk if it was ``driven``."""
     still = () if driven or walk.keys.gait.steps or commanded(walk.keys.gait) or walk.told else _without_steps(walk)
-    return (*_unlikely(walk), *_without_effect(walk), *_without_occasion(walk), *still, *_cut_short(walk))
+    keys = (*_unlikely(walk), *_without_effect(walk), *_without_occasion(walk), *still, *_cut_short(walk))
+    return (*keys, *_left_out(walk))
 
 
 def agenda(walk: Walk) -> Agenda:
@@ -48,6 +49,12 @@ def _unlikely(walk: Walk) -> Iterator[str]:
         hint = meant(value, "s", _LONG)
         if hint:
             yield f"{name} is {value:g} s{hint}"
+
+
+def _left_out(walk: Walk) -> Iterator[str]:
+    """Tell what the model of the robot has and the robot has not."""
+    if walk.walker.has_body:
+        yield from (f"robot {walk.robot.name}, {line}" for line in walk.robot.left_out)
 
 
 def _without_effect(walk: Walk) -> Iterator[str]:

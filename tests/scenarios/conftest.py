@@ -161,6 +161,7 @@ def robots() -> FakeRobots:
 @pytest.fixture
 def robot() -> SimpleNamespace:
     return SimpleNamespace(
+        name="stand-in",
         mjcf="<mujoco/>",
         leg_length=0.94,
         mass=100.0,
@@ -176,6 +177,7 @@ def robot() -> SimpleNamespace:
         velocity_limit=np.full(4, 10.0),
         position_lower=np.full(4, -0.6),
         position_upper=np.full(4, 2.0),
+        left_out=(),
     )
 
 

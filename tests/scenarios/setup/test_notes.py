@@ -1,5 +1,6 @@
 """Notes: a key that a scenario sets and that nothing of its walk reads is told."""
 
+from types import SimpleNamespace
 from typing import get_args
 
 import numpy as np
@@ -9,7 +10,7 @@ from surefoot.scenarios.file.schema import PendulumSettings
 from surefoot.scenarios.run.pendulum import plant
 from surefoot.scenarios.setup.load import read_scenario
 from surefoot.scenarios.setup.notes import notes
-from surefoot.scenarios.setup.walk import Walk
+from surefoot.scenarios.setup.walk import Walk, resolve
 
 pytestmark = pytest.mark.unit
 
@@ -69,3 +70,12 @@ def test_a_plant_reads_a_key_or_it_is_told(robots, kind, key):
     text = f"{POINT}pendulum: {{plant: {kind}, {key}: {getattr(changed, key)}}}"
     told = any(f"pendulum.{key}" in note for note in notes(Walk(read_scenario(text, "f.yaml", "f", (), robots))))
     assert told == unread
+
+
+@pytest.mark.parametrize(("text", "told"), [("name: f\n", True), (POINT, False)])
+def test_parts_of_a_model_that_the_robot_lacks_are_told_of_whole_bodies(robots, robot, text, told):
+    lacking = SimpleNamespace(**{**vars(robot), "left_out": ("left out: damping of 12 joints",)})
+    scenario = read_scenario(text, "f.yaml", "f", (), robots)
+    said = f"robot {robot.name}, left out: damping of 12 joints"
+    assert (said in notes(resolve(scenario, lacking))) == told
+    assert said not in notes(resolve(scenario, robot))

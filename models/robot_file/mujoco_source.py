@@ -10,6 +10,9 @@ from surefoot.engine import mujoco
 from surefoot.models.robot_file.mesh_file import binary_stl, burden, mesh_content, triangles
 from surefoot.models.robot_file.meshes import thinned
 from surefoot.models.robot_file.mjcf import Assembled
+from surefoot.models.robot_file.mjcf_bindings import MjcfBindings
+from surefoot.models.robot_file.mjcf_losses import losses
+from surefoot.models.robot_file.mjcf_motors import rotor, torques
 from surefoot.models.robot_file.paths import is_file
 from surefoot.models.robot_file.schema import RobotFile
 from surefoot.models.robot_file.shapes import (
@@ -23,6 +26,7 @@ from surefoot.models.robot_file.shapes import (
     solid,
     told_missing,
 )
+from surefoot.models.robot_file.sift import told
 from surefoot.models.robot_file.source import ROOT, Source, physical
 from surefoot.models.types import Array, RobotError
 
@@ -47,7 +51,7 @@ def read_mjcf(file: RobotFile, path: Path, document: Assembled) -> Source:
     Raises:
         RobotError: MuJoCo does not compile it, or it is no single robot of hinges.
     """
-    notes, left_out = list[str](), list[str]()
+    notes, left_out = list[str](), list(told(document.absent))
     try:
         mj = _bare(path, document, notes).compile()
     except RobotError:
@@ -58,7 +62,7 @@ def read_mjcf(file: RobotFile, path: Path, document: Assembled) -> Source:
 
 
 def _bare(path: Path, document: Assembled, notes: list[str]) -> mujoco.MjSpec:
-    """The document without what is no part of a robot: contacts with a ground, and looks that are missing.
+    """The document without looks that are missing.
 
     Raises:
         RobotError: a mesh is missing that the robot touches with, or that says how heavy it is.
@@ -66,8 +70,6 @@ def _bare(path: Path, document: Assembled, notes: list[str]) -> mujoco.MjSpec:
     files = {name: text.encode() for name, text in document.models.items()}
     there = {name: mesh for name, mesh in document.meshes.items() if is_file(mesh)}
     spec = mujoco.MjSpec.from_string(document.text, files, files)
-    for part in (*spec.pairs, *spec.excludes):
-        spec.delete(part)
     missing = {mesh.name: document.meshes[mesh.file] for mesh in spec.meshes if mesh.file and mesh.file not in there}
     told = []
     for geom in [geom for geom in spec.geoms if geom.meshname in missing]:
@@ -181,11 +183,20 @@ class _Reader:
             if mj.body_rootid[body] == self._root:
                 self._add_body(body)
         self._add_sites()
-        source = Source(self._model, (), (), (), self._notes, self._left_out)
+        names = {joint: self._model.names[added] for joint, added in self._added.items()}
+        found = MjcfBindings(mj, self._root, names)
+        self._left_out += [*losses(mj, self._root), *found.outside()]
+        source = Source(
+            model=self._model,
+            visual=(),
+            collision=(),
+            followers=dict(found.followers()),
+            bindings=tuple(found.bindings()),
+            notes=self._notes,
+            left_out=self._left_out,
+        )
         self._add_limits()
         self._add_shapes(source)
-        if mj.dof_damping[6:].any() or mj.dof_frictionloss[6:].any():
-            self._left_out.append("left out: damping and friction of joints")
         return source
 
     def _add_body(self, body: int) -> None:
@@ -240,7 +251,8 @@ class _Reader:
         added = self._model.addJoint(parent, joint, offset * there, name, one, one, one * lower, one * upper)
         self._model.addJointFrame(added)
         self._added[index] = added
-        self._model.armature[self._model.joints[added].idx_v] = mj.dof_armature[mj.jnt_dofadr[index]]
+        armature = mj.dof_armature[mj.jnt_dofadr[index]] + rotor(mj, index)
+        self._model.armature[self._model.joints[added].idx_v] = armature
         return added, there.inverse()
 
     def _inertia(self, body: int, name: str) -> pin.Inertia:
@@ -254,24 +266,15 @@ class _Reader:
         """Torques from the motors; of speeds an MJCF knows nothing."""
         model = self._model
         effort, speed = np.zeros(model.nv), np.zeros(model.nv)
+        unlike = []
         for joint, added in self._added.items():
-            effort[model.joints[added].idx_v] = self._torque(joint)
+            lower, upper = torques(self._mj, joint)
+            effort[model.joints[added].idx_v] = max(0.0, min(-lower, upper))
+            unlike += [] if lower == -upper else [model.names[added]]
+        if unlike:
+            self._left_out.append(f"left out: the larger of unlike torques both ways of joints {', '.join(unlike)}")
         model.upperEffortLimit, model.lowerEffortLimit = effort, -effort
         model.upperVelocityLimit, model.lowerVelocityLimit = speed, -speed
-
-    def _torque(self, joint: int) -> float:
-        """Peak torque of a joint, 0 where the file says nothing [N m]."""
-        mj = self._mj
-        limits = [abs(mj.jnt_actfrcrange[joint]).min()] if mj.jnt_actfrclimited[joint] else []
-        for motor in range(mj.nu):
-            if mj.actuator_trntype[motor] != int(mujoco.mjtTrn.mjTRN_JOINT) or mj.actuator_trnid[motor, 0] != joint:
-                continue
-            gear = abs(mj.actuator_gear[motor, 0])
-            if mj.actuator_forcelimited[motor]:
-                limits.append(gear * abs(mj.actuator_forcerange[motor]).min())
-            elif mj.actuator_ctrllimited[motor] and not mj.actuator_biastype[motor]:
-                limits.append(gear * mj.actuator_gainprm[motor, 0] * abs(mj.actuator_ctrlrange[motor]).min())
-        return float(min(limits, default=0.0))
 
     def _add_shapes(self, source: Source) -> None:
         """Sort the geoms into what touches and what is only drawn."""

@@ -7,6 +7,7 @@ import numpy as np
 import pinocchio as pin
 
 from surefoot.models.joints import is_revolute
+from surefoot.models.robot_file.bindings import check_bindings, told_locked
 from surefoot.models.robot_file.files import srdf_of
 from surefoot.models.robot_file.motors import read_srdf, require_limits, set_armature, set_limits
 from surefoot.models.robot_file.schema import RobotFile, matched
@@ -21,6 +22,8 @@ _LEAST = 1e-10
 
 _BALL = 0.02
 """Radius of gyration that a repaired body gets [m]."""
+
+_GIVEN, _FOLLOWS = "given in the file", "follow others"
 
 _TURNS = {"x": 0, "y": 1, "-x": 2, "-y": 3}
 """Quarter turns about z from the base's x to the axis that points ahead."""
@@ -92,13 +95,18 @@ def reduced(file: RobotFile, source: Source, path: Path) -> Reduced:
     above = _above(full, left, right)
     locked = _locked(full, file, source, (left | right) - above, above)
     for why in dict.fromkeys(reason for reason, _ in locked.values()):
-        told = ", ".join(full.names[joint] for joint, (reason, _) in locked.items() if reason == why)
-        notes.append(f"locked, {why}: {told}")
+        names_of = [str(full.names[joint]) for joint, (reason, _) in locked.items() if reason == why]
+        notes.append(f"locked, {why}: {', '.join(names_of)}")
+        if why != _GIVEN or set(names_of) & set(source.followers):
+            source.left_out.append(told_locked(names_of, why, source.followers))
     q = pin.neutral(full)
     for joint, (_, angle) in locked.items():
         model_joint = full.joints[joint]
         if model_joint.nq == 1:
             q[model_joint.idx_q] = angle
+    free = [name for joint, name in enumerate(full.names) if joint > 1 and joint not in locked]
+    limited = matched(file.torque_limit, names, "torque_limit", file.name)
+    source.left_out += check_bindings(source.bindings, free, limited, path)
     model = _without(full, list(locked), q)
     model.name = file.name
     require_limits(model, notes)
@@ -165,11 +173,11 @@ def _locked(
         name, one = model.names[joint], model.joints[joint]
         why = ""
         if name in given:
-            why = "given in the file"
+            why = _GIVEN
         elif not is_revolute(model, joint):
             why = "not revolute"
-        elif name in source.mimics:
-            why = "follow others"
+        elif name in source.followers:
+            why = _FOLLOWS
         elif joint in above:
             why = "above both legs, where the floating base is"
         elif joint in fingers:
@@ -177,19 +185,21 @@ def _locked(
         elif joint not in legs and not model.upperEffortLimit[one.idx_v] > 0.0:
             why = "without torque"
         if why and joint in legs and name not in given:
-            what = f"joint '{name}' of {file.name} is in a leg and cannot be driven ({why})"
-            raise RobotError(("feet",), what, "legs need revolute joints; write it into lock if it may be frozen")
+            cause = source.followers[name].told if why == _FOLLOWS else why
+            what = f"joint '{name}' of {file.name} is in a leg and cannot be driven ({cause})"
+            right = "legs need revolute joints with a motor each; write it into lock if it may be frozen"
+            raise RobotError(("feet",), what, right)
         if why:
-            rest = given.get(name)
-            found[joint] = (why, _at_rest(model, joint) if rest is None else rest)
+            rest, wanted = given.get(name), source.followers[name].angle if why == _FOLLOWS else 0.0
+            found[joint] = (why, _at_rest(model, joint, wanted) if rest is None else rest)
     return found
 
 
-def _at_rest(model: pin.Model, joint: int) -> float:
+def _at_rest(model: pin.Model, joint: int, wanted: float) -> float:
     one = model.joints[joint]
     if one.nq != 1:
         return 0.0
-    return float(np.clip(0.0, model.lowerPositionLimit[one.idx_q], model.upperPositionLimit[one.idx_q]))
+    return float(np.clip(wanted, model.lowerPositionLimit[one.idx_q], model.upperPositionLimit[one.idx_q]))
 
 
 def _fingers(model: pin.Model, legs: set[int]) -> set[int]:

@@ -1,6 +1,6 @@
 """A URDF or MJCF as a Pinocchio model with a floating base, its shapes, and the files that it is made of."""
 
-from collections.abc import Iterator
+from collections.abc import Iterator, Mapping
 from dataclasses import dataclass, field
 from pathlib import Path
 from xml.etree import ElementTree
@@ -8,11 +8,15 @@ from xml.etree import ElementTree
 import numpy as np
 import pinocchio as pin
 
+from surefoot.models.robot_file.bindings import Binding, Follower
+from surefoot.models.robot_file.document import number
 from surefoot.models.robot_file.files import Document, read_document
 from surefoot.models.robot_file.quantities import INERTIA, LENGTH, MASS
 from surefoot.models.robot_file.schema import RobotFile
 from surefoot.models.robot_file.shapes import Shape, urdf_shapes
+from surefoot.models.robot_file.sift import told
 from surefoot.models.robot_file.urdf import kinematics
+from surefoot.models.robot_file.urdf_schema import absent_of
 from surefoot.models.types import Array, RobotError
 
 ROOT = "floating base\n"
@@ -36,7 +40,8 @@ class Source:
         model: joint 1 is the floating base.
         visual: what is drawn.
         collision: what touches.
-        mimics: joints that follow others.
+        followers: joints that others move, by name.
+        bindings: what else binds joints to each other.
         notes: what was altered while reading.
         left_out: elements of the file that the robot has not, each line beginning with "left out: ".
     """
@@ -44,7 +49,8 @@ class Source:
     model: pin.Model
     visual: tuple[Shape, ...]
     collision: tuple[Shape, ...]
-    mimics: tuple[str, ...] = ()
+    followers: Mapping[str, Follower] = field(default_factory=dict)
+    bindings: tuple[Binding, ...] = ()
     notes: list[str] = field(default_factory=list)
     left_out: list[str] = field(default_factory=list)
 
@@ -68,7 +74,8 @@ def read_source(file: RobotFile, path: Path) -> Source:
 
 def _read_urdf(file: RobotFile, document: Document) -> Source:
     root, path, source_notes = document.root, document.path, list[str]()
-    mimics = tuple(_mended_joints(root, source_notes))
+    left_out = list(told(absent_of(root)))
+    followers = dict(_mended_joints(root, source_notes))
     _check_inertias(root, file, path, source_notes)
     visual = urdf_shapes(root, path, "visual", source_notes)
     collision = urdf_shapes(root, path, "collision", source_notes, visual)
@@ -77,7 +84,7 @@ def _read_urdf(file: RobotFile, document: Document) -> Source:
     except Exception as error:
         raise RobotError(("model",), f"{path}: {_one_line(error)}", "mend it, so that Pinocchio can read it") from None
     model.name = file.name
-    return Source(model, visual, collision, mimics, source_notes)
+    return Source(model, visual, collision, followers, notes=source_notes, left_out=left_out)
 
 
 def _check_parts(model: pin.Model, path: Path) -> None:
@@ -110,8 +117,8 @@ def _one_line(error: Exception) -> str:
     return " ".join(str(error).split())[:200] or type(error).__name__
 
 
-def _mended_joints(root: ElementTree.Element, notes: list[str]) -> Iterator[str]:
-    """Bound joints that turn without end, since both engines then have one angle for each; yields those that mimic."""
+def _mended_joints(root: ElementTree.Element, notes: list[str]) -> Iterator[tuple[str, Follower]]:
+    """Bound joints that turn without end, since both engines then have one angle for each; yields those that follow."""
     for joint in root.findall("joint"):
         name = joint.get("name", "")
         if joint.get("type") == "continuous":
@@ -124,7 +131,7 @@ def _mended_joints(root: ElementTree.Element, notes: list[str]) -> Iterator[str]
         mimic = joint.find("mimic")
         if mimic is not None:
             joint.remove(mimic)
-            yield name
+            yield name, Follower("mimic", "", mimic.get("joint", ""), number(mimic.get("offset", "0")) or 0.0)
 
 
 def _check_inertias(root: ElementTree.Element, file: RobotFile, path: Path, notes: list[str]) -> None:

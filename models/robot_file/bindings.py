@@ -4,15 +4,23 @@ A description is a tree of joints that move on their own, one motor each. A bind
 nothing more; one of joints that move would be lost, so it is refused by name.
 """
 
+import itertools
 from collections.abc import Collection, Iterable, Iterator, Mapping, Sequence
 from pathlib import Path
 
-from surefoot.models.types import RobotError
+import numpy as np
+import pinocchio as pin
+
+from surefoot.models.joints import world_axis
+from surefoot.models.types import Array, RobotError
 from surefoot.values import dataclass
 
 _SERIAL = "give a serial model: without it, and with the limits that the linkage leaves its joints"
 _SHOWN = 3
 """Names of joints in a line."""
+
+_NONE_TO_SPARE, _ALIKE = 6, 1e-3
+"""Joints of a leg that has none to spare, and how near to each other alike limits and axes are [m, rad, -]."""
 
 
 @dataclass(frozen=True, slots=True)
@@ -92,3 +100,40 @@ def told_locked(names: Sequence[str], why: str, followers: Mapping[str, Follower
     more = f" and {len(names) - _SHOWN} more" if len(names) > _SHOWN else ""
     kinds = ", ".join(dict.fromkeys(followers[name].kind for name in names if name in followers))
     return f"left out: motion of {first}{more}{f', and {kinds}' if kinds else ''}: locked, {why}"
+
+
+def rolling(model: pin.Model, joints: Sequence[int]) -> tuple[str, str] | None:
+    """Two successive joints inside a leg that look as if they were one that rolls, whose coupling no element tells.
+
+    Their axes are parallel and apart, and their ranges and torques are the same. A leg of six joints has no such pair
+    to spare, so that only one of more joints is looked at.
+
+    Args:
+        model: whose limits are known.
+        joints: of the leg, from hip to ankle.
+    """
+    if len(joints) <= _NONE_TO_SPARE:
+        return None
+    data = model.createData()
+    pin.forwardKinematics(model, data, pin.neutral(model))
+    for one, other in itertools.pairwise(joints[1:-1]):
+        axes = [world_axis(model, data, joint) for joint in (one, other)]
+        apart = data.oMi[other].translation - data.oMi[one].translation
+        parallel = abs(float(axes[0] @ axes[1])) > 1.0 - _ALIKE
+        aside = float(np.linalg.norm(apart - axes[0] * (axes[0] @ apart)))
+        limits = [_limits(model, joint) for joint in (one, other)]
+        if parallel and aside > _ALIKE and np.allclose(*limits, rtol=_ALIKE, atol=_ALIKE):
+            return str(model.names[one]), str(model.names[other])
+    return None
+
+
+def told_rolling(pair: tuple[str, str]) -> str:
+    """A line on such a pair."""
+    what = f"left out: a coupling of {pair[0]} and {pair[1]}, if they roll on each other as one"
+    return f"{what}: their axes, ranges and torques are alike, and each has a motor of its own here"
+
+
+def _limits(model: pin.Model, joint: int) -> Array:
+    one = model.joints[joint]
+    position = model.lowerPositionLimit[one.idx_q], model.upperPositionLimit[one.idx_q]
+    return np.array((*position, model.upperEffortLimit[one.idx_v]))

@@ -6,6 +6,7 @@ from typing import NamedTuple
 import numpy as np
 import pinocchio as pin
 
+from surefoot.models.robot_file.bindings import rolling, told_rolling
 from surefoot.models.robot_file.imu import find_imu
 from surefoot.models.robot_file.legs import at, find_legs, rest, solved
 from surefoot.models.robot_file.meshes import decimated
@@ -71,6 +72,8 @@ class _Deriver:
         self.file, self.model = file, reduced.model
         self.lines: list[str] = []
         self.legs = find_legs(reduced, file)
+        pairs = (rolling(reduced.model, leg.joints) for leg in self.legs)
+        reduced.left_out.extend(told_rolling(pair) for pair in pairs if pair is not None)
         self.upper = find_upper(reduced, file, self.legs)
         self.reduced = reduced = with_upright(reduced, self.upper.torso)
         self.hulls = find_hulls(reduced, self.legs, self.upper)

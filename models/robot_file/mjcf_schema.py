@@ -248,7 +248,6 @@ ELEMENTS = (
     _actuator("position", "dampratio kp kv timeconst", "inheritrange"),
     _actuator("velocity", "kv"),
     _actuator("intvelocity", "actlimited actrange dampratio kp kv", "inheritrange"),
-    _actuator("orientation", "dampratio kp kv", "input"),
     _actuator("pid", "dampratio ffrange imax ki kp kv posrange slewmax velrange", "inheritrange input"),
     _actuator("damper", "kv"),
     _actuator("cylinder", "area bias diameter timeconst"),
@@ -259,6 +258,7 @@ ELEMENTS = (
     _actuator("plugin", "actdim actearly actlimited actrange dynprm dyntype", "instance plugin"),
     Elements(Fate.KEPT, "actuator/plugin", "config", attributes="key value"),
     Elements(Fate.LEFT_OUT, "actuator", "adhesion", "soles only press"),
+    Elements(Fate.LEFT_OUT, "actuator", "orientation", "joints turn about one axis each"),
 )
 
 DEFAULTS = {

@@ -10,9 +10,7 @@ from surefoot.models.robot_file.mjcf_schema import STILL, TOUCH, Elements, Fate
 from surefoot.models.robot_file.sift import Absent
 
 _OTHERS = "other programs read it"
-_LOOP = (
-    "a robot is a tree of driven joints here: give a serial model without it, with the limits that the linkage leaves"
-)
+_LOOP = "give a serial model without it, whose joints have the limits that the linkage leaves them"
 
 URDF_ELEMENTS = (
     Elements(Fate.KEPT, "", "link", attributes="name type"),
@@ -37,7 +35,7 @@ URDF_ELEMENTS = (
     Elements(Fate.LEFT_OUT, "", "transmission", "each joint has one motor, within the joint's own limits"),
     Elements(Fate.LEFT_OUT, "", "gazebo ros2_control mujoco sensor", _OTHERS),
     Elements(Fate.REFUSED, "gazebo", "joint", _LOOP),
-    Elements(Fate.REFUSED, "", "loop_joint drake:linear_bushing_rpy drake:ball_constraint drake:mimic tendon", _LOOP),
+    Elements(Fate.REFUSED, "", "loop_joint drake:linear_bushing_rpy drake:ball_constraint tendon", _LOOP),
 )
 """What is in links, joints and materials; parts of inertials and shapes are read as the specification has them."""
 
@@ -68,7 +66,7 @@ def _absent(node: Node, path: str) -> Iterator[Absent]:
         name = f" '{node.get('name')}'" if node.get("name") else ""
         refuse(node, f"{_called(path)}{name} closes a loop or couples joints", group.why)
     elif group.fate is Fate.LEFT_OUT and not _says_nothing(node):
-        yield Absent(_called(path), group.why)
+        yield Absent(_called(path) + _shared(node), group.why)
     elif group.attributes:
         for name in node.attrib:
             if name not in group.known:
@@ -79,6 +77,12 @@ def _called(path: str) -> str:
     """An element by its name and the one around it."""
     around, _, tag = path.rpartition("/")
     return f"{tag} of {around}" if around else tag
+
+
+def _shared(node: Node) -> str:
+    """Joints of a transmission that couples several."""
+    joints = [child.get("name", "") for child in node.nodes if child.tag == "joint"]
+    return f" between {' and '.join(joints)}" if node.tag == "transmission" and len(joints) > 1 else ""
 
 
 def _says_nothing(node: Node) -> bool:

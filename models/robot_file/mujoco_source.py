@@ -148,13 +148,14 @@ def _robot_of(mj: mujoco.MjModel, path: Path, left_out: list[str]) -> int:
     Raises:
         RobotError: none is, or several are.
     """
-    roots = [body for body in range(1, mj.nbody) if mj.body_parentid[body] == 0 and mj.body_subtreemass[body] > 0]
+    beside = [body for body in range(1, mj.nbody) if mj.body_parentid[body] == 0]
+    roots = [body for body in beside if mj.body_subtreemass[body] > 0]
     joints = mj.body_rootid[mj.jnt_bodyid]
     robots = [body for body in roots if (joints == body).sum() >= _LEGS] if len(roots) > 1 else roots
     if len(robots) != 1:
         names = ", ".join(f"'{mj.body(body).name}'" for body in robots or roots) or "none"
         raise RobotError(("model",), f"{path}: has the bodies {names} in its world", "give a file with one robot alone")
-    others = [f"'{mj.body(body).name}'" for body in roots if body not in robots]
+    others = [f"'{mj.body(body).name}'" for body in beside if body not in robots]
     if others:
         left_out.append(f"left out: {', '.join(others)}, beside the robot in the world of its model")
     return robots[0]

@@ -183,6 +183,21 @@ BOUND = {
 """An equality of each kind, and joints that it binds."""
 
 
+SHARED = {
+    "tendon": (
+        '<tendon><fixed name="ankles"><joint joint="left_ankle_pitch" coef="1"/><joint joint="left_ankle_roll" '
+        'coef="-1"/></fixed></tendon><actuator><motor name="shared" tendon="ankles" forcerange="-9 9"/></actuator>',
+        "actuator 'shared' on tendon 'ankles' drives joints 'left_ankle_pitch', 'left_ankle_roll'",
+    ),
+    "crank": (
+        '<actuator><motor name="shared" cranksite="thigh_site" slidersite="foot_site" cranklength="0.1" '
+        'forcerange="-9 9"/></actuator>',
+        "actuator 'shared' on a slider-crank drives joints 'left_ankle_pitch', 'left_ankle_roll', 'left_knee'",
+    ),
+}
+"""Motors of several joints, and the beginning of their refusal."""
+
+
 def bound(kind: str, inside: str = "") -> str:
     """The biped with an equality of a kind, and more attributes in it."""
     text = BOUND[kind][0].replace("/>", f"{inside}/>")

@@ -4,7 +4,7 @@ import re
 
 import mjcf_elements
 import pytest
-from mjcf_elements import BOUND, HAND, bound, example, of_fate, read_text, schema, source_text, with_sites
+from mjcf_elements import BOUND, HAND, SHARED, bound, example, of_fate, read_text, schema, source_text, with_sites
 
 from surefoot.models import RobotError
 from surefoot.models.robot_file.mjcf_schema import ELEMENTS, META, Fate, by_path
@@ -104,18 +104,6 @@ def test_what_binds_a_robot_to_its_world_is_told(folder, plain, equality):
     assert line == f"left out: equality {equality[1:].split()[0]}: a robot is bound to nothing beside it"
 
 
-SHARED = {
-    "tendon": (
-        '<tendon><fixed name="ankles"><joint joint="left_ankle_pitch" coef="1"/><joint joint="left_ankle_roll" '
-        'coef="-1"/></fixed></tendon><actuator><motor name="shared" tendon="ankles" forcerange="-9 9"/></actuator>',
-        "actuator 'shared' on tendon 'ankles' drives joints 'left_ankle_pitch', 'left_ankle_roll'",
-    ),
-    "crank": (
-        '<actuator><motor name="shared" cranksite="thigh_site" slidersite="foot_site" cranklength="0.1" '
-        'forcerange="-9 9"/></actuator>',
-        "actuator 'shared' on a slider-crank drives joints 'left_ankle_pitch', 'left_ankle_roll', 'left_knee'",
-    ),
-}
 GIVEN = "torque_limit: {'*_ankle_*': 40, '*_knee': 60}\nvelocity_limit: {'*': 12}\n"
 
 

@@ -97,7 +97,7 @@ _LOSSES = LeftOut(
 
 
 def _servo(attributes: str) -> LeftOut:
-    fields = ("actuator_gaintype", "actuator_biastype", "actuator_dyntype")
+    fields = ("actuator_gaintype", "actuator_biastype", "actuator_dyntype", "actuator_plugin")
     why = "joints are driven by torque here, within the force of the actuator"
     return LeftOut(attributes, fields, why, "actuator", "gain, bias and dynamics")
 

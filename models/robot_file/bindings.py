@@ -121,8 +121,8 @@ def rolling(model: pin.Model, joints: Sequence[int]) -> tuple[str, str] | None:
         apart = data.oMi[other].translation - data.oMi[one].translation
         parallel = abs(float(axes[0] @ axes[1])) > 1.0 - _ALIKE
         aside = float(np.linalg.norm(apart - axes[0] * (axes[0] @ apart)))
-        limits = [_limits(model, joint) for joint in (one, other)]
-        if parallel and aside > _ALIKE and np.allclose(*limits, rtol=_ALIKE, atol=_ALIKE):
+        here, there = (_limits(model, joint) for joint in (one, other))
+        if parallel and aside > _ALIKE and np.allclose(here, there, rtol=_ALIKE, atol=_ALIKE):
             return str(model.names[one]), str(model.names[other])
     return None
 

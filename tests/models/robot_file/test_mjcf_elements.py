@@ -122,6 +122,15 @@ def test_a_motor_of_no_joint_is_told(folder, plain):
     assert told(folder, text, plain) == ["left out: actuator 'jet': it acts on no joint"]
 
 
+LAWS = ("position", "velocity", "intvelocity", "pid", "damper", "cylinder", "muscle", "dcmotor", "plugin")
+
+
+@pytest.mark.parametrize(("kind", "told_of"), [*((kind, True) for kind in LAWS), ("motor", False), ("general", False)])
+def test_the_law_of_an_actuator_is_told_and_a_plain_motor_has_none(folder, plain, kind, told_of):
+    lines = told(folder, example(f"actuator/{kind}"), plain)
+    assert any(line.startswith("left out: gain, bias and dynamics of 3 actuators") for line in lines) == told_of
+
+
 KNEE, FOOT = '<joint name="left_knee"', '<geom type="box" pos="0.03'
 BODY, ROLL = '<body name="left_foot"', '<motor joint="left_roll"'
 VALUES = {

@@ -88,7 +88,7 @@ def reduced(file: RobotFile, source: Source, path: Path) -> Reduced:
     names = tuple(full.names)[2:]
     set_limits(full, file, names)
     srdf = srdf_of(file, path)
-    rotors, states = read_srdf(srdf, names)
+    rotors, states, passive = read_srdf(srdf, names)
     set_armature(full, matched(file.armature, names, "armature", file.name), rotors, srdf, notes)
     feet = file.soles()
     left, right = (set(_chain(full, getattr(feet, side), f"feet.{side}")) for side in ("left", "right"))
@@ -107,6 +107,8 @@ def reduced(file: RobotFile, source: Source, path: Path) -> Reduced:
     free = [name for joint, name in enumerate(full.names) if joint > 1 and joint not in locked]
     limited = matched(file.torque_limit, names, "torque_limit", file.name)
     source.left_out += check_bindings(source.bindings, free, limited, path)
+    if driven := [name for name in free if name in passive]:
+        source.left_out.append(f"left out: passive_joint of the SRDF: {', '.join(driven)}: they have motors here")
     model = _without(full, list(locked), q)
     model.name = file.name
     require_limits(model, notes)

@@ -107,6 +107,13 @@ def test_a_joint_of_an_arm_that_follows_another_is_held_where_it_would_rest(tmp_
     assert found.model.inertias[arm].isApprox(held.model.inertias[arm], 1e-12)
 
 
+def test_a_joint_that_the_srdf_calls_passive_is_told_where_it_moves(tmp_path):
+    passive = "".join(f'<passive_joint name="left_{name}"/>' for name in ("elbow", "knee"))
+    (tmp_path / "biped.srdf").write_text(f'<robot name="biped">{passive}</robot>')
+    (line,) = read_text(tmp_path, biped.Biped().urdf(), "lock: [left_elbow]\n").left_out
+    assert line == "left out: passive_joint of the SRDF: left_knee: they have motors here"
+
+
 def knees(second: str, at: str = "0 0 -0.05") -> str:
     """A biped whose left knee is two joints, the second as given."""
     link = '<link name="left_roller"><inertial><mass value="0.2"/>'

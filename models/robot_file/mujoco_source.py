@@ -26,7 +26,7 @@ from surefoot.models.robot_file.shapes import (
     solid,
     told_missing,
 )
-from surefoot.models.robot_file.sift import told
+from surefoot.models.robot_file.sift import told_absent
 from surefoot.models.robot_file.source import ROOT, Source, physical
 from surefoot.models.types import Array, RobotError
 
@@ -51,7 +51,7 @@ def read_mjcf(file: RobotFile, path: Path, document: Assembled) -> Source:
     Raises:
         RobotError: MuJoCo does not compile it, or it is no single robot of hinges.
     """
-    notes, left_out = list[str](), list(told(document.absent))
+    notes, left_out = list[str](), list(told_absent(document.absent))
     try:
         mj = _bare(path, document, notes).compile()
     except RobotError:

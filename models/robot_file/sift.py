@@ -30,7 +30,7 @@ def sift(root: Node) -> tuple[Absent, ...]:
     return tuple(_sifted(root, "", False))
 
 
-def told(absent: Iterable[Absent]) -> Iterator[str]:
+def told_absent(absent: Iterable[Absent]) -> Iterator[str]:
     """A line for each reason, with all elements that go for it."""
     reasons: dict[str, dict[str, None]] = {}
     for one in absent:

@@ -14,7 +14,7 @@ from surefoot.models.robot_file.files import Document, read_document
 from surefoot.models.robot_file.quantities import INERTIA, LENGTH, MASS
 from surefoot.models.robot_file.schema import RobotFile
 from surefoot.models.robot_file.shapes import Shape, urdf_shapes
-from surefoot.models.robot_file.sift import told
+from surefoot.models.robot_file.sift import told_absent
 from surefoot.models.robot_file.urdf import kinematics
 from surefoot.models.robot_file.urdf_schema import absent_of
 from surefoot.models.types import Array, RobotError
@@ -74,7 +74,7 @@ def read_source(file: RobotFile, path: Path) -> Source:
 
 def _read_urdf(file: RobotFile, document: Document) -> Source:
     root, path, source_notes = document.root, document.path, list[str]()
-    left_out = list(told(absent_of(root)))
+    left_out = list(told_absent(absent_of(root)))
     followers = dict(_mended_joints(root, source_notes))
     _check_inertias(root, file, path, source_notes)
     visual = urdf_shapes(root, path, "visual", source_notes)

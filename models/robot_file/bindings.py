@@ -82,7 +82,8 @@ def check_bindings(
             what = f"{path}: {one.element} drives joints {names}, so that the torque of none is its own"
             raise RobotError(("torque_limit",), what, f"give torque_limit with what it leaves each of {names}")
         if held and not one.motor:
-            what = f"{path}: {one.element} binds joints {names}, which move on their own here"
+            moving = "joints {}, which move on their own" if len(held) > 1 else "joint {}, which moves on its own"
+            what = f"{path}: {one.element} binds {moving.format(names)} here"
             hold = f"hold them by lock: [{', '.join(held)}], or {_SERIAL}"
             raise RobotError(("model",), what, hold)
         why = "the robot file gives its joints their torque" if held else "its joints are locked"

@@ -135,7 +135,8 @@ def _accelerations(model: mujoco.MjModel, robot: RobotDescription, state: object
         joints, rng.uniform(0.2, 0.8, len(joints)), rng.normal(size=len(joints)), strict=True
     ):
         at = robot.joint_names.index(joint.name)
-        data.qpos[joint.qposadr[0]] = low[at] + share * (high[at] - low[at])
+        place = joint.qposadr[0]
+        data.qpos[place] = model.qpos0[place] + low[at] + share * (high[at] - low[at])
         data.qvel[joint.dofadr[0]] = speed
     mujoco.mj_forward(model, data)
     return np.array([data.qacc[joint.dofadr[0]] for joint in joints])

@@ -1,11 +1,12 @@
 """What becomes of public humanoids: read, derived, stood, walked, turned and pushed.
 
-    python benchmarks/robots.py [FOLDER]... [--only NAME]... [--jobs N] [--out DIR] [--csv FILE]
+    python benchmarks/robots.py [FOLDER]... [--only NAME]... [--jobs N] [--out DIR] [--csv FILE] [--against FILE]
 
 Some models come with packages, which pip installs; the others are looked for in the folders, which may be clones of
 their repositories. A robot file is drafted from each model as `surefoot robot new` does it, and the lines that somebody
 had to add are counted. Then it stands, walks, turns, and is pushed in the middle of a step from four sides. Where
-`walk` is refused with a gait that the robot can walk, it walks that one.
+`walk` is refused with a gait that the robot can walk, it walks that one. With `--against` the rows are held against a
+table of before, and the exit code is 1 where one has moved.
 """
 
 import argparse
@@ -100,6 +101,10 @@ MODELS = (
     Model("AzureLoong", "models/AzureLoong.urdf", "loongOpen/OpenLoong-Dyn-Control"),
     Model("XBot-L", "XBot/urdf/XBot-L.urdf", "roboterax/humanoid-gym"),
     Model("NAO", "naoV50_generated_urdf/nao.urdf", "ros-naoqi/nao_robot"),
+    Model("TOCABI", "robots/dyros_tocabi.urdf", "saga0619/dyros_tocabi_v2"),
+    Model("DeepMimic's humanoid", "assets/humanoid/humanoid.xml", "xbpeng/MimicKit", ("lock: ['*_ankle_z']",)),
+    Model("MuJoCo's humanoid", "model/humanoid/humanoid.xml", "google-deepmind/mujoco", ("com_height: 0.82",)),
+    Model("dm_control's humanoid", "dm_control/suite/humanoid.xml", "google-deepmind/dm_control"),
 )
 
 
@@ -160,6 +165,8 @@ def examined(model: Model, place: str, out: Path) -> Row:
         faults = examine(robot).faults
     except (RobotError, ScenarioError) as refusal:
         return replace(row, why=(" ".join(str(refusal).split()),))
+    except Exception as error:  # a fault of ours, which ends no table
+        return replace(row, why=(f"{type(error).__name__}: {' '.join(str(error).split())}",))
     return _moved(replace(row, why=faults), {"robot": str(file)}, out)
 
 
@@ -254,6 +261,20 @@ def table(rows: Sequence[Row]) -> str:
     return "\n".join([*lines, "", f"{good} of {len(rows)} take all steps and survive every push.", ""])
 
 
+def moved_from(rows: Sequence[Row], path: Path) -> Iterator[str]:
+    """What is not as it was in a kept table, one sentence each."""
+    lines = [line for line in path.read_text(encoding="utf-8").splitlines() if not line.startswith("#")]
+    before = {was["robot"]: was for was in csv.DictReader(lines)}
+    for row in rows:
+        was, now = before.get(row.model.name), dict(zip(HEADINGS, cells(row), strict=True))
+        if was is None:
+            yield f"{row.model.name}: not in {path}"
+            continue
+        for heading in HEADINGS:
+            if was[heading] != now[heading]:
+                yield f"{row.model.name}: {heading} was {was[heading]}, is {now[heading]}"
+
+
 def write(rows: Sequence[Row], path: Path) -> None:
     """The table as docs/results keeps it: by what it was made, and its rows."""
     code = relevant_versions()
@@ -282,6 +303,7 @@ def main() -> None:
     parser.add_argument("--jobs", type=int, default=cores(), help="robots at once")
     parser.add_argument("--out", type=Path, default=Path("runs/robots"), help="directory of robot files and logs")
     parser.add_argument("--csv", type=Path, help="also write the table to this file, as docs/results keeps it")
+    parser.add_argument("--against", type=Path, metavar="FILE", help="a table of before, as --csv writes it")
     given = parser.parse_args()
     chosen = [model for model in MODELS if not given.only or model.name in given.only]
     places = {model.name: found(model, given.folders) for model in chosen}
@@ -294,10 +316,14 @@ def main() -> None:
     for row in side_by_side(examined, tasks, given.jobs, _lost):
         rows[row.model.name] = row
         print(" ".join(cells(row)), *(f"\n  - {told}" for told in _remarks(row)), flush=True)
-    text = table([rows[model.name] for model, *_ in tasks])
-    print(text)
+    done = [rows[model.name] for model, *_ in tasks]
+    print(table(done))
+    moved = [] if given.against is None else list(moved_from(done, given.against))
     if given.csv is not None:
-        write([rows[model.name] for model, *_ in tasks], given.csv)
+        write(done, given.csv)
+    if given.against is not None:
+        print("\n".join(moved) or f"as in {given.against}")
+        raise SystemExit(1 if moved else 0)
 
 
 if __name__ == "__main__":

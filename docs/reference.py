@@ -46,6 +46,7 @@ from surefoot.sim.sensor_errors import PRESETS, SensorErrors
 
 sys.path.insert(0, str(Path(__file__).parent))
 import asked
+import elements
 import handed
 import result_tables
 import standing
@@ -237,6 +238,8 @@ TABLES: dict[str, tuple[str, Callable[[], str]]] = {
     "metrics": ("scenarios.md", metrics_table),
     "channels": ("log.md", channels_table),
     "robot-keys": ("robot-files.md", robot_keys_table),
+    "mjcf-elements": ("robot-files.md", elements.mjcf_table),
+    "urdf-elements": ("robot-files.md", elements.urdf_table),
     "sensors": ("sensors.md", sensors_table),
     "sensed": ("sensors.md", sensed_table),
     "standing": ("standing.md", standing.table),

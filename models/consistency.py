@@ -11,6 +11,12 @@ from surefoot.models.pinocchio import pinocchio_model
 from surefoot.models.types import RobotDescription
 from surefoot.values import dataclass
 
+_CONTACTS = (
+    mujoco.mjtConstraint.mjCNSTR_CONTACT_FRICTIONLESS,
+    mujoco.mjtConstraint.mjCNSTR_CONTACT_PYRAMIDAL,
+    mujoco.mjtConstraint.mjCNSTR_CONTACT_ELLIPTIC,
+)
+
 
 @dataclass(frozen=True, slots=True)
 class EngineDifference:
@@ -22,6 +28,7 @@ class EngineDifference:
         com: centre of mass [m].
         jacobian: linear and angular frame Jacobians of both soles and of the torso [1, m].
         momentum: linear and angular centroidal momentum [N s, N m s].
+        others: forces that MuJoCo alone knows: of springs, losses, tendons and equalities [N, N m].
     """
 
     mass_matrix: float
@@ -29,6 +36,7 @@ class EngineDifference:
     com: float
     jacobian: float
     momentum: float
+    others: float
 
     @property
     def largest(self) -> float:
@@ -73,6 +81,7 @@ class EnginePair:
             com=_largest(self._mj.subtree_com[1], pin.centerOfMass(self.pin_model, self._pin, q)),
             jacobian=self._jacobian_difference(q, T),
             momentum=_largest(momentum, pin.computeCentroidalMomentum(self.pin_model, self._pin, q, v).vector),
+            others=_largest(self._others(), 0.0),
         )
 
     def _forward(self, q: Array, v: Array) -> None:
@@ -84,6 +93,15 @@ class EnginePair:
         M = np.zeros((self.mj_model.nv, self.mj_model.nv))
         mujoco.mj_fullM(self.mj_model, self._mj, M)
         return M
+
+    def _others(self) -> Array:
+        """Passive forces and those of constraints, contacts and joint limits aside."""
+        mj, known = self._mj, (mujoco.mjtConstraint.mjCNSTR_LIMIT_JOINT, *_CONTACTS)
+        rows = ~np.isin(mj.efc_type, [int(kind) for kind in known])
+        forces = np.zeros(self.mj_model.nv)
+        if mj.nefc:
+            mujoco.mj_mulJacTVec(self.mj_model, mj, forces, np.where(rows, mj.efc_force, 0.0))
+        return np.asarray(forces + mj.qfrc_passive)
 
     def _pin_bias(self, q: Array, v: Array) -> Array:
         """Inverse dynamics for MuJoCo's acceleration zero, which is not Pinocchio's."""
@@ -108,5 +126,5 @@ class EnginePair:
         return np.asarray(pin.getFrameJacobian(self.pin_model, self._pin, index, pin.LOCAL_WORLD_ALIGNED))
 
 
-def _largest(a: Array, b: Array) -> float:
+def _largest(a: Array, b: Array | float) -> float:
     return float(np.max(np.abs(np.asarray(a) - np.asarray(b))))

@@ -10,6 +10,7 @@ from typing import TYPE_CHECKING
 import numpy as np
 from numpy.typing import NDArray
 
+from surefoot.models.inertia import LEAST_MASS
 from surefoot.models.types import RobotDescription
 from surefoot.similarity import REFERENCE_SIZE, Similarity
 from surefoot.values import dataclass
@@ -256,13 +257,16 @@ def shank_outline(robot: RobotDescription, foot: int) -> Array:
     """Corners of the shank as seen from the side, shape (m, 2): ahead of the ankle and up along the shank [m]."""
     model, data = _upright(robot)
     _, knee, ankle = pitch_joints(robot, foot)
+    leg = (robot.roles.left_leg, robot.roles.right_leg)[foot]
+    below = (int(model.joint(name).bodyid[0]) for name in leg[leg.index(knee) :])
+    shank = next(body for body in below if model.body_mass[body] > LEAST_MASS)
     knee, ankle = (model.joint(name).id for name in (knee, ankle))
     up = data.xanchor[knee] - data.xanchor[ankle]
     up[1] = 0.0
     up /= np.linalg.norm(up)
     ahead = np.array([up[2], 0.0, -up[0]])
     points = []
-    for geom in np.flatnonzero((model.geom_bodyid == model.jnt_bodyid[knee]) & (model.geom_contype > 0)):
+    for geom in np.flatnonzero((model.geom_bodyid == shank) & (model.geom_contype > 0)):
         local = _corners(model, int(geom))
         world = data.geom_xpos[geom] + local @ data.geom_xmat[geom].reshape(3, 3).T - data.xanchor[ankle]
         points.append(np.column_stack((world @ ahead, world @ up)))

@@ -6,6 +6,12 @@ from surefoot.values import dataclass
 
 Vector = tuple[float, float, float]
 
+LEAST_MASS = 1e-10
+"""Mass [kg] and moment of inertia [kg m^2] up to which a body has none."""
+
+MASSLESS = 1e-12
+"""Mass [kg] and moments of inertia [kg m^2] in the text of a link without mass between joints: MuJoCo takes no 0."""
+
 
 @dataclass(frozen=True, slots=True)
 class Inertial:

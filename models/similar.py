@@ -11,6 +11,7 @@ from xml.etree import ElementTree
 
 import numpy as np
 
+from surefoot.models.inertia import LEAST_MASS
 from surefoot.models.mjcf import numbers
 from surefoot.models.types import RobotDescription, RobotError, fixed
 
@@ -37,10 +38,13 @@ def scaled(description: RobotDescription, factor: float) -> RobotDescription:
         raise RobotError(("scale",), what, "it must be a positive number")
     if factor == 1.0:
         return description
-    root = ElementTree.fromstring(description.mjcf)
+    root, light = ElementTree.fromstring(description.mjcf), 0.0
     for element in root.iter():
+        mass = float(element.get("mass", "inf"))
+        massless = element.tag == "inertial" and mass <= LEAST_MASS
+        light += mass if massless else 0.0
         for attribute, power in POWERS.get(element.tag, {}).items():
-            if attribute in element.attrib:
+            if attribute in element.attrib and not (massless and power > 1):  # a link without mass has none in any size
                 values = element.attrib[attribute].split()
                 element.set(attribute, numbers(factor**power * float(value) for value in values))
     _require_moments(root, description.name, factor)
@@ -49,7 +53,7 @@ def scaled(description: RobotDescription, factor: float) -> RobotDescription:
     return replace(
         d,
         mjcf=ElementTree.tostring(root, encoding="unicode") + "\n",
-        mass=factor**3 * d.mass,
+        mass=factor**3 * (d.mass - light) + light,
         torque_limit=fixed(factor**4 * d.torque_limit),
         velocity_limit=fixed(d.velocity_limit / math.sqrt(factor)),
         sole_length=factor * d.sole_length,

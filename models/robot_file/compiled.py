@@ -58,8 +58,6 @@ class Bare:
         files = {name: text.encode() for name, text in self._document.models.items()}
         try:
             spec = mujoco.MjSpec.from_string(self._document.text, files, files)
-            for part in (*spec.pairs, *spec.excludes):
-                spec.delete(part)
             self._leave_out(spec, self._faults(spec))
             found = {name: content for name, content in self._contents.items() if not isinstance(content, RobotError)}
             spec.assets = files | _moderate(spec, self._path, self._document, found, self._notes)

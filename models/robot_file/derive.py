@@ -6,7 +6,11 @@ from typing import NamedTuple
 import numpy as np
 import pinocchio as pin
 
+from surefoot.models.inertia import LEAST_MASS
+from surefoot.models.robot_file.bindings import rolling, told_rolling
+from surefoot.models.robot_file.engine_mesh import compiled, taken
 from surefoot.models.robot_file.imu import find_imu
+from surefoot.models.robot_file.joint_inertia import require_inertia
 from surefoot.models.robot_file.legs import at, find_legs, rest, solved
 from surefoot.models.robot_file.magnitudes import check_figure
 from surefoot.models.robot_file.meshes import decimated
@@ -32,8 +36,8 @@ _CLEAR = 0.01
 _FREE = 0.04
 """Distance of hanging arms from thighs and trunk, over the leg's length: a push at the trunk swings them [-]."""
 
-_FEWEST = 4
-"""Vertices that a mesh has for an engine."""
+_ROUND = 5
+"""Decimals of what is only drawn [m]."""
 
 _NEAR = 0.005
 """Distance in the posture, over the leg's length, below which links may overlap for good [-]."""
@@ -75,6 +79,8 @@ class _Deriver:
         self.file, self.model = file, reduced.model
         self.lines: list[str] = []
         self.legs = find_legs(reduced, file)
+        pairs = (rolling(reduced.model, leg.joints) for leg in self.legs)
+        reduced.left_out.extend(told_rolling(pair) for pair in pairs if pair is not None)
         self.upper = find_upper(reduced, file, self.legs)
         self.reduced = reduced = with_upright(reduced, self.upper.torso)
         self.hulls = find_hulls(reduced, self.legs, self.upper)
@@ -85,8 +91,10 @@ class _Deriver:
     def derived(self) -> Derived:
         """The whole description."""
         straight, posture = self._postures()
+        require_inertia(self.model, (posture, straight), self.reduced.notes)
         excluded = self._excluded([straight, posture])
         mjcf = robot_text(self._parts(excluded, looks=True))
+        compiled(mjcf)
         com_height = self._com_height(posture)
         self._check_figure(com_height)
         description = self._description(mjcf, straight, posture, com_height, excluded)
@@ -143,7 +151,7 @@ class _Deriver:
         if not self.upper.arms:
             return posture
         near = _FREE * self.leg_length
-        others = {1, self.upper.torso, *(leg.joints[leg.knee - 1] for leg in self.legs)}
+        others = {1, self.upper.torso, *(leg.thigh for leg in self.legs)}
         arms = {joint for arm in self.upper.arms for joint in arm[2:]}
         hulls = {joint: hull for joint, hull in self.hulls.items() if joint in others | arms}
         text = robot_text(self._parts((), looks=False, hulls=hulls))
@@ -175,22 +183,22 @@ class _Deriver:
         )
 
     def _looks(self) -> list[list[Shape]]:
-        """What is drawn, with as many triangles as a viewer needs."""
-        joints = [joint for joint, group in enumerate(self.reduced.visual) for _ in group]
-        shapes = [shape for group in self.reduced.visual for shape in group]
-        small = decimated([(shape.vertices, shape.faces) for shape in shapes])
+        """What is drawn, with as many triangles as a viewer needs; what comes to none that an engine draws is told."""
+        shapes = [(joint, shape) for joint, group in enumerate(self.reduced.visual) for shape in group]
+        few = decimated([(shape.vertices, shape.faces) for _, shape in shapes])
+        small = [(np.round(vertices, _ROUND) + 0.0, faces) for vertices, faces in few]
         looks: list[list[Shape]] = [[] for _ in range(self.model.njoints)]
-        for joint, shape, (vertices, faces) in zip(joints, shapes, small, strict=True):
-            if len(faces) and len(vertices) >= _FEWEST:
-                looks[joint].append(Shape(shape.link, vertices, faces, shape.rgba))
-        lost = [
-            body
-            for body, look, of in zip(self.reduced.bodies, looks[1:], self.reduced.visual[1:], strict=True)
-            if of and not look
-        ]
+        unmade = set[str]()
+        for (joint, shape), part, sound in zip(shapes, small, taken(small, drawn=True), strict=True):
+            if sound:
+                looks[joint].append(Shape(shape.link, *part, shape.rgba))
+            elif len(part[1]):
+                unmade.add(shape.link)
+        drawn = {shape.link for group in looks for shape in group}
+        lost = unmade | ({shape.link for _, shape in shapes if len(shape.faces)} - drawn)
         if lost:
-            what = "which is too small or too flat to be seen"
-            self.reduced.left_out.append(f"left out: what is drawn of {', '.join(lost)}, {what}")
+            what = ", ".join(sorted(lost))
+            self.reduced.left_out.append(f"left out: what is drawn of {what}, which comes to too few triangles")
         return looks
 
     def _excluded(self, postures: list[Array]) -> list[tuple[str, str]]:
@@ -263,11 +271,17 @@ class _Deriver:
             nominal_joint_positions=fixed(posture),
             straight_joint_positions=fixed(straight),
             com_height=com_height,
-            bodies=self.reduced.bodies,
+            bodies=self._weighty(),
             kept_apart=kept_apart(self.reduced, self.file, self.hulls, self._meeting(excluded), self.legs),
             imu=self.imu,
             left_out=tuple(self.reduced.left_out),
         )
+
+    def _weighty(self) -> tuple[str, ...]:
+        """Names of the bodies with mass, base and torso among them: what stands between joints alone is no body."""
+        named = {self.reduced.bodies[0], self.reduced.bodies[self.upper.torso - 1], self.imu.body}
+        pairs = zip(self.reduced.bodies, list(self.model.inertias)[1:], strict=True)
+        return tuple(name for name, inertia in pairs if name in named or inertia.mass > LEAST_MASS)
 
     def _say(self, robot: RobotDescription, excluded: list[tuple[str, str]]) -> None:
         """Tell what was derived."""

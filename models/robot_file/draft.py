@@ -1,5 +1,6 @@
 """A first robot file for a model: its feet found by shape, and in comments what else may be given."""
 
+import itertools
 import math
 import re
 import tempfile
@@ -131,19 +132,20 @@ def _tried(lines: str, model: str, path: Path) -> Explanation:
 def _feet(model: pin.Model) -> tuple[str, str] | None:
     """Links of the two lowest ends of long chains that are beside each other, the one with the greater y first.
 
-    Where z has none y is taken for up, and then x.
+    Where z has none y is taken for up, and then x; ends of as many joints go before others, whatever is up.
     """
     data = model.createData()
     pin.forwardKinematics(model, data, pin.neutral(model))
     places = {joint: np.array(data.oMi[joint].translation) for joint in _ends(model)}
-    for up in (2, 1, 0):
+    for alike, up in itertools.product((True, False), (2, 1, 0)):
         lowest = sorted(places, key=lambda joint: float(places[joint][up]))[:2]
         if len(lowest) < 2:
             return None
         first, second = lowest
         apart = places[first] - places[second]
         level, apart[up] = abs(float(apart[up])), 0.0
-        if level > 0.1 * float(np.linalg.norm(apart)):
+        unlike = len(model.supports[first]) != len(model.supports[second])
+        if level > 0.1 * float(np.linalg.norm(apart)) or (alike and unlike):
             continue
         along = int(np.argmax(np.abs(apart)))
         left, right = (first, second) if (apart[along] > 0.0) == (along == 1) else (second, first)

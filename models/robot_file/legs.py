@@ -3,6 +3,7 @@
 import numpy as np
 import pinocchio as pin
 
+from surefoot.models.inertia import LEAST_MASS
 from surefoot.models.joints import meeting_point, world_axis
 from surefoot.models.robot_file.reduced import Reduced, points_of
 from surefoot.models.robot_file.schema import RobotFile
@@ -32,6 +33,7 @@ class Leg:
         straight: angle of the knee that makes the leg longest [rad].
         sole: what touches the ground.
         hip: hip centre from the base [m].
+        shank: the joint whose body is the shank; where that has several, the last of them.
     """
 
     joints: tuple[int, ...]
@@ -40,6 +42,12 @@ class Leg:
     straight: float
     sole: SolePlate
     hip: Array
+    shank: int
+
+    @property
+    def thigh(self) -> int:
+        """The joint whose body is the thigh."""
+        return self.joints[self.knee - 1]
 
     @property
     def leans(self) -> bool:
@@ -105,7 +113,8 @@ def _leg(reduced: Reduced, file: RobotFile, side: int, chain: tuple[int, ...]) -
     lower, upper = (float(limit[chain[knee] + 5]) for limit in (model.lowerPositionLimit, model.upperPositionLimit))
     bend = 1.0 if upper - straight >= straight - lower else -1.0
     sole = _sole(reduced, file, side, data, chain[-1])
-    return Leg(chain, knee, bend, straight, sole, meeting_point(model, data, chain[:knee]))
+    shank = next(joint for joint in chain[knee:] if model.inertias[joint].mass > LEAST_MASS)
+    return Leg(chain, knee, bend, straight, sole, meeting_point(model, data, chain[:knee]), shank)
 
 
 def _longest(model: pin.Model, chain: tuple[int, ...], knee: int) -> float:

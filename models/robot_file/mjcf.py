@@ -1,7 +1,6 @@
 """An MJCF with all that it includes as one text, beside the meshes that it names: an engine opens no file for it.
 
-Includes and meshes are found as MuJoCo finds them. What says nothing of a robot's body goes: sensors, textures, height
-fields, keyframes, cameras, sizes of memory.
+Includes and meshes are found as MuJoCo finds them. Elements go that `mjcf_schema` leaves out.
 """
 
 from collections.abc import Iterator, Mapping
@@ -12,17 +11,11 @@ from xml.sax.saxutils import quoteattr
 from surefoot.models.robot_file.document import DEEPEST, MOST_ELEMENTS, Node, number, read_xml, refuse
 from surefoot.models.robot_file.paths import is_file, resolve
 from surefoot.models.robot_file.quantities import TURN, check_numbers, of_mjcf
+from surefoot.models.robot_file.sift import Absent, sift
 from surefoot.models.robot_file.urdf import MOST_SHAPES
 from surefoot.values import dataclass
 
 _MOST_FILES = 200
-_OF_ALL = ("size", "visual", "statistic", "option", "custom", "keyframe", "sensor", "deformable")
-"""Groups of a document that go."""
-
-_ANYWHERE = ("texture", "hfield", "skin", "layer", "light", "camera", "lengthrange")
-"""Elements that go."""
-
-_REFUSED = ("composite", "flexcomp", "flex")
 _FOLDERS = ("meshdir", "texturedir", "assetdir", "strippath")
 _MESHES = {"stl": ".stl", "obj": ".obj", "vnd.mujoco.msh": ".msh", "msh": ".msh"}
 """Ending by kind of content, or by ending."""
@@ -43,6 +36,7 @@ class Assembled:
         models: other documents of robots that are attached, by the name that the text gives them.
         meshes: files by the name that the text gives them, whether or not they are there.
         files: each reference with the file that it means; None where there is none.
+        absent: elements that are left out.
     """
 
     root: Node
@@ -51,6 +45,7 @@ class Assembled:
     models: Mapping[str, str]
     meshes: Mapping[str, Path]
     files: tuple[tuple[str, Path | None], ...]
+    absent: tuple[Absent, ...]
 
 
 def assembled(root: Node) -> Assembled:
@@ -63,7 +58,9 @@ def assembled(root: Node) -> Assembled:
     assembly.add(root, (root.file,))
     lines = list(_lines(root))
     text, places = "\n".join(line for line, _ in lines), tuple(place for _, place in lines)
-    return Assembled(root, text, places, assembly.models, assembly.meshes, tuple(assembly.files))
+    return Assembled(
+        root, text, places, assembly.models, assembly.meshes, tuple(assembly.files), tuple(assembly.absent)
+    )
 
 
 @dataclass
@@ -73,12 +70,13 @@ class _Assembly:
     models: dict[str, str] = field(default_factory=dict)
     meshes: dict[str, Path] = field(default_factory=dict)
     files: list[tuple[str, Path | None]] = field(default_factory=list)
+    absent: list[Absent] = field(default_factory=list)
 
     def add(self, root: Node, opened: tuple[Path, ...]) -> "_Size":
         """Complete a document; returns how many elements and geoms it comes to."""
         main = opened[-1]
         self._include(root, main.parent, [*opened], 0)
-        _strip(root)
+        self.absent += sift(root)
         check_numbers(root, of_mjcf)
         _check_angles(root)
         folder = _folder_of_meshes(root)
@@ -198,22 +196,6 @@ def _check_angles(root: Node) -> None:
 
 def _assets(root: Node, tag: str) -> list[Node]:
     return [node for asset in root.findall("asset") for node in asset if isinstance(node, Node) and node.tag == tag]
-
-
-def _strip(root: Node) -> None:
-    """Leave away what says nothing of a body, and refuse what only bodies without bones have."""
-    root[:] = [child for child in root if child.tag not in _OF_ALL]
-    for node in root.elements():
-        node[:] = [child for child in node.nodes if child.tag not in _ANYWHERE and not _is_field(child)]
-        for child in node.nodes:
-            if child.tag in _REFUSED or (child.tag == "plugin" and node.tag not in ("extension", "actuator")):
-                refuse(child, f"{node.tag} has a {child.tag}", "give a robot of bodies and joints")
-        if node.tag == "material":
-            node.attrib.pop("texture", None)
-
-
-def _is_field(geom: Node) -> bool:
-    return geom.tag == "geom" and ("hfield" in geom.attrib or geom.get("type") == "hfield")
 
 
 def _size(node: Node, sizes: Mapping[str, _Size], times: int) -> _Size:

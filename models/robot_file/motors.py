@@ -1,6 +1,7 @@
 """What the motors of a model give: limits of torque and speed, rotors; and what an SRDF knows of them."""
 
 from pathlib import Path
+from typing import NamedTuple
 
 import numpy as np
 import pinocchio as pin
@@ -25,14 +26,28 @@ def set_limits(model: pin.Model, file: RobotFile, names: tuple[str, ...]) -> Non
         setattr(model, f"lower{field}", -values)
 
 
-def read_srdf(path: Path | None, names: tuple[str, ...]) -> tuple[dict[str, float], dict[str, dict[str, float]]]:
-    """Rotor inertias at the joints [kg m^2], and postures by name [rad].
+class Srdf(NamedTuple):
+    """The part of an SRDF that is read.
+
+    Attributes:
+        rotors: inertias at the joints by name [kg m^2].
+        states: angles of joints by the name of a posture [rad].
+        passive: joints that have no motor.
+    """
+
+    rotors: dict[str, float]
+    states: dict[str, dict[str, float]]
+    passive: tuple[str, ...]
+
+
+def read_srdf(path: Path | None, names: tuple[str, ...]) -> Srdf:
+    """Read one; of none nothing is known.
 
     Raises:
         RobotError: the file cannot be read, is no XML, or has numbers that no robot has.
     """
     if path is None:
-        return {}, {}
+        return Srdf({}, {}, ())
     root = read_xml(path, SRDF)
     for group in root.nodes:
         if group.tag in ("rotor_params", "group_state"):
@@ -49,7 +64,7 @@ def read_srdf(path: Path | None, names: tuple[str, ...]) -> tuple[dict[str, floa
         }
         for state in root.iterfind("group_state")
     }
-    return rotors, states
+    return Srdf(rotors, states, tuple(joint.get("name", "") for joint in root.iterfind("passive_joint")))
 
 
 def set_armature(

@@ -9,6 +9,9 @@ from surefoot.engine import mujoco
 from surefoot.models.robot_file.compiled import Bare
 from surefoot.models.robot_file.magnitudes import Part
 from surefoot.models.robot_file.mjcf import Assembled
+from surefoot.models.robot_file.mjcf_bindings import MjcfBindings
+from surefoot.models.robot_file.mjcf_losses import losses
+from surefoot.models.robot_file.mjcf_motors import rotor, torques
 from surefoot.models.robot_file.schema import RobotFile
 from surefoot.models.robot_file.shapes import (
     Shape,
@@ -21,10 +24,13 @@ from surefoot.models.robot_file.shapes import (
     require_moderate,
     solid,
 )
+from surefoot.models.robot_file.sift import told_absent
 from surefoot.models.robot_file.source import ROOT, Source, physical
 from surefoot.models.types import Array, RobotError
 
-_HINGE, _SLIDE = (int(kind) for kind in (mujoco.mjtJoint.mjJNT_HINGE, mujoco.mjtJoint.mjJNT_SLIDE))
+_FREE, _BALL, _HINGE = (
+    int(kind) for kind in (mujoco.mjtJoint.mjJNT_FREE, mujoco.mjtJoint.mjJNT_BALL, mujoco.mjtJoint.mjJNT_HINGE)
+)
 _LEGS = 8
 """Joints that two legs have at least."""
 
@@ -37,7 +43,7 @@ def read_mjcf(file: RobotFile, path: Path, document: Assembled) -> Source:
     Raises:
         RobotError: MuJoCo does not compile it, or it is no single robot of hinges.
     """
-    notes, left_out = list[str](), list[str]()
+    notes, left_out = list[str](), list(told_absent(document.absent))
     bare = Bare(path, document, notes)
     mj = bare.compiled()
     Told(notes, left_out).missing("visual", bare.unseen)
@@ -50,13 +56,14 @@ def _robot_of(mj: mujoco.MjModel, path: Path, left_out: list[str]) -> int:
     Raises:
         RobotError: none is, or several are.
     """
-    roots = [body for body in range(1, mj.nbody) if mj.body_parentid[body] == 0 and mj.body_subtreemass[body] > 0]
+    beside = [body for body in range(1, mj.nbody) if mj.body_parentid[body] == 0]
+    roots = [body for body in beside if mj.body_subtreemass[body] > 0]
     joints = mj.body_rootid[mj.jnt_bodyid]
     robots = [body for body in roots if (joints == body).sum() >= _LEGS] if len(roots) > 1 else roots
     if len(robots) != 1:
         names = ", ".join(f"'{mj.body(body).name}'" for body in robots or roots) or "none"
         raise RobotError(("model",), f"{path}: has the bodies {names} in its world", "give a file with one robot alone")
-    others = [f"'{mj.body(body).name}'" for body in roots if body not in robots]
+    others = [f"'{mj.body(body).name}'" for body in beside if body not in robots]
     if others:
         left_out.append(f"left out: {', '.join(others)}, beside the robot in the world of its model")
     return robots[0]
@@ -85,12 +92,22 @@ class _Reader:
             if mj.body_rootid[body] == self._root:
                 self._add_body(body)
         self._add_sites()
-        source = Source(self._model, (), (), (), self._notes, self._left_out)
-        source.parts = tuple(map(self._part, self._place))
+        names = {joint: self._model.names[added] for joint, added in self._added.items()}
+        found = MjcfBindings(mj, self._root, names)
+        self._left_out += [*losses(mj, self._root), *found.outside()]
+        source = Source(
+            model=self._model,
+            visual=(),
+            collision=(),
+            followers=dict(found.followers()),
+            bindings=tuple(found.bindings()),
+            notes=self._notes,
+            left_out=self._left_out,
+            parts=tuple(map(self._part, self._place)),
+            held=self._held(),
+        )
         self._add_limits()
         self._add_shapes(source)
-        if mj.dof_damping[6:].any() or mj.dof_frictionloss[6:].any():
-            self._left_out.append("left out: damping and friction of joints")
         return source
 
     def _add_body(self, body: int) -> None:
@@ -130,23 +147,41 @@ class _Reader:
         """Put a joint at its place in the body; returns it and the body seen from it."""
         mj = self._mj
         name = mj.joint(index).name or _free(f"{body}_joint{index}", self._joints)
-        kind, at = int(mj.jnt_type[index]), mj.jnt_pos[index]
-        if kind not in (_HINGE, _SLIDE):
-            raise RobotError(
-                ("model",), f"{self._path}: joint '{name}' is neither hinge nor slide", "give it as hinges"
-            )
-        if mj.qpos0[mj.jnt_qposadr[index]] != 0.0:
-            raise RobotError(("model",), f"{self._path}: joint '{name}' has a ref", "remove it")
-        unit = mj.jnt_axis[index]
-        joint = pin.JointModelRevoluteUnaligned(unit) if kind == _HINGE else pin.JointModelPrismaticUnaligned(unit)
-        there = pin.SE3(np.eye(3), at)
-        lower, upper = mj.jnt_range[index] if mj.jnt_limited[index] else (-2 * np.pi, 2 * np.pi)
-        one = np.ones(1)
-        added = self._model.addJoint(parent, joint, offset * there, name, one, one, one * lower, one * upper)
+        kind, unit, size = int(mj.jnt_type[index]), mj.jnt_axis[index], 1
+        if kind == _BALL:
+            joint, size = pin.JointModelSpherical(), 3
+        else:
+            joint = pin.JointModelRevoluteUnaligned(unit) if kind == _HINGE else pin.JointModelPrismaticUnaligned(unit)
+        there, ends = pin.SE3(np.eye(3), mj.jnt_pos[index]), self._range(index, name)
+        none = np.ones(size)
+        added = self._model.addJoint(parent, joint, offset * there, name, none, none, *ends)
         self._model.addJointFrame(added)
         self._added[index] = added
-        self._model.armature[self._model.joints[added].idx_v] = mj.dof_armature[mj.jnt_dofadr[index]]
+        first = self._model.joints[added].idx_v
+        self._model.armature[first : first + size] = mj.dof_armature[mj.jnt_dofadr[index]] + rotor(mj, index)
         return added, there.inverse()
+
+    def _range(self, index: int, name: str) -> tuple[Array, Array]:
+        """Ends of a joint, counted from where it stands in the file, as all angles are; none that a ball has."""
+        mj = self._mj
+        if int(mj.jnt_type[index]) == _BALL:
+            return -np.ones(4), np.ones(4)
+        lower, upper = mj.jnt_range[index] if mj.jnt_limited[index] else (-2 * np.pi, 2 * np.pi)
+        ref = float(mj.qpos0[mj.jnt_qposadr[index]])
+        if ref != 0.0:
+            self._notes.append(f"joint '{name}' is at its ref {ref:.6g} in the model, from where its angles count here")
+        ends = np.array([lower, upper]) - ref * bool(mj.jnt_limited[index])
+        return ends[:1], ends[1:]
+
+    def _held(self) -> tuple[str, ...]:
+        """Joints of the base itself; a floating base holds it nowhere."""
+        mj, first = self._mj, int(self._mj.body_jntadr[self._root])
+        joints = range(first, first + int(mj.body_jntnum[self._root]))
+        return tuple(
+            mj.joint(joint).name or f"{self._name(self._root)}_joint{joint}"
+            for joint in joints
+            if int(mj.jnt_type[joint]) != _FREE
+        )
 
     def _inertia(self, body: int, name: str) -> pin.Inertia:
         mj = self._mj
@@ -164,24 +199,15 @@ class _Reader:
         """Torques from the motors; of speeds an MJCF knows nothing."""
         model = self._model
         effort, speed = np.zeros(model.nv), np.zeros(model.nv)
+        unlike = []
         for joint, added in self._added.items():
-            effort[model.joints[added].idx_v] = self._torque(joint)
+            lower, upper = torques(self._mj, joint)
+            effort[model.joints[added].idx_v] = max(0.0, min(-lower, upper))
+            unlike += [] if lower == -upper else [model.names[added]]
+        if unlike:
+            self._left_out.append(f"left out: the larger of unlike torques both ways of joints {', '.join(unlike)}")
         model.upperEffortLimit, model.lowerEffortLimit = effort, -effort
         model.upperVelocityLimit, model.lowerVelocityLimit = speed, -speed
-
-    def _torque(self, joint: int) -> float:
-        """Peak torque of a joint, 0 where the file says nothing [N m]."""
-        mj = self._mj
-        limits = [abs(mj.jnt_actfrcrange[joint]).min()] if mj.jnt_actfrclimited[joint] else []
-        for motor in range(mj.nu):
-            if mj.actuator_trntype[motor] != int(mujoco.mjtTrn.mjTRN_JOINT) or mj.actuator_trnid[motor, 0] != joint:
-                continue
-            gear = abs(mj.actuator_gear[motor, 0])
-            if mj.actuator_forcelimited[motor]:
-                limits.append(gear * abs(mj.actuator_forcerange[motor]).min())
-            elif mj.actuator_ctrllimited[motor] and not mj.actuator_biastype[motor]:
-                limits.append(gear * mj.actuator_gainprm[motor, 0] * abs(mj.actuator_ctrlrange[motor]).min())
-        return float(min(limits, default=0.0))
 
     def _add_shapes(self, source: Source) -> None:
         """Sort the geoms into what touches and what is only drawn."""

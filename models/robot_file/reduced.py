@@ -1,12 +1,15 @@
 """A model with the joints that walk: others locked, limits and rotors complete, x of the base ahead."""
 
 import fnmatch
+from collections.abc import Iterator, Sequence
 from pathlib import Path
 
 import numpy as np
 import pinocchio as pin
 
+from surefoot.models.inertia import LEAST_MASS, MASSLESS
 from surefoot.models.joints import is_revolute
+from surefoot.models.robot_file.bindings import check_bindings, told_locked
 from surefoot.models.robot_file.files import srdf_of
 from surefoot.models.robot_file.magnitudes import check_angle, check_joints
 from surefoot.models.robot_file.motors import read_srdf, require_limits, set_armature, set_limits
@@ -17,11 +20,10 @@ from surefoot.models.robot_file.turning import turn, upward
 from surefoot.models.types import Array, RobotError, nearest
 from surefoot.values import dataclass
 
-_LEAST = 1e-10
-"""Mass [kg] and moment of inertia [kg m^2] that a body has to have."""
-
 _BALL = 0.02
 """Radius of gyration that a repaired body gets [m]."""
+
+_GIVEN, _FOLLOWS = "given in the file", "follow others"
 
 _TURNS = {"x": 0, "y": 1, "-x": 2, "-y": 3}
 """Quarter turns about z from the base's x to the axis that points ahead."""
@@ -86,20 +88,27 @@ def reduced(file: RobotFile, source: Source, path: Path) -> Reduced:
     names = tuple(full.names)[2:]
     set_limits(full, file, names)
     srdf = srdf_of(file, path)
-    rotors, states = read_srdf(srdf, names)
+    rotors, states, passive = read_srdf(srdf, names)
     set_armature(full, matched(file.armature, names, "armature", file.name), rotors, srdf, notes)
     feet = file.soles()
     left, right = (set(_chain(full, getattr(feet, side), f"feet.{side}")) for side in ("left", "right"))
     above = _above(full, left, right)
     locked = _locked(full, file, source, (left | right) - above, above)
     for why in dict.fromkeys(reason for reason, _ in locked.values()):
-        told = ", ".join(full.names[joint] for joint, (reason, _) in locked.items() if reason == why)
-        notes.append(f"locked, {why}: {told}")
+        names_of = [str(full.names[joint]) for joint, (reason, _) in locked.items() if reason == why]
+        notes.append(f"locked, {why}: {', '.join(names_of)}")
+        if why != _GIVEN or set(names_of) & set(source.followers):
+            source.left_out.append(told_locked(names_of, why, source.followers))
     q = pin.neutral(full)
     for joint, (_, angle) in locked.items():
         model_joint = full.joints[joint]
         if model_joint.nq == 1:
             q[model_joint.idx_q] = angle
+    free = [name for joint, name in enumerate(full.names) if joint > 1 and joint not in locked]
+    limited = matched(file.torque_limit, names, "torque_limit", file.name)
+    source.left_out += check_bindings(source.bindings, free, limited, path)
+    if driven := [name for name in free if name in passive]:
+        source.left_out.append(f"left out: passive_joint of the SRDF: {', '.join(driven)}: they have motors here")
     model = _without(full, list(locked), q)
     model.name = file.name
     require_limits(model, notes)
@@ -107,8 +116,9 @@ def reduced(file: RobotFile, source: Source, path: Path) -> Reduced:
     frames = tuple(frame_of(model, link, "feet") for link in (feet.left, feet.right))
     turned = _turn(model, frames, file, notes)
     bodies = _bodies(full, tuple(model.names)[1:])
-    _require_inertias(model, bodies, {full.names[joint] for joint in left | right}, file, notes)
     visual, collision = (_by_joint(model, shapes) for shapes in (source.visual, source.collision))
+    shapes = [drawn + touching for drawn, touching in zip(visual, collision, strict=True)]
+    notes += _require_inertias(model, bodies, shapes, {full.names[joint] for joint in left | right}, file)
     return Reduced(model, bodies, (frames[0], frames[1]), visual, collision, turned, states, notes, source.left_out)
 
 
@@ -153,6 +163,12 @@ def _locked(
         RobotError: a pattern matches none, or a joint of a leg cannot turn.
     """
     fingers = _fingers(model, legs) if file.lock is None else set()
+    data = model.createData()
+    pin.computeSubtreeMasses(model, data)
+    shown = {
+        int(model.frames[frame_of(model, shape.link, "model")].parentJoint)
+        for shape in (*source.visual, *source.collision)
+    }
     given: dict[str, float | None] = {}
     patterns = file.lock if isinstance(file.lock, dict) else dict.fromkeys(file.lock or ())
     names = tuple(model.names)[2:]
@@ -168,31 +184,35 @@ def _locked(
         name, one = model.names[joint], model.joints[joint]
         why = ""
         if name in given:
-            why = "given in the file"
+            why = _GIVEN
         elif not is_revolute(model, joint):
             why = "not revolute"
-        elif name in source.mimics:
-            why = "follow others"
+        elif name in source.followers:
+            why = _FOLLOWS
         elif joint in above:
             why = "above both legs, where the floating base is"
         elif joint in fingers:
             why = "fingers"
         elif joint not in legs and not model.upperEffortLimit[one.idx_v] > 0.0:
             why = "without torque"
+        elif joint not in legs and data.mass[joint] <= LEAST_MASS and not shown & set(model.subtrees[joint]):
+            why = "move nothing"
         if why and joint in legs and name not in given:
-            what = f"joint '{name}' of {file.name} is in a leg and cannot be driven ({why})"
-            raise RobotError(("feet",), what, "legs need revolute joints; write it into lock if it may be frozen")
+            cause = source.followers[name].told if why == _FOLLOWS else why
+            what = f"joint '{name}' of {file.name} is in a leg and cannot be driven ({cause})"
+            right = "legs need revolute joints with a motor each; write it into lock if it may be frozen"
+            raise RobotError(("feet",), what, right)
         if why:
-            rest = given.get(name)
-            found[joint] = (why, _at_rest(model, joint) if rest is None else rest)
+            rest, wanted = given.get(name), source.followers[name].angle if why == _FOLLOWS else 0.0
+            found[joint] = (why, _at_rest(model, joint, wanted) if rest is None else rest)
     return found
 
 
-def _at_rest(model: pin.Model, joint: int) -> float:
+def _at_rest(model: pin.Model, joint: int, wanted: float) -> float:
     one = model.joints[joint]
     if one.nq != 1:
         return 0.0
-    return float(np.clip(0.0, model.lowerPositionLimit[one.idx_q], model.upperPositionLimit[one.idx_q]))
+    return float(np.clip(wanted, model.lowerPositionLimit[one.idx_q], model.upperPositionLimit[one.idx_q]))
 
 
 def _fingers(model: pin.Model, legs: set[int]) -> set[int]:
@@ -214,34 +234,41 @@ _LIGHT = 0.03
 
 
 def _require_inertias(
-    model: pin.Model, bodies: tuple[str, ...], legs: set[str], file: RobotFile, notes: list[str]
-) -> None:
-    """Refuse bodies without inertia, or give them that of a small ball; joints of legs cannot be locked instead.
+    model: pin.Model, bodies: tuple[str, ...], shapes: Sequence[tuple[Shape, ...]], legs: set[str], file: RobotFile
+) -> Iterator[str]:
+    """Give links without mass between joints what an engine asks for; refuse what lacks an inertia; yields notes.
+
+    A link without mass that fills no space is no fault: its joint moves what hangs on it. What makes a joint unfit is
+    looked for in the inertia of all joints together (`joint_inertia`).
 
     Raises:
-        RobotError: one has none, and no mass either or is not to be repaired.
+        RobotError: a joint moves no mass at all, or a link has a shape and no mass, or mass and no moment.
     """
-    balls = []
+    data, balls = model.createData(), []
+    pin.computeSubtreeMasses(model, data)
     for joint, body in enumerate(bodies, start=1):
-        inertia = model.inertias[joint]
-        least = float(np.linalg.eigvalsh(inertia.inertia)[0])
-        if inertia.mass > _LEAST and least > _LEAST:
+        inertia, name = model.inertias[joint], model.names[joint]
+        massless = inertia.mass <= LEAST_MASS
+        if massless and not shapes[joint] and data.mass[joint] > LEAST_MASS:
+            model.inertias[joint] = inertia + pin.Inertia(MASSLESS, np.zeros(3), MASSLESS * np.eye(3))
             continue
-        if file.inertia == "refuse" or inertia.mass <= _LEAST:
+        least = float(np.linalg.eigvalsh(inertia.inertia)[0])
+        if not massless and least > LEAST_MASS:
+            continue
+        if file.inertia == "refuse" or massless:
             what = (
                 f"link '{body}' of {file.name} moves with {inertia.mass:g} kg and a least moment of {least:.2g} kg m^2"
             )
-            name = model.names[joint]
             ways = ["give it an inertia in the model"]
             ways += [f"write 'lock: [{name}]'"] if joint > 1 and name not in legs and file.lock is None else []
-            ways += ["write 'inertia: repair'"] if inertia.mass > _LEAST else []
+            ways += ["write 'inertia: repair'"] if not massless else []
             raise RobotError(("inertia",), what, ", or ".join(ways))
         ball = inertia.mass * _BALL**2
         model.inertias[joint] = pin.Inertia(inertia.mass, inertia.lever, inertia.inertia + ball * np.eye(3))
         balls.append(body)
     if balls:
         told = ", ".join(balls)
-        notes.append(f"without a moment of inertia in the model, and with that of a ball of {_BALL} m here: {told}")
+        yield f"without a moment of inertia in the model, and with that of a ball of {_BALL} m here: {told}"
 
 
 def _turn(model: pin.Model, feet: tuple[int, ...], file: RobotFile, notes: list[str]) -> float:

@@ -1,20 +1,24 @@
 """A URDF or MJCF as a Pinocchio model with a floating base, its shapes, and the files that it is made of."""
 
-from collections.abc import Iterator
-from dataclasses import dataclass, field
+from collections.abc import Iterator, Mapping
+from dataclasses import dataclass, field, replace
 from pathlib import Path
 from xml.etree import ElementTree
 
 import numpy as np
 import pinocchio as pin
 
-from surefoot.models.robot_file.document import Node
+from surefoot.models.robot_file.base import base_frame, based_on, held_by, moved, told
+from surefoot.models.robot_file.bindings import Binding, Follower
+from surefoot.models.robot_file.document import Node, number
 from surefoot.models.robot_file.files import Document, read_document
 from surefoot.models.robot_file.magnitudes import Part, check_parts
 from surefoot.models.robot_file.quantities import INERTIA, LENGTH, MASS
 from surefoot.models.robot_file.schema import RobotFile
 from surefoot.models.robot_file.shapes import Shape, Told, urdf_shapes
+from surefoot.models.robot_file.sift import told_absent
 from surefoot.models.robot_file.urdf import kinematics
+from surefoot.models.robot_file.urdf_schema import absent_of
 from surefoot.models.types import Array, RobotError
 
 ROOT = "floating base\n"
@@ -38,19 +42,23 @@ class Source:
         model: joint 1 is the floating base.
         visual: what is drawn.
         collision: what touches.
-        mimics: joints that follow others.
+        followers: joints that others move, by name.
+        bindings: what else binds joints to each other.
         notes: what was altered while reading.
         left_out: elements of the file that the robot has not, each line beginning with "left out: ".
         parts: its links, as the file has them.
+        held: joints that hold the base in the world, which the model does not have any more.
     """
 
     model: pin.Model
     visual: tuple[Shape, ...]
     collision: tuple[Shape, ...]
-    mimics: tuple[str, ...] = ()
+    followers: Mapping[str, Follower] = field(default_factory=dict)
+    bindings: tuple[Binding, ...] = ()
     notes: list[str] = field(default_factory=list)
     left_out: list[str] = field(default_factory=list)
     parts: tuple[Part, ...] = ()
+    held: tuple[str, ...] = ()
 
 
 def read_source(file: RobotFile, path: Path) -> Source:
@@ -66,6 +74,7 @@ def read_source(file: RobotFile, path: Path) -> Source:
         from surefoot.models.robot_file.mujoco_source import read_mjcf
 
         source = read_mjcf(file, path, document.mjcf)
+    source = _freed(source)
     _check_parts(source.model, path)
     held = check_parts(source.model, source.parts, source.visual, source.collision, str(path))
     source.visual = held.drawn
@@ -74,9 +83,31 @@ def read_source(file: RobotFile, path: Path) -> Source:
     return source
 
 
+def _freed(source: Source) -> Source:
+    """Without the joints between the world and the base, which its floating base replaces."""
+    model, chain = source.model, held_by(source.model)
+    joint = chain[-1] if chain else 1
+    masses = {part.link: part.mass for part in source.parts}
+    base, held = base_frame(model, joint, masses), (*source.held, *(model.names[one] for one in chain))
+    if held:
+        data = model.createData()
+        pin.computeSubtreeMasses(model, data)
+        source.notes.append(told(held, data.mass[1] - data.mass[joint]))
+    if not moved(model, joint, base):
+        return source
+    model = based_on(model, joint, base)
+    links = {frame.name for frame in model.frames if frame.type == pin.FrameType.BODY}
+    visual, collision = (
+        tuple(shape for shape in shapes if shape.link in links) for shapes in (source.visual, source.collision)
+    )
+    parts = tuple(part for part in source.parts if part.link in links)
+    return replace(source, model=model, visual=visual, collision=collision, parts=parts)
+
+
 def _read_urdf(file: RobotFile, document: Document) -> Source:
-    root, path, source_notes, left_out = document.root, document.path, list[str](), list[str]()
-    mimics = tuple(_mended_joints(root, source_notes))
+    root, path, source_notes = document.root, document.path, list[str]()
+    left_out = list(told_absent(absent_of(root)))
+    followers = dict(_mended_joints(root, source_notes))
     parts = tuple(_checked_inertias(root, file, path, source_notes))
     told = Told(source_notes, left_out)
     visual = urdf_shapes(root, path, "visual", told)
@@ -86,7 +117,7 @@ def _read_urdf(file: RobotFile, document: Document) -> Source:
     except Exception as error:
         raise RobotError(("model",), f"{path}: {_one_line(error)}", "mend it, so that Pinocchio can read it") from None
     model.name = file.name
-    return Source(model, visual, collision, mimics, source_notes, left_out, parts)
+    return Source(model, visual, collision, followers, notes=source_notes, left_out=left_out, parts=parts)
 
 
 def _check_parts(model: pin.Model, path: Path) -> None:
@@ -119,8 +150,8 @@ def _one_line(error: Exception) -> str:
     return " ".join(str(error).split())[:200] or type(error).__name__
 
 
-def _mended_joints(root: Node, notes: list[str]) -> Iterator[str]:
-    """Bound joints that turn without end, since both engines then have one angle for each; yields those that mimic.
+def _mended_joints(root: Node, notes: list[str]) -> Iterator[tuple[str, Follower]]:
+    """Bound joints that turn without end, since both engines then have one angle for each; yields those that follow.
 
     A limit that is not there is zero, which says that a joint has no torque, no speed or no range.
     """
@@ -138,7 +169,7 @@ def _mended_joints(root: Node, notes: list[str]) -> Iterator[str]:
         mimic = joint.find("mimic")
         if mimic is not None:
             joint.remove(mimic)
-            yield name
+            yield name, Follower("mimic", "", mimic.get("joint", ""), number(mimic.get("offset", "0")) or 0.0)
 
 
 def _checked_inertias(root: ElementTree.Element, file: RobotFile, path: Path, notes: list[str]) -> Iterator[Part]:

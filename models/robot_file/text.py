@@ -1,6 +1,6 @@
 """A reduced model as normalised MJCF text with all digits, which both engines read alike."""
 
-from collections.abc import Iterable, Mapping, Sequence
+from collections.abc import Mapping, Sequence
 from xml.etree import ElementTree
 
 import numpy as np
@@ -8,6 +8,7 @@ import pinocchio as pin
 
 from surefoot.models.joints import axis_of
 from surefoot.models.mjcf import Role, add_defaults, numbers
+from surefoot.models.robot_file.engine_mesh import add_mesh
 from surefoot.models.robot_file.legs import SIDES, Leg
 from surefoot.models.robot_file.shapes import Shape
 from surefoot.models.robot_file.source import SITES
@@ -16,9 +17,6 @@ from surefoot.values import dataclass
 
 SOLE_THICKNESS = 0.02
 """Of the contact box over the leg's length [-]."""
-
-_ROUND = 5
-"""Decimals of what is only drawn [m]."""
 
 
 @dataclass(frozen=True, slots=True)
@@ -118,17 +116,14 @@ class _Tree:
         ElementTree.SubElement(body, "site", _pose(frame), name=f"{side}_sole", size="0.005", group="4")
 
     def _add_hull(self, body: ElementTree.Element, hull: Hull, name: str) -> None:
-        mesh = {"vertex": numbers(hull.vertices.ravel()), "face": _integers(hull.faces.ravel().tolist())}
-        ElementTree.SubElement(self._asset, "mesh", mesh, name=shape_name(name))
+        add_mesh(self._asset, shape_name(name), (hull.vertices, hull.faces), drawn=False)
         geom = {"class": Role.COLLISION.value, "type": "mesh", "mesh": shape_name(name)}
         ElementTree.SubElement(body, "geom", geom, name=shape_name(name))
 
     def _add_looks(self, body: ElementTree.Element, joint: int) -> None:
         for index, look in enumerate(self._parts.looks[joint]):
             name = f"{self._parts.bodies[joint - 1]}_look{index}"
-            vertices = np.round(look.vertices, _ROUND) + 0.0
-            mesh = {"vertex": numbers(vertices.ravel()), "face": _integers(look.faces.ravel().tolist())}
-            ElementTree.SubElement(self._asset, "mesh", mesh, name=name, inertia="shell")
+            add_mesh(self._asset, name, (look.vertices, look.faces), drawn=True)
             geom = {"class": Role.VISUAL.value, "type": "mesh", "mesh": name, "material": self._material(look.rgba)}
             ElementTree.SubElement(body, "geom", geom)
 
@@ -151,7 +146,3 @@ def _pose(placement: pin.SE3) -> dict[str, str]:
     if w < 0.0:
         x, y, z, w = -x, -y, -z, -w
     return {"pos": numbers(placement.translation + 0.0), "quat": numbers((w, x, y, z))}
-
-
-def _integers(values: Iterable[int]) -> str:
-    return " ".join(map(str, values))

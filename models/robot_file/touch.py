@@ -7,6 +7,7 @@ import numpy as np
 import pinocchio as pin
 
 from surefoot.engine import mujoco
+from surefoot.models.robot_file.engine_mesh import compiled, taken
 from surefoot.models.robot_file.legs import SIDES, Leg
 from surefoot.models.robot_file.meshes import Faces, hull
 from surefoot.models.robot_file.reduced import Reduced, points_of
@@ -44,7 +45,7 @@ def find_hulls(reduced: Reduced, legs: tuple[Leg, Leg], upper: Upper) -> dict[in
     model = reduced.model
     total = sum(inertia.mass for inertia in model.inertias)
     legged = {joint for leg in legs for joint in leg.joints}
-    wanted = {leg.joints[leg.knee + offset] for leg in legs for offset in (-1, 0)}
+    wanted = {joint for leg in legs for joint in (leg.thigh, leg.shank)}
     wanted |= {arm[-1] for arm in upper.arms}
     wanted |= {
         joint
@@ -58,6 +59,8 @@ def find_hulls(reduced: Reduced, legs: tuple[Leg, Leg], upper: Upper) -> dict[in
             vertices, faces = hull(points, MOST_POINTS)
             if abs(np.linalg.det(vertices[faces]).sum()) / 6.0 > _LEAST_VOLUME:
                 found[joint] = Hull(joint, vertices, faces)
+    sound = taken([(one.vertices, one.faces) for one in found.values()], drawn=False)
+    found = {joint: one for (joint, one), right in zip(found.items(), sound, strict=True) if right}
     shaped = [joint for joint in sorted(wanted) if reduced.collision[joint] or reduced.visual[joint]]
     if flat := [reduced.bodies[joint - 1] for joint in shaped if joint not in found]:
         reduced.left_out.append(f"left out: contact of links whose shapes have no volume: {', '.join(flat)}")
@@ -76,7 +79,7 @@ def overlapping(
         parents: parent of each joint.
         near: the distance [m].
     """
-    model = mujoco.MjModel.from_xml_string(mjcf)
+    model = compiled(mjcf)
     data = mujoco.MjData(model)
     found: dict[tuple[str, str], None] = {}
     for angles in postures:
@@ -124,7 +127,7 @@ def shank_spacing(data: pin.Data, legs: tuple[Leg, Leg], hulls: dict[int, Hull],
     """
     reach = 0.0
     for side, leg in zip((1.0, -1.0), legs, strict=True):
-        knee = leg.joints[leg.knee]
+        knee = leg.shank
         sole = side * (data.oMi[leg.joints[-1]] * leg.sole.placement).translation[1]
         points = hulls[knee].vertices if knee in hulls else np.zeros((1, 3))
         lateral = points @ data.oMi[knee].rotation[1] + data.oMi[knee].translation[1]
@@ -134,7 +137,7 @@ def shank_spacing(data: pin.Data, legs: tuple[Leg, Leg], hulls: dict[int, Hull],
 
 def limbs(legs: tuple[Leg, Leg], upper: Upper, hulls: dict[int, Hull]) -> list[tuple[int, int]]:
     """Pairs of joints whose bodies can meet: thighs and shanks of both legs, arms and thighs, arms, torso and base."""
-    thighs, shanks = ([leg.joints[leg.knee + offset] for leg in legs] for offset in (-1, 0))
+    thighs, shanks = [leg.thigh for leg in legs], [leg.shank for leg in legs]
     pairs = [(thighs[0], thighs[1]), (shanks[0], shanks[1]), (thighs[0], shanks[1]), (thighs[1], shanks[0])]
     for arm in upper.arms:
         lower = [joint for joint in arm[len(arm) // 2 :] if joint in hulls]
@@ -158,7 +161,7 @@ def kept_apart(
     shapes = {joint: shape_name(reduced.bodies[joint - 1]) for joint in hulls}
     if file.keep_apart is None:
         pairs = [(shapes[one], shapes[other]) for one, other in meeting if one in shapes and other in shapes]
-        soles, shanks = [f"{side}_sole_box" for side in SIDES], [leg.joints[leg.knee] for leg in legs]
+        soles, shanks = [f"{side}_sole_box" for side in SIDES], [leg.shank for leg in legs]
         across = [(soles[side], shapes[shanks[1 - side]]) for side in (0, 1) if shanks[1 - side] in shapes]
         return (*pairs, (soles[0], soles[1]), *across)
     found = []

@@ -94,3 +94,46 @@ def test_what_cannot_be_read_is_a_row_with_its_reason(robots, tmp_path) -> None:
     row = robots.examined(robots.Model("biped", "biped.urdf", "somewhere"), str(path), tmp_path / "out")
     assert not row.good and row.walks is None
     assert row.why and "Traceback" not in row.why[0]
+
+
+def test_a_fault_of_one_robot_ends_no_table(robots, monkeypatch, tmp_path) -> None:
+    def fail(*_given):
+        raise ValueError("at least 4 vertices required")
+
+    monkeypatch.setattr(robots, "draft", fail)
+    row = robots.examined(robots.Model("biped", "biped.urdf", "somewhere"), "biped.urdf", tmp_path / "out")
+    assert row.why == ("ValueError: at least 4 vertices required",) and not row.good
+
+
+def test_rows_that_moved_are_told_by_what_moved(robots, tmp_path) -> None:
+    model = robots.Model("robot", "robot.urdf", "somewhere")
+    row = robots.Row(
+        model, reads=True, derives=True, stands=True, walks=True, turns=True, pushed=4, mass=30.0, joints=20
+    )
+    robots.write([row], tmp_path / "before.csv")
+    assert list(robots.moved_from([row], tmp_path / "before.csv")) == []
+    worse, new = replace(row, pushed=3, turns=False), replace(row, model=replace(model, name="other"))
+    assert list(robots.moved_from([worse, new], tmp_path / "before.csv")) == [
+        "robot: turns was yes, is **no**",
+        "robot: pushed was 4 of 4, is 3 of 4",
+        f"other: not in {tmp_path / 'before.csv'}",
+    ]
+
+
+def test_a_table_is_held_against_that_of_before_from_the_command_line(robots, monkeypatch, tmp_path, capsys) -> None:
+    """The exit code is 0 where no row has moved, and 1 where one has."""
+    model = robots.Model("robot", "robot.urdf", "somewhere")
+    (tmp_path / "robot.urdf").write_text("", encoding="utf-8")
+    rows = [robots.Row(model, reads=True), robots.Row(model, reads=True, derives=True)]
+    monkeypatch.setattr(robots, "MODELS", (model,))
+    monkeypatch.setattr(robots, "side_by_side", lambda *_given: iter([rows[0]]))
+    table = str(tmp_path / "table.csv")
+    monkeypatch.setattr("sys.argv", ["robots.py", str(tmp_path), "--csv", table])
+    robots.main()
+    monkeypatch.setattr("sys.argv", ["robots.py", str(tmp_path), "--against", table])
+    for code in (0, 1):
+        with pytest.raises(SystemExit) as end:
+            robots.main()
+        assert end.value.code == code
+        monkeypatch.setattr(robots, "side_by_side", lambda *_given: iter([rows[1]]))
+    assert "robot: derives was –, is yes" in capsys.readouterr().out

@@ -39,6 +39,30 @@ def test_a_tampered_armature_is_detected_in_the_mass_matrix_only() -> None:
     assert difference.bias < 1e-9
 
 
+BEYOND = {
+    "stiffness": ('<joint name="left_knee"', '<joint name="left_knee" stiffness="3"'),
+    "damping": ('<joint name="left_knee"', '<joint name="left_knee" damping="3"'),
+    "frictionloss": ('<joint name="left_knee"', '<joint name="left_knee" frictionloss="3"'),
+    "gravcomp": ('<body name="left_foot"', '<body name="left_foot" gravcomp="1"'),
+    "equality": ("</mujoco>", '<equality><joint joint1="left_knee" joint2="left_hip_pitch"/></equality></mujoco>'),
+    "weld": ("</mujoco>", '<equality><weld body1="left_foot" body2="left_shank"/></equality></mujoco>'),
+    "tendon": (
+        "</mujoco>",
+        '<tendon><fixed stiffness="9"><joint joint="left_knee" coef="1"/></fixed></tendon></mujoco>',
+    ),
+}
+
+
+@pytest.mark.parametrize("kind", BEYOND)
+def test_dynamics_of_a_text_that_pinocchio_knows_nothing_of_are_a_difference(kind: str) -> None:
+    description = describe("humanoid100", RobotOptions())
+    assert BEYOND[kind][0] in description.mjcf
+    pair = EnginePair(_with(description, mjcf=description.mjcf.replace(*BEYOND[kind])))
+    difference = pair.difference(*pair.random_state(np.random.default_rng(7)))
+    assert difference.others == difference.largest > 0.1
+    assert max(difference.mass_matrix, difference.bias, difference.com, difference.momentum) < 1e-9
+
+
 def test_pinocchio_knows_limits_armatures_and_sites() -> None:
     description = describe("humanoid100", RobotOptions())
     model = pinocchio_model(description)

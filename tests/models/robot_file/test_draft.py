@@ -3,12 +3,14 @@
 from pathlib import Path
 
 import biped
+import numpy as np
+import pinocchio as pin
 import pytest
 import typer
 import yaml
 
 from surefoot.models import RobotOptions, describe
-from surefoot.models.robot_file.draft import draft
+from surefoot.models.robot_file.draft import _feet, draft
 from surefoot.models.robot_file.schema import RobotFile, read
 from surefoot.models.types import RobotError
 from surefoot.scenarios.apps.robots.command import new
@@ -122,3 +124,28 @@ def test_names_that_yaml_would_read_as_something_else_are_quoted(tmp_path: Path,
     file = read(tmp_path / "mine.yaml")
     assert (file.model, file.soles().left) == (f"{name}.urdf", name)
     assert describe(str(tmp_path / "mine.yaml"), RobotOptions()).name == file.name
+
+
+def chain(model: pin.Model, name: str, place, joints: int) -> None:
+    """Add a chain of hinges that ends at a place."""
+    parent = 1
+    for number in range(joints):
+        at = pin.SE3(np.eye(3), np.array(place, dtype=float)) if number == 0 else pin.SE3.Identity()
+        parent = model.addJoint(parent, pin.JointModelRX(), at, f"{name}{number}")
+    model.addFrame(pin.Frame(name, parent, 0, pin.SE3.Identity(), pin.FrameType.BODY))
+
+
+def test_feet_are_ends_of_chains_alike_whatever_is_up() -> None:
+    """A head and a hand may be beside each other, and lower along z, in a model whose y is up."""
+    model = pin.Model()
+    model.addJoint(0, pin.JointModelFreeFlyer(), pin.SE3.Identity(), "base")
+    chain(model, "left_toes", (0.4, -0.9, 0.2), 7)
+    chain(model, "right_toes", (-0.4, -0.9, 0.2), 7)
+    chain(model, "head", (0.0, 0.6, 0.0), 18)
+    chain(model, "hand", (0.8, 0.4, 0.0), 19)
+    assert set(_feet(model)) == {"left_toes", "right_toes"}
+    one_sided = pin.Model()
+    one_sided.addJoint(0, pin.JointModelFreeFlyer(), pin.SE3.Identity(), "base")
+    chain(one_sided, "left", (0.0, 0.1, -0.8), 6)
+    chain(one_sided, "right", (0.0, -0.1, -0.8), 7)
+    assert _feet(one_sided) == ("left", "right")

@@ -121,9 +121,9 @@ def test_a_robot_in_parts_is_what_mujoco_reads_of_its_files(tmp_path) -> None:
 
 def test_what_mujoco_refuses_is_said_with_the_line_of_the_file(tmp_path) -> None:
     path = in_parts(tmp_path)
-    (tmp_path / "left.xml").write_text(PARTS["left.xml"].replace('type="capsule"', 'type="capsule" wide="1"'))
+    (tmp_path / "left.xml").write_text(PARTS["left.xml"].replace('type="capsule"', 'type="capsul"'))
     line = next(n for n, text in enumerate(PARTS["left.xml"].splitlines(), 1) if 'type="capsule"' in text)
-    with pytest.raises(RobotError, match=rf"unrecognized attribute: 'wide'.*left\.xml:{line}; mend it"):
+    with pytest.raises(RobotError, match=rf"invalid keyword: 'capsul'.*left\.xml:{line}; mend it"):
         describe(str(path), RobotOptions())
 
 

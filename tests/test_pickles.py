@@ -4,6 +4,7 @@ import importlib
 import inspect
 import pickle
 import pkgutil
+from pathlib import Path
 
 import pytest
 
@@ -44,6 +45,7 @@ GIVEN = {
     "problems": (["f.yaml:1:1: \x1b", "x" * 2 * LONGEST_SENTENCE],),
     "problem": (Problem(("gait", "steps"), "gait.steps is 0", lambda: "use more"),),
     "time, cause": (1.5, "the torque"),
+    "path, topic": (Path("log.mcap"), "/contact"),
     "args": ("what is wrong; what would be right",),
 }
 """Arguments by the names of those that a class takes."""

@@ -32,15 +32,23 @@ def parse_dumped(text: str, name: str) -> Source:
 def dumped_values(text: str, name: str) -> Any:
     """The values of `parse_dumped`, which has the arguments and errors; nobody may change them.
 
+    A text that a program has written gives no key twice; one that does is an error as well.
+
     Keys of the first level are read one by one: in log after log of a campaign most are the same.
     """
     keys = _KEYS.split(text)
     try:
         groups = [_values(part) for part in keys if part]
     except (ScenarioError, ValueError, RecursionError):
-        return parse_dumped(text, name).value
+        return _sound(parse_dumped(text, name))
     whole = {key: value for group in groups for key, value in group.items()}
-    return whole if 0 < len(whole) == len(groups) <= _MOST_KEYS else parse_dumped(text, name).value
+    return whole if 0 < len(whole) == len(groups) <= _MOST_KEYS else _sound(parse_dumped(text, name))
+
+
+def _sound(source: Source) -> Any:
+    if source.problems:
+        raise ScenarioError([source.describe(problem) for problem in source.problems])
+    return source.value
 
 
 _KEYS, _MOST_KEYS = re.compile(r"^(?=[a-z_]+:)", re.MULTILINE), 64
@@ -49,7 +57,7 @@ _KEYS, _MOST_KEYS = re.compile(r"^(?=[a-z_]+:)", re.MULTILINE), 64
 @lru_cache(maxsize=256)
 def _values(text: str) -> dict[str, Any]:
     """The values of one key, with it."""
-    found = parse_dumped(text, "").value
+    found = _sound(parse_dumped(text, ""))
     if not isinstance(found, dict) or len(found) != 1:
         raise ValueError("not one key")
     return found

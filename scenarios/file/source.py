@@ -10,6 +10,7 @@ from typing import IO, Any
 
 import yaml
 
+from surefoot.pointers import IS_A_POINTER, POINTER_BYTES, is_pointer
 from surefoot.scenarios.errors import Key, Problem, ScenarioError
 
 MAX_BYTES = 500_000
@@ -91,9 +92,11 @@ def decoded(file: IO[bytes], name: str, most_bytes: int = MAX_BYTES) -> str:
     """Text of an open file, whoever it is from, of at most so many bytes; its name is for messages.
 
     Raises:
-        ScenarioError: it is too large, or no UTF-8.
+        ScenarioError: it is a Git LFS pointer, too large, or no UTF-8.
     """
     data = file.read(most_bytes + 1)
+    if is_pointer(data[:POINTER_BYTES]):
+        raise ScenarioError([f"{name}: {IS_A_POINTER}"])
     if len(data) > most_bytes:
         raise ScenarioError([f"{name}:1:1: larger than {most_bytes} bytes; a scenario is a short YAML file"])
     try:

@@ -3,6 +3,7 @@
 import tempfile
 from collections.abc import Callable, Hashable, Iterable, Iterator, Mapping
 from functools import cached_property
+from pathlib import Path
 from typing import IO, TYPE_CHECKING, Any, TypeAlias, TypeVar, cast
 
 import numpy as np
@@ -34,6 +35,13 @@ HELD: Reads = {
     "/reference": ("phase",),
 }
 """Topics whose times every digest holds, and the fields that `RunView` itself reads."""
+
+
+def always(fidelity: str) -> tuple[str, ...]:
+    """Topics that every run of a fidelity writes."""
+    body = ("/measurement", "/estimate", "/wbc", "/torque")
+    topics = (*CONTROL_TOPICS, "/planner_state", "/plan", "/footstep")
+    return topics if fidelity == "full" else tuple(topic for topic in topics if topic not in body)
 
 
 TIME = "time_ns"
@@ -157,6 +165,22 @@ class KeptChannel:
 Channel: TypeAlias = "ChannelData | KeptChannel"
 
 
+class AbsentError(LogError):
+    """A log lacks a topic that is needed.
+
+    Attributes:
+        topic: the one.
+    """
+
+    def __init__(self, path: Path, topic: str) -> None:
+        self._path, self.topic = path, topic
+        super().__init__(f"{path}: has no topic {topic}, which its metrics need; give the whole log")
+
+    def __reduce__(self) -> tuple[type["AbsentError"], tuple[Path, str]]:
+        """Survive the way between processes."""
+        return type(self), (self._path, self.topic)
+
+
 class Window:
     """Some channels of a log: of a part of it, or what was kept of the whole.
 
@@ -174,6 +198,9 @@ class Window:
         return topic in self._channels
 
     def __getitem__(self, topic: str) -> Channel:
+        """Messages of a topic; AbsentError where the log has none of it."""
+        if topic not in self._channels:
+            raise AbsentError(self.path, topic)
         return self._channels[topic]
 
 

@@ -5,6 +5,7 @@ from math import inf
 
 import numpy as np
 
+from surefoot.scenarios.errors import LogError
 from surefoot.scenarios.judge import balance, computing_checks, effort, motion_checks
 from surefoot.scenarios.judge.digest import SENSED, Digest, Reads, RunView
 from surefoot.scenarios.judge.finding import Finding, shared
@@ -67,5 +68,5 @@ def _found(check: Callable[[RunView], Finding], run: RunView) -> Finding:
     """What a check finds, also in values that no run has."""
     try:
         return check(run)
-    except (ValueError, IndexError, TypeError) as error:
+    except (LogError, ValueError, IndexError, TypeError) as error:
         return shared(check.__name__, True, None, f"cannot be looked at: {error}")

@@ -55,14 +55,14 @@ class Inspection:
         return {**self.verdict.to_json(), **rest}
 
 
-def inspect(log: Log) -> Inspection:
-    """Inspect a log, also a truncated one.
+def inspect(log: Log, strict: bool = False) -> Inspection:
+    """Inspect a log, also a truncated one; ``strict`` as of `judge`.
 
     Raises:
         LogError: it does not describe a run.
     """
     gathered = digest(log)
-    verdict = judge(log, gathered)
+    verdict = judge(log, gathered, strict)
     start, end = log.time_range()
     span = max(end - start, 1e-9)
     topics = ((topic, log.count(topic)) for topic in log.topics)
@@ -81,7 +81,7 @@ def inspect(log: Log) -> Inspection:
 
 def _file_findings(log: Log, end: float) -> list[Finding]:
     """What is wrong with the file itself."""
-    causes = list(log.losses())
+    causes = [*log.losses(), *(f"not proven to be whole: {absent}" for absent in log.unproven())]
     if RECOVERED in log.metadata:
         causes.insert(0, "recovered from a truncated or damaged log")
     if log.truncated:

@@ -2,7 +2,7 @@
 
 import json
 import math
-from collections.abc import Iterable, Iterator, Mapping
+from collections.abc import Iterable, Iterator, Mapping, Sequence
 from dataclasses import replace
 from html import escape
 from io import BytesIO
@@ -21,8 +21,8 @@ from surefoot.scenarios.file.schema import Scenario
 from surefoot.scenarios.file.source import decoded
 from surefoot.scenarios.file.translate import without
 from surefoot.scenarios.judge.acted import bent_commands, contradictions, idle_commands, not_there, unmet_ground
-from surefoot.scenarios.judge.digest import Digest, RunView
-from surefoot.scenarios.judge.metrics import digest, known, measure
+from surefoot.scenarios.judge.digest import AbsentError, Digest, RunView, always
+from surefoot.scenarios.judge.metrics import OWN, digest, known, measure
 from surefoot.scenarios.judge.pushed import unacted_pushes
 from surefoot.scenarios.judge.walking import steps_added
 from surefoot.scenarios.log import Log
@@ -200,8 +200,13 @@ class Verdict:
             temporary.write_text(json.dumps(self.to_json(), indent=2, allow_nan=False) + "\n", encoding="utf-8")
 
 
-def judge(log: Log, gathered: Digest | None = None) -> Verdict:
-    """Judge a run by its log alone, or by the digest of it that was gathered before.
+def judge(log: Log, gathered: Digest | None = None, strict: bool = False) -> Verdict:
+    """Judge a run by its log alone.
+
+    Args:
+        log: of the run.
+        gathered: the digest of it that was gathered before, if there is one.
+        strict: a log that cannot be proven to be whole fails for that; else a note says it.
 
     Raises:
         LogError: the log does not describe a run.
@@ -211,7 +216,9 @@ def judge(log: Log, gathered: Digest | None = None) -> Verdict:
     criteria = asked(scenario.criteria, scenario.fidelity)
     run = RunView(gathered)
     size = run.constants.similarity
-    untrue = (*_unfinished(log), *_incomplete(log)) or contradictions(run)
+    without = [f"it has no topic {topic}" for topic in always(scenario.fidelity) if topic not in log]
+    unproven = _listed("the log is not proven to be whole", (*log.unproven(), *without))
+    untrue = (*_unfinished(log), *_incomplete(log), *(unproven if strict else ())) or contradictions(run)
     agenda = agenda_of(log, scenario)
     idle = (
         *_unacted(log, agenda, run.constants.control_rate),
@@ -220,11 +227,13 @@ def judge(log: Log, gathered: Digest | None = None) -> Verdict:
         *unmet_ground(run),
     )
     undone = (*idle, *not_there(measured.values, criteria, size.length))
-    reasons = (*untrue, *_few(map(str, told_once(absent))), *undone, *missed(measured.values, criteria))
+    lacking = _lacking(run, [name for name in criteria if _lookup(measured.values, name) is None])
+    reasons = (*untrue, *lacking, *_few(map(str, told_once(absent))), *undone, *missed(measured.values, criteria))
     skipped = [name for name in scenario.criteria if name not in criteria]
     idle_keys = [note for note in agenda.notes if note not in agenda.standing or not run.has("/command")]
     unasked = (f"criterion {name} is not asked: a pendulum has no such metric" for name in skipped)
-    said = (*unasked, *idle_keys, *bent_commands(run), *_degraded(measured.values, steps_added(run)), *measured.notes)
+    degraded = _degraded(measured.values, steps_added(run))
+    said = (*(() if strict else unproven), *unasked, *idle_keys, *bent_commands(run), *degraded, *measured.notes)
     return Verdict(not reasons, reasons, said, measured.values, criteria)
 
 
@@ -239,6 +248,9 @@ def scenario_of(log: Log) -> Scenario:
 
 def _known_part(log: Log) -> tuple[Scenario, list[Problem]]:
     """The scenario of a log, and which of its names nobody knows here."""
+    if SCENARIO_FILE not in log.attachments:
+        what = f"{log.path}: has no attachment {SCENARIO_FILE}, without which its criteria are unknown"
+        raise LogError(f"{what}; give the log as `surefoot run` has written it")
     try:
         text = decoded(BytesIO(log.attachments[SCENARIO_FILE]), SCENARIO_FILE)
         keys = dumped_values(text, SCENARIO_FILE)
@@ -246,8 +258,28 @@ def _known_part(log: Log) -> tuple[Scenario, list[Problem]]:
         # Without its kind the other keys of the ground mean nothing.
         places = [replace(one, key=one.key[:1]) if one.key[0] == "terrain" else one for one in absent]
         return Scenario.model_validate(without(keys, places)), absent
-    except (KeyError, TypeError, ValidationError, ScenarioError, ValueError, RecursionError):
+    except ScenarioError as error:
+        why = f", {error.problems[0]}" if error.problems else ""
+        raise LogError(f"{log.path}: holds no readable scenario; its criteria are unknown{why}") from None
+    except (KeyError, TypeError, ValidationError, ValueError, RecursionError):
         raise LogError(f"{log.path}: holds no readable scenario; its criteria are unknown") from None
+
+
+def _lacking(run: RunView, names: Sequence[str]) -> list[str]:
+    """Say which topics the log has not got, for want of which metrics of some names have no value."""
+    found: list[str] = []
+    for name in names:
+        metric, own = known(name), OWN.get(name.partition(".")[0])
+        found += [topic for topic in metric.needs if not run.has(topic)] if metric else []
+        if own is not None and run.has(*own.needs):
+            try:
+                own(run)
+            except AbsentError as absent:
+                found.append(absent.topic)
+            except Exception:
+                continue
+    topics = ", ".join(dict.fromkeys(found))
+    return [f"the log has no messages of {topics}, which its verdict needs"] if topics else []
 
 
 def missed(metrics: Mapping[str, Any], criteria: Mapping[str, Bound]) -> list[str]:
@@ -334,10 +366,14 @@ def _unacted(log: Log, agenda: Agenda, rate: int) -> list[str]:
 
 
 def _incomplete(log: Log) -> list[str]:
-    """Say what of the log is missing or damaged, if anything is."""
-    losses = log.losses()
-    more = [f"and {len(losses) - _LOSSES_SAID} more"] if len(losses) > _LOSSES_SAID else []
-    return ["the log is incomplete: " + "; ".join((*losses[:_LOSSES_SAID], *more))] if losses else []
+    """Say what of the log is missing, and what is damaged or contradicts the rest, if anything is."""
+    return [*_listed("the log is incomplete", log.lacks()), *_listed("the log is damaged", log.faults())]
+
+
+def _listed(what: str, found: Sequence[str]) -> list[str]:
+    """One sentence with the first of what was found, none where there is nothing."""
+    more = [f"and {len(found) - _LOSSES_SAID} more"] if len(found) > _LOSSES_SAID else []
+    return [f"{what}: {'; '.join((*found[:_LOSSES_SAID], *more))}"] if found else []
 
 
 def _lookup(metrics: Mapping[str, Any], name: str) -> Any:

@@ -11,10 +11,16 @@ from pathlib import Path
 from typing import TYPE_CHECKING, Any
 
 import numpy as np
+from mcap.records import Attachment, Metadata
 
+from surefoot.pointers import IS_A_POINTER, POINTER_BYTES, is_pointer
 from surefoot.scenarios.errors import LogError, nearest, require
+from surefoot.scenarios.log.completeness import Completeness
 from surefoot.scenarios.log.encoding import GREATEST_CHUNK, MAGIC, decompress
+from surefoot.scenarios.log.manifest import RECORD as MANIFEST
+from surefoot.scenarios.log.manifest import not_as_written
 from surefoot.scenarios.log.messages import MESSAGE_BYTES, ChannelData, block_of, content_at, gathered, sound_records
+from surefoot.scenarios.log.one_run import twice_named, twin
 from surefoot.scenarios.log.scan import INDEX_ENTRY, Buffer, ChunkPlace, index_chunk, release, scan
 from surefoot.scenarios.log.spec import FieldSpec, layout_of, record_dtype
 
@@ -37,7 +43,7 @@ class Log:
     Attributes:
         path: where it is.
         size: of the file [bytes].
-        metadata: named records of key and value; of equal names the last.
+        metadata: named records of key and value.
         attachments: contents by name.
         topics: every topic, in order of channel id.
         joints: names of the robot's joints in order; () when the log does not say.
@@ -60,13 +66,18 @@ class Log:
         self.truncated = contents.truncated
         self.damage = contents.damage
         self._verified: set[int] = set()
+        self._completeness = Completeness(contents, data)
         self._index_rest()
-        self.metadata = {record.name: record.metadata for record in contents.metadata}
+        self.metadata = {record.name: record.metadata for record in contents.metadata if record.name != MANIFEST}
         self.attachments = {record.name: record.data for record in contents.attachments}
-        self._ids = {channel.topic: number for number, channel in sorted(contents.channels.items(), reverse=True)}
-        self.topics = tuple(reversed(self._ids))
+        self._ids = {channel.topic: number for number, channel in sorted(contents.channels.items())}
+        self.topics = tuple(self._ids)
         self.joints = _joints(self.metadata)
         self._loaded: dict[str, ChannelData] = {}
+        # Definitions that differ are of two logs, unless the file is damaged.
+        apart = "" if not contents.conflicts or self._completeness.data_fault else contents.conflicts[0]
+        if twice := apart or twice_named(contents) or twin(contents, data, self._is_numeric, self._decompressed):
+            raise LogError(f"{path}: not the log of one run, {twice}; give the log of each run by itself")
 
     def __reduce__(self) -> tuple[Callable[[Path], "Log"], tuple[Path]]:
         """Go to another process by its place, where it is read again."""
@@ -110,6 +121,17 @@ class Log:
         wanted = [topic for topic in topics if topic not in self._loaded]
         if wanted:
             self._loaded.update(self._read(wanted, self.contents.chunks))
+
+    def require(self, use: str, *topics: str) -> None:
+        """Refuse, for a use such as "a replay", a log that lacks one of some topics, or has messages of others alone.
+
+        Raises:
+            LogError: names the topic.
+        """
+        filled = any(topic in self and self.count(topic) for topic in topics)
+        for topic in topics:
+            if topic not in self or (filled and not self.count(topic)):
+                raise LogError(f"{self.path}: has no messages of {topic}, which {use} needs; give a log that has them")
 
     def window(self, topic: str, start: float, end: float) -> ChannelData:
         """Messages of a topic from a time on and up to another one [s]; only their part of the file is read.
@@ -189,36 +211,49 @@ class Log:
         return min([*starts, *loose], default=0) * 1e-9, max([*ends, *loose], default=0) * 1e-9
 
     def verify(self) -> None:
-        """Compare every chunk that has not been compared yet with its checksum; `damage` tells what does not agree.
+        """Compare every chunk that has not been compared yet with its checksum and with its index.
 
-        Of data that agree with their checksum as a whole it is only seen that each chunk can be unpacked.
+        `damage` tells what does not agree. Of data that agree with their checksum as a whole, chunks are not compared
+        with theirs.
         """
         for chunk in self.contents.chunks:
             if chunk.position not in self._verified:
                 self._sound(chunk)
 
-    def losses(self) -> tuple[str, ...]:
-        """Whatever keeps the log from being proven whole, in words, when everything was compared with its checksums.
+    def lacks(self) -> tuple[str, ...]:
+        """What of the log is missing or cannot be read, in words, when everything was looked at.
 
         A log without its index may be whole: the record that ends its data has the checksum of everything before it.
         """
         self.verify()
         before = self.metadata.get(RECOVERED, {}).get("lost", "")
-        return tuple(dict.fromkeys(loss for loss in (before, self._data_fault, *self.damage) if loss))
+        end = f"its end is missing, it can be read up to {self.time_range()[1]:.3f} s"
+        cut = end if self.contents.data_end is None else ""
+        lost, _ = not_as_written(self._records)
+        return tuple(dict.fromkeys(filter(None, (before, cut, *lost, *self.damage, self._completeness.missing()))))
 
-    @cached_property
-    def _data_fault(self) -> str:
-        """Why the data as a whole are not those that were written; empty if they are."""
-        end, crc, step = self.contents.data_end, 0, 1 << 22
-        if end is None:
-            return f"its end is missing, it can be read up to {self.time_range()[1]:.3f} s"
-        if not self.contents.data_crc:
-            return "it has no checksum of its data, by which it could be shown to be whole"
-        data = memoryview(self.data)  # of a memory map, whose slices would be copies
-        for start in range(0, end, step):
-            crc = zlib.crc32(data[start : min(start + step, end)], crc)
-            release(self.data, start, start + step)
-        return "" if crc == self.contents.data_crc else "its data do not agree with their checksum"
+    def faults(self) -> tuple[str, ...]:
+        """What of the log contradicts the rest, in words, when everything was looked at."""
+        self.verify()
+        _, changed = not_as_written(self._records)
+        return tuple(dict.fromkeys(filter(None, (*changed, *self._completeness.contradictions()))))
+
+    @property
+    def _records(self) -> list[Metadata | Attachment]:
+        return [*self.contents.metadata, *self.contents.attachments]
+
+    def losses(self) -> tuple[str, ...]:
+        """Whatever of the log is missing or damaged, in words: all of `lacks` and of `faults`."""
+        return (*self.lacks(), *self.faults())
+
+    def unproven(self) -> tuple[str, ...]:
+        """Which evidence there is not that the log is as its run has written it, in words.
+
+        Other tools that write a log again may leave out what is needed for it, and change nothing else.
+        """
+        self.verify()
+        before = self.metadata.get(RECOVERED, {}).get("unproven", "")
+        return tuple(dict.fromkeys(filter(None, (before, *self._completeness.unproven()))))
 
     def sound_chunks(self) -> Iterator[tuple[ChunkPlace, bytes]]:
         """Every chunk that agrees with its checksum, and its decompressed bytes; the others add to `damage`."""
@@ -292,7 +327,11 @@ class Log:
         """Decompressed bytes of a chunk if they agree with its checksum, as all do of data that agree with theirs."""
         data, known = self._decompressed(chunk), chunk.position in self._verified
         self._verified.add(chunk.position)
-        if data is None or not chunk.crc or not self._data_fault or zlib.crc32(data) == chunk.crc:
+        if data is None:
+            return None
+        if self._completeness.proven or not chunk.crc or zlib.crc32(data) == chunk.crc:
+            if not known:
+                self._completeness.look(chunk, data)
             return data
         if not known:
             self.damage.append(f"the chunk at byte {chunk.position} does not agree with its checksum")
@@ -311,10 +350,16 @@ class Log:
         """Index chunks that stand without an index, or whose channels are defined only inside them."""
         for chunk in self.contents.chunks:
             foreign = chunk.channels - self.contents.channels.keys()
-            if not chunk.places or chunk.index_damaged or foreign:
+            doubled = len(chunk.channels) < len(chunk.places) // 3
+            if not chunk.places or chunk.index_damaged or foreign or doubled:
                 data = self._decompressed(chunk)
                 if data is not None:
                     chunk.made = index_chunk(data, self.contents)
+        used = set().union(*(chunk.used for chunk in self.contents.chunks))
+        for chunk in self.contents.chunks:  # one may define what only later ones use
+            if not used - self.contents.channels.keys():
+                break
+            index_chunk(self._decompressed(chunk) or b"", self.contents)
 
 
 def _joints(metadata: Mapping[str, Mapping[str, str]]) -> tuple[str, ...]:
@@ -339,6 +384,8 @@ def read(path: str | Path) -> Log:
             raise LogError(f"{path}: not an MCAP file but a device or a pipe; give a log file")
         with path.open("rb") as file:
             magic = file.read(len(MAGIC))
+            if is_pointer(magic + file.read(POINTER_BYTES)):
+                raise LogError(f"{path}: {IS_A_POINTER}")
             if magic != MAGIC:
                 raise LogError(f"{path}: not an MCAP file; give a log that `surefoot run` has written")
             return Log(path, mmap.mmap(file.fileno(), 0, access=mmap.ACCESS_READ))

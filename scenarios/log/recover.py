@@ -39,9 +39,12 @@ def recover(source: str | Path, target: str | Path, replace: bool = False) -> Re
     """Write everything sound of a log to a new file, which appears under its name only when it is whole.
 
     Raises:
-        LogError: the source is no MCAP file, the target is the source, exists or cannot be written.
+        LogError: the source is no MCAP file, or one of which nothing can be read; the target is the source, exists or
+            cannot be written.
     """
     log, target = read(source), Path(target)
+    if not (log.metadata or log.attachments or any(map(log.count, log.topics))):
+        raise LogError(f"{log.path}: there is nothing of a log to recover; give a file that holds some of one")
     if target.exists() and target.samefile(log.path):
         raise LogError(f"{target}: the log that is to be recovered; give another file to write to")
     with write_whole(target, replace) as temporary, temporary.open("wb") as file:
@@ -65,7 +68,9 @@ class _Rewriter:
         for record in contents.metadata:
             if record.name != RECOVERED:
                 self._write(self._summary.add_metadata(record, self._position))
-        origin = Metadata(RECOVERED, {"from": shown(self._log.path.name), "lost": "; ".join(self._log.losses())})
+        found = {"lost": self._log.losses(), "unproven": self._log.unproven()}
+        said = {name: "; ".join(words) for name, words in found.items()}
+        origin = Metadata(RECOVERED, {"from": shown(self._log.path.name), **said})
         self._write(self._summary.add_metadata(origin, self._position))
         for attachment in contents.attachments:
             self._write(self._summary.add_attachment(attachment, self._position))

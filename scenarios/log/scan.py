@@ -2,6 +2,7 @@
 
 import mmap
 import struct
+import zlib
 from array import array
 from bisect import bisect_right
 from collections.abc import Callable, Iterator
@@ -14,7 +15,7 @@ import numpy as np
 from mcap.data_stream import ReadDataStream
 from mcap.exceptions import McapError
 from mcap.opcode import Opcode
-from mcap.records import Attachment, Channel, ChunkIndex, Footer, Metadata, Schema
+from mcap.records import Attachment, Channel, ChunkIndex, Footer, Metadata, Schema, Statistics
 from numpy.typing import NDArray
 
 from surefoot.scenarios.log.encoding import MAGIC
@@ -29,10 +30,18 @@ _OFFSET = struct.Struct("<Q")
 _INDEX_RECORD = struct.Struct("<BQHI")
 _RELEASE_BYTES = 1 << 25
 _CHUNK = struct.Struct("<QQQII")
-_CRC = struct.Struct("<I")
+_CRC = _LENGTH = struct.Struct("<I")
+_length = _LENGTH.unpack_from
 _MESSAGE = struct.Struct("<HIQQ")
 _PRIVATE = 0x80
+_DATA_ALONE = {
+    *(Opcode.HEADER, Opcode.MESSAGE, Opcode.CHUNK, Opcode.MESSAGE_INDEX, Opcode.ATTACHMENT, Opcode.METADATA),
+    Opcode.DATA_END,
+}
+"""Records that stand before the end of the data alone."""
+
 _T = TypeVar("_T")
+_D = TypeVar("_D", Schema, Channel)
 
 
 @dataclass(slots=True)
@@ -71,6 +80,14 @@ class ChunkPlace:
         """Ids of the channels that the chunk has messages of, by the index."""
         return set(self.places[::3] if self.made is None else self.made)
 
+    @property
+    def used(self) -> set[int]:
+        """Those of them that it has one message of or more."""
+        if self.made is not None:
+            return set(self.made)
+        places = self.places
+        return {places[at] for at in range(0, len(places), 3) if places[at + 2] > places[at + 1]}
+
     def count(self, channel_id: int) -> int:
         """Messages of a channel."""
         if self.made is not None:
@@ -106,8 +123,9 @@ class Contents:
     """What a scan found.
 
     Attributes:
-        schemas: by id.
-        channels: by id.
+        schemas: by id, as the first record has it.
+        channels: by id, likewise.
+        conflicts: schemas and channels that a later record defines otherwise, in words.
         chunks: in file order.
         loose: index of the messages outside chunks, by channel id.
         metadata: records in file order.
@@ -115,12 +133,19 @@ class Contents:
         data_end: where the record that ends the data begins; None when it is missing.
         data_crc: CRC-32 of everything before it by that record, 0 for none.
         truncated: whether the end of the file is missing.
+        statistics: how much there is by the summary; None where it does not say.
+        defined_last: schemas and channels in the summary, as kind and encoded record.
+        index_sound: whether the summary agrees with its checksum, if it has one.
+        behind: what follows the end of the file [bytes].
+        another: whether that begins as a log does.
         known: positions of the chunks by the summary, once it was asked.
         damage: what could not be read, in words.
+        faults: what contradicts the rest, in words.
     """
 
     schemas: dict[int, Schema] = field(default_factory=dict)
     channels: dict[int, Channel] = field(default_factory=dict)
+    conflicts: list[str] = field(default_factory=list)
     chunks: list[ChunkPlace] = field(default_factory=list)
     loose: dict[int, list[tuple[int, int]]] = field(default_factory=dict)
     metadata: list[Metadata] = field(default_factory=list)
@@ -128,8 +153,14 @@ class Contents:
     data_end: int | None = None
     data_crc: int = 0
     truncated: bool = True
+    statistics: Statistics | None = None
+    defined_last: list[tuple[int, bytes]] = field(default_factory=list)
+    index_sound: bool = True
+    behind: int = 0
+    another: bool = False
     known: list[int] | None = None
     damage: list[str] = field(default_factory=list)
+    faults: list[str] = field(default_factory=list)
 
 
 def scan(data: Buffer) -> Contents:
@@ -153,6 +184,9 @@ def scan(data: Buffer) -> Contents:
                 contents.chunks[-1].index_damaged = True
         position = _take_indexes(data, end, contents) if opcode == Opcode.CHUNK else end
     release(data, released, size)
+    if not contents.truncated:
+        begin = position + len(MAGIC)
+        contents.behind, contents.another = size - begin, data[begin : begin + len(MAGIC)] == MAGIC
     return contents
 
 
@@ -176,14 +210,47 @@ def records_in(data: Buffer) -> Iterator[tuple[int, int, slice]]:
         position = body + length
 
 
-def _take_definition(opcode: int, body: bytes, contents: Contents) -> None:
-    """Note a schema or channel record."""
+def take_definition(opcode: int, body: bytes, contents: Contents) -> None:
+    """Note a schema or channel record inside a chunk; one that stands there again has to be the same."""
+    try:
+        _define(opcode, body, contents)
+    except _UNREADABLE:
+        contents.damage.append(f"a {_name(opcode)} record in a chunk is damaged")
+
+
+def _define(opcode: int, body: bytes, contents: Contents) -> None:
     if opcode == Opcode.SCHEMA:
         schema = _definition(Schema.read, body)
-        contents.schemas.setdefault(schema.id, schema)
+        _agree(contents.schemas.setdefault(schema.id, schema), schema, "schema", contents)
     elif opcode == Opcode.CHANNEL:
         channel = _definition(Channel.read, body)
-        contents.channels.setdefault(channel.id, channel)
+        if channel.id not in contents.channels:
+            _keys_once(body, 4, 2, f"the metadata of {channel.topic}", contents)
+        _agree(contents.channels.setdefault(channel.id, channel), channel, "channel", contents)
+
+
+def _agree(first: _D, second: _D, what: str, contents: Contents) -> None:
+    if first != second:
+        names = [one.name if isinstance(one, Schema) else one.topic for one in (first, second)]
+        apart = f"as {names[0]} and as {names[1]}" if names[0] != names[1] else f"as {names[0]}, in two ways"
+        contents.conflicts.append(f"its {what} {first.id} is defined {apart}")
+
+
+def _keys_once(body: bytes, at: int, texts: int, what: str, contents: Contents) -> None:
+    """Look for a key that stands twice in the pairs of a record's body, behind so many texts from an offset on."""
+    (length,), seen = _length(body, at), set()
+    for _ in range(texts):
+        at += _LENGTH.size + length
+        (length,) = _length(body, at)
+    at, end = at + _LENGTH.size, at + _LENGTH.size + length
+    while at < end:
+        (length,) = _length(body, at)
+        key = body[at + _LENGTH.size : at + _LENGTH.size + length]
+        if key in seen:
+            contents.conflicts.append(f"{what} holds key '{key.decode(errors='replace')}' twice")
+        seen.add(key)
+        at += _LENGTH.size + length
+        at += _LENGTH.size + _length(body, at)[0]
 
 
 def index_chunk(data: bytes, contents: Contents) -> dict[int, NDArray[np.void]]:
@@ -194,7 +261,7 @@ def index_chunk(data: bytes, contents: Contents) -> dict[int, NDArray[np.void]]:
             number, time = _message_header(data, body.start)
             entries.setdefault(number, []).append((time, offset))
         else:
-            _take_definition(opcode, data[body], contents)
+            take_definition(opcode, data[body], contents)
     return {number: np.array(found, INDEX_ENTRY) for number, found in entries.items()}
 
 
@@ -223,9 +290,8 @@ _UNREADABLE = (McapError, ValueError, struct.error, OverflowError, MemoryError)
 
 
 def _take(opcode: int, data: Buffer, position: int, body: slice, contents: Contents) -> None:
-    if contents.data_end is not None:  # a summary, which says nothing that the data have not said
-        if opcode == Opcode.FOOTER:
-            contents.truncated = data[body.stop : body.stop + len(MAGIC)] != MAGIC
+    if contents.data_end is not None:
+        _take_summary(opcode, data, position, body, contents)
     elif opcode == Opcode.DATA_END:
         (contents.data_crc,) = _CRC.unpack(data[body])
         contents.data_end = position
@@ -241,11 +307,34 @@ def _take(opcode: int, data: Buffer, position: int, body: slice, contents: Conte
         channel_id, time = _message_header(data, body.start)
         contents.loose.setdefault(channel_id, []).append((time, position))
     elif opcode in (Opcode.SCHEMA, Opcode.CHANNEL):
-        _take_definition(opcode, data[body], contents)
+        _define(opcode, data[body], contents)
     elif opcode == Opcode.METADATA:
         contents.metadata.append(_decode(Metadata.read, data[body]))
+        _keys_once(data[body], 0, 1, f"metadata '{contents.metadata[-1].name}'", contents)
     elif opcode == Opcode.ATTACHMENT:
         contents.attachments.append(_decode(Attachment.read, data[body]))
+        (crc,) = _CRC.unpack(data[body][-_CRC.size :])
+        if crc and crc != zlib.crc32(data[body][: -_CRC.size]):
+            contents.faults.append(f"attachment '{contents.attachments[-1].name}' does not agree with its checksum")
+    elif opcode == Opcode.HEADER and position != len(MAGIC):
+        contents.faults.append(f"a second header stands at byte {position}")
+
+
+def _take_summary(opcode: int, data: Buffer, position: int, body: slice, contents: Contents) -> None:
+    """Behind the data stand the end, how much there should be, and definitions again, or of chunks alone."""
+    if opcode == Opcode.FOOTER:
+        contents.truncated = data[body.stop : body.stop + len(MAGIC)] != MAGIC
+        footer = _decode(Footer.read, data[body])
+        crc = zlib.crc32(data[footer.summary_start : body.stop - _CRC.size]) if footer.summary_start else 0
+        contents.index_sound = not footer.summary_crc or footer.summary_crc == crc
+        for kind, record in contents.defined_last if contents.index_sound else ():
+            _define(kind, record, contents)
+    elif opcode == Opcode.STATISTICS:
+        contents.statistics = _decode(Statistics.read, data[body])
+    elif opcode in (Opcode.SCHEMA, Opcode.CHANNEL):
+        contents.defined_last.append((opcode, data[body]))
+    elif opcode in _DATA_ALONE:
+        contents.faults.append(f"a {_name(opcode)} record stands at byte {position}, behind the end of the data")
 
 
 def _chunk(data: Buffer, position: int, body: slice) -> ChunkPlace:

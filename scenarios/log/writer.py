@@ -14,6 +14,7 @@ from surefoot.native.library import library
 from surefoot.scenarios.errors import LogError
 from surefoot.scenarios.log.channel import ChannelWriter, Clock, MessageWriter, Waiting
 from surefoot.scenarios.log.encoding import MAGIC, Summary, chunk_head, compress, encoded
+from surefoot.scenarios.log.manifest import manifest
 from surefoot.scenarios.log.rows import CompiledRows, RowLayout, RowWriter
 from surefoot.scenarios.log.spec import PACKAGE, ChannelSpec
 from surefoot.scenarios.output import reason
@@ -173,11 +174,11 @@ class LogWriter:
         self._rows: list[RowWriter] = []
         self._begin_clock()
         beginning = bytearray(MAGIC + encoded(Header(_PROFILE, _LIBRARY)))
-        for name, values in metadata.items():
-            beginning += self._summary.add_metadata(Metadata(name, dict(values)), len(beginning))
-        for file in attachments:
-            record = Attachment(0, 0, file.name, file.media_type, file.data)
-            beginning += self._summary.add_attachment(record, len(beginning))
+        head: list[Metadata | Attachment] = [Metadata(name, dict(values)) for name, values in metadata.items()]
+        head += [Attachment(0, 0, file.name, file.media_type, file.data) for file in attachments]
+        for record in (*head, *([manifest(head)] if head else ())):
+            add = self._summary.add_metadata if isinstance(record, Metadata) else self._summary.add_attachment
+            beginning += add(record, len(beginning))
         self._output = Output(path, bytes(beginning))
 
     def channel(self, spec: ChannelSpec) -> ChannelWriter:

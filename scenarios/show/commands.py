@@ -28,6 +28,7 @@ class InspectOptions:
     start: From = None
     end: To = None
     export: Annotated[Path | None, typer.Option(help="Write the topic to a .csv, .npz or .parquet file.")] = None
+    strict: Annotated[bool, typer.Option("--strict", help="Fail a log that cannot be proven to be whole.")] = False
     force: Replace = False
     as_json: AsJson = False
 
@@ -44,11 +45,13 @@ def inspect(told: InspectOptions) -> None:
 
     opened = read(told.log)
     if told.topic is not None:
+        if told.strict:
+            raise LogError("--strict is of the verdict; leave --topic away")
         _show_topic(opened, told.topic, told)
         return
     if (told.field, told.start, told.end, told.export) != (None, None, None, None):
         raise LogError("--field, --from, --to and --export choose from one topic; name it with --topic")
-    found, touches = inspection.inspect(opened), touching(opened)
+    found, touches = inspection.inspect(opened, told.strict), touching(opened)
     if told.as_json:
         bodies = [touch._asdict() for touch in touches]
         typer.echo(json.dumps({**found.to_json(), "touching": bodies}, allow_nan=False))

@@ -48,8 +48,8 @@ class Comparison:
         records: metadata records that differ, other than the versions.
         metrics: of both logs, all of them.
         channels: common to both, in the order in which they part.
-        only_a: topics in the first log alone.
-        only_b: topics in the second log alone.
+        only_a: topics of which the first log alone has messages.
+        only_b: topics of which the second log alone has messages.
         notes: what could not be judged, in words.
         unread: what could not be read or compared, in words.
     """
@@ -148,8 +148,8 @@ def compare(path_a: Path, path_b: Path, tolerance: float = TOLERANCE) -> tuple[C
         records=parted(a.metadata, b.metadata, but=VERSIONS_RECORD),
         metrics=metrics,
         channels=compare_channels(a, b, tolerance),
-        only_a=tuple(topic for topic in topics_a if topic not in b),
-        only_b=tuple(topic for topic in topics_b if topic not in a),
+        only_a=tuple(topic for topic in topics_a if topic not in b and a.count(topic)),
+        only_b=tuple(topic for topic in topics_b if topic not in a and b.count(topic)),
         notes=notes,
         unread=(*_damage("A", a, common), *_damage("B", b, common)),
     )
@@ -197,7 +197,7 @@ def _own(log: Log) -> tuple[str, ...]:
 
 def _damage(name: str, log: Log, common: tuple[str, ...]) -> list[str]:
     notes = [f"{name} is truncated: it can be read up to {log.time_range()[1]:.3f} s"] if log.truncated else []
-    notes += [f"{name}: {damage}" for damage in dict.fromkeys(log.damage)]
+    notes += [f"{name}: {loss}" for loss in log.losses()]
     return notes + [f"{topic} of {name} has no layout of fixed size: not compared" for topic in unreadable(log, common)]
 
 

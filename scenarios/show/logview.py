@@ -53,7 +53,7 @@ class LogView:
         times = np.concatenate([np.zeros(0), *(channel.time for channel in self._channels.values())])
         times = times[(times >= 0.0) & (times < _GREATEST)]
         if not len(times):
-            raise LogError(f"{log.path}: holds no messages to draw; give a log that `surefoot run` has written")
+            raise LogError(f"{log.path}: {_nothing(log)}; give a log that `surefoot run` has written")
         first, last = float(times.min()), float(times.max())
         self.start, self.end = first if start is None else start, last if end is None else end
         if not np.any((times >= self.start) & (times <= self.end)):
@@ -155,6 +155,18 @@ def _last_alone(stance: Array) -> Array:
         return np.full(len(stance), -1.0)
     rows = np.maximum.accumulate(rows)
     return np.asarray(stance[np.where(rows >= 0, rows, int(np.argmax(stance >= 0)))])
+
+
+_TOPICS_SAID = 5
+
+
+def _nothing(log: Log) -> str:
+    """Why nothing of a log can be drawn."""
+    filled = [topic for topic in log.topics if log.count(topic)]
+    if not filled:
+        return "holds no messages to draw"
+    names = ", ".join(filled[:_TOPICS_SAID]) + (", ..." if len(filled) > _TOPICS_SAID else "")
+    return f"holds messages of {names}, and none of them is a channel of a run that can be drawn"
 
 
 def _window(start: float | None, end: float | None) -> str:

@@ -50,6 +50,10 @@ def choose_frames(run: RunView, window: ReplayWindow) -> Frames:
     return Frames(time[sound], rows[sound])
 
 
+_SHOWN = ("/truth", "/measurement", "/estimate", "/contact", "/reference")
+"""Topics of which a replay is made."""
+
+
 def extract(log: Log, window: ReplayWindow | None = None) -> Replay:
     """Read what there is to show in a window of a log of full physics, also a truncated one; all of it by default.
 
@@ -60,7 +64,8 @@ def extract(log: Log, window: ReplayWindow | None = None) -> Replay:
     if run.constants.fidelity == "pendulum":
         raise LogError(f"{log.path}: a pendulum has no body to replay; run the scenario with fidelity full")
     mjcf, model = world(log)
-    log.load("/truth", "/measurement", "/estimate", "/contact", "/reference")
+    log.require("a replay", *_SHOWN)
+    log.load(*_SHOWN)
     frames = choose_frames(run, window)
     configurations = run.field("/truth", "q")[frames.rows]
     if configurations.shape[1] != model.nq:

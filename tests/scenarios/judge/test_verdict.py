@@ -5,10 +5,14 @@ import math
 from contextlib import suppress
 
 import pytest
+from mcap.reader import make_reader
+from mcap.writer import Writer
 
+import surefoot
 from surefoot.scenarios.errors import LogError
 from surefoot.scenarios.file.criteria import Bound
 from surefoot.scenarios.file.schema import Scenario
+from surefoot.scenarios.judge.digest import always
 from surefoot.scenarios.judge.verdict import judge, missed
 from surefoot.scenarios.log import read
 from surefoot.scenarios.log.recover import recover
@@ -150,6 +154,73 @@ def test_a_bound_holds_to_the_last_digit(value):
             over = math.nextafter(value, beyond)
             assert missed({"speed_mean": given}, criteria) == []
             assert len(missed({"speed_mean": [over] if isinstance(limit, tuple) else over}, criteria)) == 1
+
+
+@pytest.fixture
+def again(tmp_path, robot, motion, two_steps):
+    """Writes a passing log again by the stock library, without a checksum of its data, and without some topics."""
+    path = run_scenario(two_steps, tmp_path, None, motion(), robot).log
+
+    def write(*left_out, **options):
+        out = tmp_path / "again.mcap"
+        with path.open("rb") as source, out.open("wb") as target:
+            reader, writer = make_reader(source), Writer(target, **options)
+            writer.start()
+            for one in reader.iter_metadata():
+                writer.add_metadata(one.name, one.metadata)
+            for one in reader.iter_attachments():
+                writer.add_attachment(one.create_time, one.log_time, one.name, one.media_type, one.data)
+            numbers = {}
+            for schema, channel, one in reader.iter_messages():
+                if channel.topic in left_out:
+                    continue
+                if channel.id not in numbers:
+                    known = writer.register_schema(schema.name, schema.encoding, schema.data)
+                    numbers[channel.id] = writer.register_channel(channel.topic, "protobuf", known, channel.metadata)
+                writer.add_message(numbers[channel.id], one.log_time, one.data, one.publish_time, one.sequence)
+            writer.finish()
+        return read(out)
+
+    return write
+
+
+@pytest.mark.parametrize("options", [{}, {"use_chunking": False}, {"enable_crcs": False}])
+def test_a_log_without_a_checksum_of_its_data_is_judged_and_strictly_fails(again, options):
+    verdict, strict = judge(again(**options)), judge(again(**options), strict=True)
+    unproven = "the log is not proven to be whole: it has no checksum of its data"
+    assert verdict.passed
+    assert unproven in verdict.notes
+    assert strict.reasons == (unproven,)
+    assert unproven not in strict.notes
+    assert judge(again(enable_data_crcs=True), strict=True).passed
+
+
+def test_a_log_that_lacks_a_topic_names_it(again):
+    unneeded = judge(again("/timing", enable_data_crcs=True))
+    assert unneeded.passed
+    assert unneeded.notes == ("the log is not proven to be whole: it has no topic /timing",)
+    needed = judge(again("/contact", enable_data_crcs=True))
+    assert needed.reasons[0] == "the log has no messages of /contact, which its verdict needs"
+    assert all(isinstance(note, str) and "KeyError" not in note for note in needed.notes)
+    lame = judge(again("/measurement", enable_data_crcs=True))
+    assert "the log is not proven to be whole: it has no topic /measurement" in lame.notes
+
+
+def test_every_run_writes_the_topics_that_are_said_to_be_in_each(tmp_path):
+    for fidelity in ("full", "pendulum"):
+        run = surefoot.run(surefoot.load("stand", {"fidelity": fidelity, "duration": 0.3}), out=tmp_path)
+        assert set(always(fidelity)) <= set(read(run.log).topics)
+        assert not [note for note in run.verdict.notes if "proven" in note]
+
+
+@pytest.mark.parametrize("extra", ["seed: 5\n", "criteria: {fell: false}\n"])
+@pytest.mark.parametrize("first", [True, False])
+def test_a_key_twice_in_the_scenario_of_a_log_decides_nothing(tmp_path, robot, motion, two_steps, extra, first):
+    log = read(run_scenario(two_steps, tmp_path, None, motion(), robot).log)
+    text = log.attachments["scenario.yaml"].decode()
+    log.attachments["scenario.yaml"] = (extra + text if first else text + extra).encode()
+    with pytest.raises(LogError, match=f"its criteria are unknown, .*'{extra.partition(':')[0]}' is given twice"):
+        judge(log)
 
 
 def test_thousands_of_unknown_criteria_make_no_long_verdict(tmp_path, robot, motion, two_steps):

@@ -66,6 +66,13 @@ def test_unknown_names_are_answered_with_the_nearest(whole):
         log["/y"].field("value")
 
 
+def test_a_use_names_the_topic_that_it_needs(whole):
+    log = read(whole)
+    log.require("a replay", "/x", "/y")
+    with pytest.raises(LogError, match="has no messages of /z, which a replay needs; give a log that has them"):
+        log.require("a replay", "/x", "/z")
+
+
 def test_no_log_at_all(tmp_path):
     (tmp_path / "empty").write_bytes(b"")
     (tmp_path / "text").write_text("hello")

@@ -96,7 +96,7 @@ def test_the_stock_reader_decodes_every_channel(tmp_path, compression):
                 assert np.array_equal(np.ravel(getattr(decoded, field.name)), np.ravel(value)), field
         summary = reader.get_summary()
         assert summary.statistics.message_count == 3 * len(specs)
-        assert [record.name for record in reader.iter_metadata()] == ["run"]
+        assert [record.name for record in reader.iter_metadata()] == ["run", "manifest"]
         assert [record.data for record in reader.iter_attachments()] == [b"<mujoco/>"]
 
 

@@ -1,0 +1,121 @@
+"""A flight recorder: of a run however long, a log that has its beginning and what came last."""
+
+from collections.abc import Iterable
+from pathlib import Path
+
+from mcap.records import Metadata
+
+from surefoot.scenarios.errors import LogError
+from surefoot.scenarios.log.file import Head, IndexedChunk, LogFile
+
+KEPT_RECORD = "kept"
+"""Metadata record of a log that lacks the beginning of its run: how much is kept, from when on, and what was dropped.
+
+Its ``keep`` is the time that is kept at least [s], ``from`` the time from which on the log has everything [s] and
+``messages_dropped`` the number of messages before.
+"""
+
+
+class FlightRecorder:
+    """A log of the last of a run; see `surefoot.scenarios.log.file.Sink`.
+
+    Two files are written at once. The log holds at least what is to be kept. Once the other, begun when the log was
+    full, holds as much, it takes the name of the log, and a new one is begun. So a process that is killed at any moment
+    leaves a log that has lost no more of its end than one that keeps everything. It holds at most twice the time that
+    is to be kept, and both together three times.
+
+    Args:
+        path: of the log.
+        head: its first records.
+        keep_ns: time that is to be kept [ns].
+
+    Raises:
+        LogError: as of `surefoot.scenarios.log.file.Output`.
+    """
+
+    def __init__(self, path: Path, head: Iterable[Head], keep_ns: int) -> None:
+        self._head, self._keep_ns = list(head), keep_ns
+        self._log = LogFile(path, self._head)
+        self._successor: LogFile | None = None
+        self._begun_ns: int | None = None  # of the file that was begun last
+        self._messages = 0
+
+    @property
+    def path(self) -> Path:
+        """Where the log is."""
+        return self._log.path
+
+    @property
+    def closed(self) -> bool:
+        """See `Sink`."""
+        return self._log.closed
+
+    def add(self, record: Head) -> None:
+        """See `Sink`; every log to come has the record."""
+        self._head.append(record)
+        try:
+            self._log.add(record)
+        except LogError:
+            self._drop_successor()
+            raise
+        if self._successor is not None:
+            self._successor.add(record)
+
+    def add_chunk(self, indexed: IndexedChunk) -> None:
+        """See `Sink`."""
+        start, end = indexed.chunk.message_start_time, indexed.chunk.message_end_time
+        if self._begun_ns is None:
+            self._begun_ns = start
+        if self._successor is None and start - self._begun_ns >= self._keep_ns:
+            self._begin_successor(start)
+        try:
+            self._log.add_chunk(indexed)
+        except LogError:
+            self._drop_successor()
+            raise
+        self._messages += sum(indexed.counts.values())
+        if self._successor is not None:
+            self._successor.add_chunk(indexed)
+            if end - self._begun_ns >= self._keep_ns:
+                self._hand_over(self._successor)
+
+    def finish(self) -> None:
+        """See `Sink`."""
+        try:
+            self._log.finish()
+        finally:
+            self._drop_successor()
+
+    def discard(self) -> None:
+        """See `Sink`."""
+        self._drop_successor()
+        self._log.discard()
+
+    def _begin_successor(self, start_ns: int) -> None:
+        kept = {
+            "keep": f"{1e-9 * self._keep_ns:.6f}",
+            "from": f"{1e-9 * start_ns:.6f}",
+            "messages_dropped": f"{self._messages}",
+        }
+        path = self.path.with_name(f"{self.path.name}.next")
+        path.unlink(missing_ok=True)  # of a recorder that was killed, whose log was taken away
+        self._successor = LogFile(path, [*self._head, Metadata(KEPT_RECORD, kept)], self._given_up)
+        self._begun_ns = start_ns
+
+    def _hand_over(self, successor: LogFile) -> None:
+        try:
+            successor.output.move(self.path)
+        except OSError as error:
+            raise self._given_up(error) from None
+        self._log.output.close()
+        self._log, self._successor = successor, None
+
+    def _given_up(self, error: OSError) -> LogError:
+        """There is no room for the successor, nor for the log soon."""
+        self._drop_successor()
+        return self._log.output.given_up(error)
+
+    def _drop_successor(self) -> None:
+        if self._successor is not None:
+            self._successor.discard()
+            self._successor = None

@@ -23,6 +23,7 @@ from surefoot.scenarios.file.translate import without
 from surefoot.scenarios.judge.acted import bent_commands, contradictions, idle_commands, not_there, unmet_ground
 from surefoot.scenarios.judge.digest import Digest, RunView
 from surefoot.scenarios.judge.metrics import digest, known, measure
+from surefoot.scenarios.judge.partial import is_measured, kept_note, unmeasured
 from surefoot.scenarios.judge.pushed import unacted_pushes
 from surefoot.scenarios.judge.walking import steps_added
 from surefoot.scenarios.log import Log
@@ -213,18 +214,23 @@ def judge(log: Log, gathered: Digest | None = None) -> Verdict:
     size = run.constants.similarity
     untrue = (*_unfinished(log), *_incomplete(log)) or contradictions(run)
     agenda = agenda_of(log, scenario)
+    seen = run.kept is None
     idle = (
         *_unacted(log, agenda, run.constants.control_rate),
         *_few(unacted_pushes(run)),
         *idle_commands(run, scenario.commands),
-        *unmet_ground(run),
+        *(unmet_ground(run) if seen else ()),
+        *(() if run.kept is None else unmeasured(run, run.kept, criteria, scenario, agenda)),
     )
     undone = (*idle, *not_there(measured.values, criteria, size.length))
-    reasons = (*untrue, *_few(map(str, told_once(absent))), *undone, *missed(measured.values, criteria))
+    told = {name: bound for name, bound in criteria.items() if seen or is_measured(name)}
+    reasons = (*untrue, *_few(map(str, told_once(absent))), *undone, *missed(measured.values, told))
     skipped = [name for name in scenario.criteria if name not in criteria]
     idle_keys = [note for note in agenda.notes if note not in agenda.standing or not run.has("/command")]
     unasked = (f"criterion {name} is not asked: a pendulum has no such metric" for name in skipped)
-    said = (*unasked, *idle_keys, *bent_commands(run), *_degraded(measured.values, steps_added(run)), *measured.notes)
+    part = () if run.kept is None else (kept_note(run.kept),)
+    beside = (*part, *unasked, *idle_keys, *bent_commands(run))
+    said = (*beside, *_degraded(measured.values, steps_added(run)), *measured.notes)
     return Verdict(not reasons, reasons, said, measured.values, criteria)
 
 

@@ -17,9 +17,10 @@ _PROFILE, _LIBRARY = "", "surefoot"
 
 @dataclass(frozen=True, slots=True)
 class Defined:
-    """A channel's number, and the records of its schema and of itself."""
+    """A channel's number and topic, and the records of its schema and of itself."""
 
     number: int
+    topic: str
     schema: bytes
     channel: bytes
 
@@ -38,13 +39,12 @@ class IndexedChunk:
 
 
 class Sink(Protocol):
-    """What a log is written to.
+    """What a log is written to."""
 
-    Attributes:
-        path: where the log is.
-    """
-
-    path: Path
+    @property
+    def path(self) -> Path:
+        """Where the log is."""
+        ...
 
     @property
     def closed(self) -> bool:

@@ -52,7 +52,8 @@ def gathered(data: memoryview, index: NDArray[np.void], size: int) -> memoryview
         return b""
     # Each byte of the data as the beginning of a record: all are gathered at once.
     records: NDArray[np.void] = np.ndarray((len(data) - size + 1,), f"V{size}", data, strides=(1,))
-    return records[offsets].view(np.uint8).data
+    found: NDArray[np.uint8] = records[offsets].view(np.uint8)
+    return found.data
 
 
 def sound_records(block: NDArray[np.uint8], channel_id: int, dtype: np.dtype[Any]) -> NDArray[np.void]:

@@ -1,19 +1,57 @@
 """A flight recorder: of a run however long, a log that has its beginning and what came last."""
 
-from collections.abc import Iterable
+import json
+import math
+from collections.abc import Iterable, Mapping
 from pathlib import Path
 
 from mcap.records import Metadata
 
 from surefoot.scenarios.errors import LogError
-from surefoot.scenarios.log.file import Head, IndexedChunk, LogFile
+from surefoot.scenarios.log.file import Defined, Head, IndexedChunk, LogFile
+from surefoot.values import dataclass
 
 KEPT_RECORD = "kept"
-"""Metadata record of a log that lacks the beginning of its run: how much is kept, from when on, and what was dropped.
+"""Metadata record of a log that lacks the beginning of its run."""
 
-Its ``keep`` is the time that is kept at least [s], ``from`` the time from which on the log has everything [s] and
-``messages_dropped`` the number of messages before.
-"""
+
+@dataclass(frozen=True, slots=True)
+class Kept:
+    """What of a run is in its log.
+
+    Attributes:
+        keep: time that was to be kept at least [s].
+        begin: time from which on the log has all messages [s].
+        dropped: number of messages before, by topic.
+    """
+
+    keep: float
+    begin: float
+    dropped: Mapping[str, int]
+
+    def to_metadata(self) -> dict[str, str]:
+        """Write as metadata: JSON by name."""
+        return {"keep": json.dumps(self.keep), "from": json.dumps(self.begin), "dropped": json.dumps(self.dropped)}
+
+    @classmethod
+    def from_metadata(cls, records: Mapping[str, Mapping[str, str]], log_name: str) -> "Kept | None":
+        """Read back; None where the log has its run from the beginning.
+
+        Raises:
+            LogError: the record cannot be read.
+        """
+        if KEPT_RECORD not in records:
+            return None
+        try:
+            found = {name: json.loads(text) for name, text in records[KEPT_RECORD].items()}
+            kept = cls(float(found["keep"]), float(found["from"]), dict(found["dropped"]))
+            sound = kept.keep > 0.0 and 0.0 < kept.begin < math.inf
+            if not (sound and all(type(count) is int and count >= 0 for count in kept.dropped.values())):
+                raise ValueError("no such time or number")
+        except (KeyError, TypeError, ValueError, OverflowError, RecursionError):
+            what = "does not say in words that can be read what of its run it keeps"
+            raise LogError(f"{log_name}: {what}; give a log that `surefoot run` has written") from None
+        return kept
 
 
 class FlightRecorder:
@@ -38,7 +76,8 @@ class FlightRecorder:
         self._log = LogFile(path, self._head)
         self._successor: LogFile | None = None
         self._begun_ns: int | None = None  # of the file that was begun last
-        self._messages = 0
+        self._topics: dict[int, str] = {}
+        self._messages: dict[int, int] = {}
 
     @property
     def path(self) -> Path:
@@ -53,6 +92,8 @@ class FlightRecorder:
     def add(self, record: Head) -> None:
         """See `Sink`; every log to come has the record."""
         self._head.append(record)
+        if isinstance(record, Defined):
+            self._topics[record.number], self._messages[record.number] = record.topic, 0
         try:
             self._log.add(record)
         except LogError:
@@ -73,7 +114,8 @@ class FlightRecorder:
         except LogError:
             self._drop_successor()
             raise
-        self._messages += sum(indexed.counts.values())
+        for number, count in indexed.counts.items():
+            self._messages[number] += count
         if self._successor is not None:
             self._successor.add_chunk(indexed)
             if end - self._begun_ns >= self._keep_ns:
@@ -92,14 +134,11 @@ class FlightRecorder:
         self._log.discard()
 
     def _begin_successor(self, start_ns: int) -> None:
-        kept = {
-            "keep": f"{1e-9 * self._keep_ns:.6f}",
-            "from": f"{1e-9 * start_ns:.6f}",
-            "messages_dropped": f"{self._messages}",
-        }
+        dropped = {self._topics[number]: count for number, count in self._messages.items()}
+        kept = Kept(self._keep_ns / 1e9, start_ns / 1e9, dropped)
         path = self.path.with_name(f"{self.path.name}.next")
         path.unlink(missing_ok=True)  # of a recorder that was killed, whose log was taken away
-        self._successor = LogFile(path, [*self._head, Metadata(KEPT_RECORD, kept)], self._given_up)
+        self._successor = LogFile(path, [*self._head, Metadata(KEPT_RECORD, kept.to_metadata())], self._given_up)
         self._begun_ns = start_ns
 
     def _hand_over(self, successor: LogFile) -> None:

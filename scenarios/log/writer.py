@@ -58,6 +58,7 @@ def _defined(number: int, topic: str, schema: PublishedSchema, metadata: tuple[t
     """Records of a schema and a channel, the same in run after run of a campaign."""
     return Defined(
         number,
+        topic,
         encoded(Schema(number, schema.descriptors, "protobuf", schema.name)),
         encoded(Channel(number, topic, "protobuf", dict(metadata), number)),
     )
@@ -72,6 +73,9 @@ class LogWriter:
 
     Messages wait in their channels until a chunk is due, which is then written in one go, in the order of their time.
     So the file on disk is always whole up to the last chunk. `close` adds the index. Usable as a context manager.
+
+    Attributes:
+        keep: time before its end that the log holds at least; None for all [s].
     """
 
     def __init__(
@@ -96,7 +100,7 @@ class LogWriter:
         Raises:
             LogError: the file exists, or cannot be created or written; nothing of that name is then created.
         """
-        self._compression, self._thinning = compression, thinning
+        self._compression, self._thinning, self.keep = compression, thinning, keep
         self._channels: list[Waiting] = []
         self._rows: list[RowWriter] = []
         self._blocks = BlockMaker()
@@ -132,12 +136,14 @@ class LogWriter:
             else CompiledRows(layout, _CAPACITY, self._clock, kernels)
         )
         self._rows.append(rows)
-        sieves = [self._sieve(topic) for topic in rows.topics]
-        if None not in sieves:
-            return ThinnedRows(rows, sieves[0])
-        if any(sieves):
-            raise ValueError(f"rows of {', '.join(rows.topics)}, of which only some are thinned")
-        return rows
+        sieves = {topic: self._sieve(topic) for topic in rows.topics}
+        whole = [topic for topic, sieve in sieves.items() if sieve is None]
+        sieve = next(iter(sieves.values()))
+        if sieve is None or whole:
+            if len(whole) < len(sieves):
+                raise ValueError(f"rows of {', '.join(sieves)}, of which {', '.join(whole)} are not thinned")
+            return rows
+        return ThinnedRows(rows, sieve)
 
     def message_channel(self, topic: str, schema: PublishedSchema, doc: str, sampled: bool = False) -> MessageWriter:
         """Add a channel of a published schema whose messages come encoded; ``sampled`` ones may be thinned."""
@@ -237,7 +243,7 @@ class NoLog(LogWriter):
         """Open nothing."""
         self._channels = []
         self._rows = []
-        self._thinning = None
+        self._thinning = self.keep = None
         self._begin_clock()
 
     def _define(self, topic: str, schema: PublishedSchema, metadata: Mapping[str, str], sieve: Sieve | None) -> int:

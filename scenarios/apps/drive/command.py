@@ -54,7 +54,8 @@ def drive(
 
 
 def drive_scenario(scenario: "Scenario", out: Path, port: int | None, say: Callable[[str], None]) -> None:
-    """Drive a scenario's robot until a signal ends it; ``say`` is told where the page and where each log is.
+    """Drive a scenario's robot until a signal ends it; ``say`` is told where the page is, and of each log where it is
+    and what it takes.
 
     Raises:
         MissingExtraError: viser is not installed.
@@ -65,6 +66,7 @@ def drive_scenario(scenario: "Scenario", out: Path, port: int | None, say: Calla
     from surefoot.scenarios.apps.drive.session import Inputs, Session
     from surefoot.scenarios.record.provenance import LOG_NAME
     from surefoot.scenarios.run.interrupts import held_back
+    from surefoot.scenarios.run.planning import RunFault
     from surefoot.scenarios.run.run import own_folder
     from surefoot.scenarios.run.simulation import Simulation
 
@@ -79,7 +81,10 @@ def drive_scenario(scenario: "Scenario", out: Path, port: int | None, say: Calla
             with suppress(OSError):
                 folder.rmdir()
             raise
-        say(f"log: {folder / LOG_NAME}")
+        with suppress(RunFault):  # its end says why
+            while simulation.log_growth is None and not simulation.done:
+                simulation.advance()
+        say(f"log: {folder / LOG_NAME}{_size(simulation.log_growth or 0.0, simulation.walk.log.keep)}")
         return simulation
 
     inputs = Inputs()
@@ -90,3 +95,14 @@ def drive_scenario(scenario: "Scenario", out: Path, port: int | None, say: Calla
             session.run(lambda: interrupts.count > 0)
         finally:
             session.close()
+
+
+MOST_KEPT = 3
+"""A flight recorder takes at most so many times what it is to keep: its log, and the one that will take its place."""
+
+
+def _size(growth: float, keep: float | None) -> str:
+    """What a log of a growth [B/s] takes, as the end of a sentence that says where it is."""
+    if keep is None:
+        return f", {3600e-9 * growth:.1f} GB an hour while it walks; --set log.keep=60s keeps the last minute"
+    return f", of which the last {keep:g} s are kept; it takes at most {1e-6 * MOST_KEPT * keep * growth:.0f} MB"

@@ -1,7 +1,8 @@
-"""All that the stock ``mcap doctor`` says of a file, written anew after its source, with its strict order of messages."""
+"""All that the stock ``mcap doctor`` says of a file, written anew after its source; with a strict order of messages."""
 
 import struct
 import zlib
+from io import BytesIO
 from pathlib import Path
 from typing import Any
 
@@ -27,7 +28,7 @@ class _Doctor:
 
     def run(self) -> list[str]:
         if not (self.data.startswith(_MAGIC) and self.data.endswith(_MAGIC)):
-            self.said.append("no magic")
+            return ["no magic at the beginning or the end"]
         position = len(_MAGIC)
         while position + 9 <= len(self.data) - len(_MAGIC):
             opcode, length = struct.unpack_from("<BQ", self.data, position)
@@ -184,8 +185,6 @@ class _Doctor:
 
 
 def _stream(body: bytes) -> ReadDataStream:
-    from io import BytesIO
-
     return ReadDataStream(BytesIO(body))
 
 

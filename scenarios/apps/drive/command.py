@@ -54,8 +54,7 @@ def drive(
 
 
 def drive_scenario(scenario: "Scenario", out: Path, port: int | None, say: Callable[[str], None]) -> None:
-    """Drive a scenario's robot until a signal ends it; ``say`` is told where the page is, and of each log where it is
-    and what it takes.
+    """Drive a scenario's robot until a signal ends it; ``say`` is told of page and logs where they are, and their size.
 
     Raises:
         MissingExtraError: viser is not installed.

@@ -31,11 +31,15 @@ Head: TypeAlias = Metadata | Attachment | Defined
 
 @dataclass(frozen=True, slots=True)
 class IndexedChunk:
-    """A chunk, with the MessageIndex record and the number of messages of each of its channels."""
+    """A chunk, with the MessageIndex record and the number of messages of each of its channels.
+
+    It opens a period where it begins when a chunk was due by the clock, whatever else asks for chunks in between.
+    """
 
     chunk: Chunk
     indexes: Mapping[int, bytes]
     counts: Mapping[int, int]
+    opens: bool
 
 
 class Sink(Protocol):

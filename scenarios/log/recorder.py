@@ -107,7 +107,8 @@ class FlightRecorder:
         start, end = indexed.chunk.message_start_time, indexed.chunk.message_end_time
         if self._begun_ns is None:
             self._begun_ns = start
-        if self._successor is None and start - self._begun_ns >= self._keep_ns:
+        # By the clock alone, so that the same run has the same log, however often somebody wrote records beside it.
+        if self._successor is None and indexed.opens and start - self._begun_ns >= self._keep_ns:
             self._begin_successor(start)
         try:
             self._log.add_chunk(indexed)

@@ -83,6 +83,8 @@ class LogWriter:
             before there were two [B/s].
     """
 
+    _opens: bool
+
     def __init__(
         self,
         path: Path,
@@ -194,6 +196,8 @@ class LogWriter:
         waiting = [channel for channel in self._channels if channel.count]
         if not waiting:
             return
+        opens = self._opens
+        self._opens = False
         made = self._blocks.block(waiting)
         crc = zlib.crc32(made.data)  # while the bytes are near
         # The first has what is written once.
@@ -204,7 +208,7 @@ class LogWriter:
         packed = compress(made.data, self._compression)
         yield
         chunk = Chunk(self._compression, packed, made.end_ns, made.start_ns, crc, len(made.data))
-        self._sink.add_chunk(IndexedChunk(chunk, made.indexes, made.counts))
+        self._sink.add_chunk(IndexedChunk(chunk, made.indexes, made.counts, opens))
 
     def close(self) -> None:
         """Write what waits and the index, and close the file; a second call does nothing."""
@@ -219,24 +223,27 @@ class LogWriter:
 
     def _begin_clock(self) -> None:
         self._writing: Iterator[None] = iter(())
+        self._opens = True
         # The first is shorter: whole tenths of a second are when plans are made, too.
         self._next, self._late = CHUNK_PERIOD_NS - _WRITING_NS, 0
         self._clock = Clock(self._next, self._go_on, self._full)
 
-    def _full(self, time_ns: int) -> None:
-        self._next = self._clock.due = time_ns + CHUNK_PERIOD_NS
+    def _full(self, _time_ns: int) -> None:
+        """Write a chunk before it is due; when the next one is due stays as it was."""
         self.flush()
+        self._clock.due = self._next
 
     def _go_on(self, time_ns: int) -> None:
         """Begin a chunk, or write the next part of the one that is being written."""
-        clock = self._clock
-        if time_ns >= self._next:
+        clock, due = self._clock, time_ns >= self._next
+        if due:
             deque(self._writing, maxlen=0)  # of one that is under way still, after a gap in time
             self._next, self._late = time_ns + CHUNK_PERIOD_NS, time_ns + _WRITING_NS
             self._writing = self._chunk()
         elif time_ns >= self._late:
             deque(self._writing, maxlen=0)
         clock.due = time_ns + 1 if next(self._writing, self) is None else self._next
+        self._opens |= due
 
     def __enter__(self) -> Self:
         return self

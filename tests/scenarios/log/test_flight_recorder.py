@@ -57,6 +57,21 @@ def test_it_keeps_what_came_last(tmp_path, keep, seconds):
         assert (tmp_path / "all.mcap").read_bytes() == (tmp_path / "last.mcap").read_bytes()
 
 
+@pytest.mark.parametrize("rate", [100, 500, 2000, 5000])
+def test_it_keeps_the_same_however_often_records_are_written_beside(tmp_path, rate):
+    begins = []
+    for every in (10**9, 7, 333):
+        writer = LogWriter(tmp_path / f"{every}.mcap", {}, keep=1.0)
+        with writer:
+            channel = writer.channel(SPEC)
+            for tick in range(round(4.7 * rate)):
+                channel.append(tick * 10**9 // rate, tick / 3, (1, 2, tick), tick)
+                if tick % (every * rate // 500 or 1) == 1:
+                    writer.add_metadata(f"push {tick}", {"push": "hard"})
+        begins.append(read(tmp_path / f"{every}.mcap")["/x"].time[0])
+    assert begins[0] == begins[1] == begins[2] > 2.5
+
+
 def test_whatever_stands_beside_the_messages_is_kept(tmp_path):
     writer, channel = writer_of(tmp_path / "log.mcap", 1.0)
     with writer:

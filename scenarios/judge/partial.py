@@ -15,7 +15,7 @@ _SAID = 6
 def kept_note(kept: Kept) -> str:
     """Say what a log has of its run."""
     since = f"the log keeps the run from {kept.begin:.3f} s on (log.keep {kept.keep:g} s)"
-    return f"{since}; {sum(kept.dropped.values())} messages before are dropped"
+    return f"{since}; {kept.dropped} messages before are dropped"
 
 
 def is_measured(name: str) -> bool:

@@ -17,10 +17,9 @@ _PROFILE, _LIBRARY = "", "surefoot"
 
 @dataclass(frozen=True, slots=True)
 class Defined:
-    """A channel's number and topic, and the records of its schema and of itself."""
+    """A channel's number, and the records of its schema and of itself."""
 
     number: int
-    topic: str
     schema: bytes
     channel: bytes
 

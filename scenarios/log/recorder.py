@@ -1,6 +1,5 @@
 """A flight recorder: of a run however long, a log that has its beginning and what came last."""
 
-import json
 import math
 from collections.abc import Iterable, Mapping
 from pathlib import Path
@@ -8,7 +7,7 @@ from pathlib import Path
 from mcap.records import Metadata
 
 from surefoot.scenarios.errors import LogError
-from surefoot.scenarios.log.file import Defined, Head, IndexedChunk, LogFile
+from surefoot.scenarios.log.file import Head, IndexedChunk, LogFile
 from surefoot.values import dataclass
 
 KEPT_RECORD = "kept"
@@ -22,16 +21,16 @@ class Kept:
     Attributes:
         keep: time that was to be kept at least [s].
         begin: time from which on the log has all messages [s].
-        dropped: number of messages before, by topic.
+        dropped: number of messages before.
     """
 
     keep: float
     begin: float
-    dropped: Mapping[str, int]
+    dropped: int
 
     def to_metadata(self) -> dict[str, str]:
-        """Write as metadata: JSON by name."""
-        return {"keep": json.dumps(self.keep), "from": json.dumps(self.begin), "dropped": json.dumps(self.dropped)}
+        """Write as metadata."""
+        return {"keep": repr(self.keep), "from": repr(self.begin), "messages_dropped": str(self.dropped)}
 
     @classmethod
     def from_metadata(cls, records: Mapping[str, Mapping[str, str]], log_name: str) -> "Kept | None":
@@ -42,13 +41,12 @@ class Kept:
         """
         if KEPT_RECORD not in records:
             return None
+        record = records[KEPT_RECORD]
         try:
-            found = {name: json.loads(text) for name, text in records[KEPT_RECORD].items()}
-            kept = cls(float(found["keep"]), float(found["from"]), dict(found["dropped"]))
-            sound = kept.keep > 0.0 and 0.0 < kept.begin < math.inf
-            if not (sound and all(type(count) is int and count >= 0 for count in kept.dropped.values())):
+            kept = cls(float(record["keep"]), float(record["from"]), int(record["messages_dropped"]))
+            if not (0.0 < kept.keep < math.inf and 0.0 < kept.begin < math.inf and kept.dropped >= 0):
                 raise ValueError("no such time or number")
-        except (KeyError, TypeError, ValueError, OverflowError, RecursionError):
+        except (KeyError, ValueError):
             what = "does not say in words that can be read what of its run it keeps"
             raise LogError(f"{log_name}: {what}; give a log that `surefoot run` has written") from None
         return kept
@@ -76,8 +74,7 @@ class FlightRecorder:
         self._log = LogFile(path, self._head)
         self._successor: LogFile | None = None
         self._begun_ns: int | None = None  # of the file that was begun last
-        self._topics: dict[int, str] = {}
-        self._messages: dict[int, int] = {}
+        self._messages = 0
 
     @property
     def path(self) -> Path:
@@ -92,8 +89,6 @@ class FlightRecorder:
     def add(self, record: Head) -> None:
         """See `Sink`; every log to come has the record."""
         self._head.append(record)
-        if isinstance(record, Defined):
-            self._topics[record.number], self._messages[record.number] = record.topic, 0
         try:
             self._log.add(record)
         except LogError:
@@ -115,8 +110,7 @@ class FlightRecorder:
         except LogError:
             self._drop_successor()
             raise
-        for number, count in indexed.counts.items():
-            self._messages[number] += count
+        self._messages += sum(indexed.counts.values())
         if self._successor is not None:
             self._successor.add_chunk(indexed)
             if end - self._begun_ns >= self._keep_ns:
@@ -135,8 +129,7 @@ class FlightRecorder:
         self._log.discard()
 
     def _begin_successor(self, start_ns: int) -> None:
-        dropped = {self._topics[number]: count for number, count in self._messages.items()}
-        kept = Kept(self._keep_ns / 1e9, start_ns / 1e9, dropped)
+        kept = Kept(self._keep_ns / 1e9, start_ns / 1e9, self._messages)
         path = self.path.with_name(f"{self.path.name}.next")
         path.unlink(missing_ok=True)  # of a recorder that was killed, whose log was taken away
         self._successor = LogFile(path, [*self._head, Metadata(KEPT_RECORD, kept.to_metadata())], self._given_up)

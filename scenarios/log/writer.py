@@ -61,7 +61,6 @@ def _defined(number: int, topic: str, schema: PublishedSchema, metadata: tuple[t
     """Records of a schema and a channel, the same in run after run of a campaign."""
     return Defined(
         number,
-        topic,
         encoded(Schema(number, schema.descriptors, "protobuf", schema.name)),
         encoded(Channel(number, topic, "protobuf", dict(metadata), number)),
     )

@@ -1,6 +1,5 @@
 """A flight recorder keeps the last of a run, on a bounded disk, whatever ends it, and says what it has dropped."""
 
-import json
 import signal
 import subprocess
 import sys
@@ -51,7 +50,7 @@ def test_it_keeps_what_came_last(tmp_path, keep, seconds):
     assert last["/x"].content() == whole["/x"].between(round(begin * 1e9), 10**12).content()
     assert min(seconds, keep) - 0.002 <= seconds - begin < 2.0 * keep + 0.2
     if told is not None:
-        assert (told.keep, told.dropped) == (keep, {"/x": len(whole["/x"]) - len(last["/x"])})
+        assert (told.keep, told.dropped) == (keep, len(whole["/x"]) - len(last["/x"]))
     else:
         assert begin == 0.0
         assert (tmp_path / "all.mcap").read_bytes() == (tmp_path / "last.mcap").read_bytes()
@@ -87,7 +86,7 @@ def test_whatever_stands_beside_the_messages_is_kept(tmp_path):
     assert [name for name in log.metadata if name != KEPT_RECORD] == ["run", *(f"push {k}" for k in range(6))]
     assert list(log.attachments) == ["a", *(f"file {k}" for k in range(6))]
     assert log.topics == ("/x", "/late")
-    assert json.loads(log.metadata[KEPT_RECORD]["dropped"])["/late"] == 1
+    assert log.count("/late") == 0
 
 
 def test_at_no_moment_is_less_on_the_disk_and_never_more_than_three_times_as_much(tmp_path):
@@ -193,12 +192,12 @@ def test_of_no_run_nothing_stays(tmp_path):
     "record",
     [
         {},
-        {"keep": "1", "from": "NaN", "dropped": "{}"},
-        {"keep": "1", "from": "-3", "dropped": "{}"},
-        {"keep": "1", "from": "2", "dropped": "[3]"},
-        {"keep": "1", "from": "2", "dropped": '{"/x": "many"}'},
-        {"keep": "1", "from": "2", "dropped": '{"/x": -1}'},
-        {"keep": "[" * 10_000, "from": "2", "dropped": "{}"},
+        {"keep": "1", "from": "2"},
+        {"keep": "1", "from": "NaN", "messages_dropped": "3"},
+        {"keep": "1", "from": "-3", "messages_dropped": "3"},
+        {"keep": "inf", "from": "2", "messages_dropped": "3"},
+        {"keep": "1", "from": "2", "messages_dropped": "many"},
+        {"keep": "1", "from": "2", "messages_dropped": "-1"},
     ],
 )
 def test_a_record_that_nobody_has_written_is_refused(record):

@@ -1,4 +1,4 @@
-"""Contact forces of a message are those of the physics step that ended at its time: they follow from the state before."""
+"""Contact forces of a message are those of the physics step that ended at its time, which began in another state."""
 
 import re
 from pathlib import Path
@@ -51,7 +51,7 @@ class Bare:
 
 
 def test_it_is_one_physics_step_before_the_message(tmp_path):
-    """At a rate of 1000 Hz of the physics and 500 Hz of control; at the message's own state the page says by how much."""
+    """Physics at 1000 Hz, control at 500 Hz; by how much the message's own state would be off the page says."""
     log = read(run_scenario(load("walk-fast", ["sensing.source=truth"]), tmp_path).log)
     bare, zmp = Bare(log), log["/contact"].field("zmp")[:, :2]
     off = {

@@ -1,5 +1,6 @@
 """``surefoot drive``: the robot live in a browser, until a signal ends it."""
 
+import math
 from collections.abc import Callable
 from contextlib import suppress
 from pathlib import Path
@@ -65,7 +66,6 @@ def drive_scenario(scenario: "Scenario", out: Path, port: int | None, say: Calla
     from surefoot.scenarios.apps.drive.session import Inputs, Session
     from surefoot.scenarios.record.provenance import LOG_NAME
     from surefoot.scenarios.run.interrupts import held_back
-    from surefoot.scenarios.run.planning import RunFault
     from surefoot.scenarios.run.run import own_folder
     from surefoot.scenarios.run.simulation import Simulation
 
@@ -80,10 +80,7 @@ def drive_scenario(scenario: "Scenario", out: Path, port: int | None, say: Calla
             with suppress(OSError):
                 folder.rmdir()
             raise
-        with suppress(RunFault):  # its end says why
-            while simulation.log_growth is None and not simulation.done:
-                simulation.advance()
-        say(f"log: {folder / LOG_NAME}{_size(simulation.log_growth or 0.0, simulation.walk.log.keep)}")
+        say(f"log: {folder / LOG_NAME}, {log_size(simulation, folder / LOG_NAME)}")
         return simulation
 
     inputs = Inputs()
@@ -97,11 +94,21 @@ def drive_scenario(scenario: "Scenario", out: Path, port: int | None, say: Calla
 
 
 MOST_KEPT = 3
-"""A flight recorder takes at most so many times what it is to keep: its log, and the one that will take its place."""
+"""A flight recorder takes at most so many times what it is to keep, in its log and the one that takes its place."""
+
+MOST_BEGINNINGS = 4
+"""And so many times what a log begins with: twice the records beside the messages, and pictures of the scene."""
 
 
-def _size(growth: float, keep: float | None) -> str:
-    """What a log of a growth [B/s] takes, as the end of a sentence that says where it is."""
+def log_size(simulation: "Simulation", path: Path) -> str:
+    """Say what the log of a simulation that has just begun takes; the simulation goes on until that is known."""
+    from surefoot.scenarios.run.planning import RunFault
+
+    with suppress(RunFault):  # its end says why
+        while simulation.log_growth is None and not simulation.done:
+            simulation.advance()
+    growth, keep = simulation.log_growth or 0.0, simulation.walk.log.keep
     if keep is None:
-        return f", {3600e-9 * growth:.1f} GB an hour while it walks; --set log.keep=60s keeps the last minute"
-    return f", of which the last {keep:g} s are kept; it takes at most {1e-6 * MOST_KEPT * keep * growth:.0f} MB"
+        return f"{3600e-9 * growth:.1f} GB an hour while it walks; --set log.keep=60s keeps the last minute"
+    most = MOST_KEPT * keep * growth + MOST_BEGINNINGS * path.stat().st_size
+    return f"of which the last {keep:g} s are kept; it takes at most {math.ceil(1e-6 * most)} MB"

@@ -65,21 +65,19 @@ class FlightRecorder:
         head: its first records.
         keep_ns: time that is to be kept [ns].
 
+    Attributes:
+        path: of the log.
+
     Raises:
         LogError: as of `surefoot.scenarios.log.file.Output`.
     """
 
     def __init__(self, path: Path, head: Iterable[Head], keep_ns: int) -> None:
-        self._head, self._keep_ns = list(head), keep_ns
+        self.path, self._head, self._keep_ns = path, list(head), keep_ns
         self._log = LogFile(path, self._head)
         self._successor: LogFile | None = None
         self._begun_ns: int | None = None  # of the file that was begun last
         self._messages = 0
-
-    @property
-    def path(self) -> Path:
-        """Where the log is."""
-        return self._log.path
 
     @property
     def closed(self) -> bool:
@@ -119,6 +117,7 @@ class FlightRecorder:
     def finish(self) -> None:
         """See `Sink`."""
         try:
+            self._settle()
             self._log.finish()
         finally:
             self._drop_successor()
@@ -136,12 +135,19 @@ class FlightRecorder:
         self._begun_ns = start_ns
 
     def _hand_over(self, successor: LogFile) -> None:
-        try:
-            successor.output.move(self.path)
-        except OSError as error:
-            raise self._given_up(error) from None
-        self._log.output.close()
+        before = self._log
+        # At once, so that an interruption leaves one of them the log.
         self._log, self._successor = successor, None
+        self._settle()
+        before.output.close()
+
+    def _settle(self) -> None:
+        """Give the log its name."""
+        if self._log.path != self.path:
+            try:
+                self._log.output.move(self.path)
+            except OSError as error:
+                raise self._log.output.given_up(error) from None
 
     def _given_up(self, error: OSError) -> LogError:
         """There is no room for the successor, nor for the log soon."""

@@ -65,7 +65,8 @@ class Waiting:
 
     def drop(self) -> None:
         """Forget what waits."""
-        self.times = []  # a new one: channels of the same rows share theirs
+        if self.times:
+            self.times = []  # a new one: channels of the same rows share theirs
         self.count = 0
 
 

@@ -137,7 +137,8 @@ class RowWriter:
         if self._fresh is None:
             self._look(vectors)
         else:
-            self._make_room(time_ns)
+            if time_ns >= self._clock.due or len(self._times) == self._capacity:
+                self._make_room(time_ns)
             self._fresh += vectors
         self.again(time_ns, numbers)
 
@@ -145,20 +146,20 @@ class RowWriter:
         """The same with the very arrays of the row before, with values of now; of standing rows, and without arrays."""
         if len(numbers) != self._announced:
             raise ValueError(f"a row of {len(numbers)} numbers, where there are places for {self._announced}")
-        self._make_room(time_ns)
-        times = self._times
-        count = len(times)
+        count = len(self._times)
+        if time_ns >= self._clock.due or count == self._capacity:
+            self._make_room(time_ns)
+            count = len(self._times)
         self._pack(self._memory, 8 * self._announced * count, *numbers)
         if self._gather is not None:
             self._gather(count)
         elif self._standing:
             np.concatenate(self._standing, out=self._vectors[count])
-        times.append(time_ns)
+        self._times.append(time_ns)
 
     def _make_room(self, time_ns: int) -> None:
         """Have the chunk written that is complete without a row of this time [ns]."""
-        if time_ns >= self._clock.due or len(self._times) == self._capacity:
-            self._clock.look(time_ns, len(self._times) == self._capacity)
+        self._clock.look(time_ns, len(self._times) == self._capacity)
 
     def _look(self, vectors: tuple[Array, ...]) -> None:
         """Take arrays that are copied now, and by `again`, as views with one axis."""

@@ -305,6 +305,17 @@ class Rates(Group):
     planner: Rate = key(50, "plans; 1 / planner.sample_time")
 
 
+class LogSettings(Group):
+    """How much of a run its log holds."""
+
+    keep: Annotated[float, Field(ge=1, le=LONGEST_RUN), SECOND] | None = key(
+        None, "a flight recorder: at least the last so much of the run, and at most twice that, null: all of it"
+    )
+    rate: Rate | None = key(
+        None, "messages in a second that a channel has at most that no metric and no health check reads, null: all"
+    )
+
+
 class Scenario(Group):
     """A walk to simulate and the criteria it must meet."""
 
@@ -333,6 +344,7 @@ class Scenario(Group):
     plant: PlantSettings | None = key(None, "what moves the robot, null: the simulated world")
     control: ControlSettings | None = key(None, "what the joints are given, null: torques, each control tick")
     wbc: ControllerSettings | None = key(None, "the whole-body controller, null: as it is")
+    log: LogSettings | None = key(None, "how much of the run its log holds, null: all of it")
     pendulum: PendulumSettings = key(PendulumSettings.model_construct(), "the plant of fidelity pendulum")
     pushes: Many[PushSettings] = key((), "disturbances")
     commands: Many[CommandSettings] = key((), "what the walk is told while it goes on")

@@ -21,6 +21,9 @@ AT_PLACE = 0.02
 AT_HEADING = 0.02
 """Likewise the difference from the heading that it was told to have there, a little more than a degree [rad]."""
 
+_BEGIN = 0.5
+"""How far from where it should begin the first tick of a log may be, whose first states a line may lose [s]."""
+
 _SAME_TIME = 1e-6
 """Times of commands are sums and carry rounding [s]."""
 
@@ -69,7 +72,7 @@ class _Gait:
 
 
 def idle_commands(run: RunView, commands: Sequence[CommandSettings]) -> Iterator[str]:
-    """Say which of the promised commands of a scenario came to nothing.
+    """Say which of the promised commands of a scenario came to nothing, of those that came in what the log has.
 
     Where to walk, and how long supports last, acts on a robot that steps before another command supersedes it; a swing
     height on the next step that is not yet begun. One that asks to stand, or for what holds anyway, asks for no change.
@@ -80,7 +83,7 @@ def idle_commands(run: RunView, commands: Sequence[CommandSettings]) -> Iterator
     order = sorted(range(len(commands)), key=lambda index: commands[index].time)
     for place, index in enumerate(order):
         command, later = commands[index], [commands[other] for other in order[place + 1 :]]
-        if not command.live:
+        if not command.live and (run.kept is None or command.time > run.kept.begin):
             yield from _idle(f"commands.{index}", command, [other for other in later if not other.live], gait)
 
 
@@ -178,6 +181,9 @@ def contradictions(run: RunView) -> tuple[str, ...]:
 def _clock(run: RunView) -> Iterator[str]:
     """Every tick has its message on every channel of the control rate, one period after the other."""
     stamps, period = run.log["/truth"].time_ns, 1e9 / run.constants.control_rate
+    begin = 0.0 if run.kept is None else run.kept.begin
+    if not abs(1e-9 * stamps[0] - begin) < _BEGIN:
+        yield f"the data of the log begin at {1e-9 * stamps[0]:.3f} s, and those that it should have at {begin:.3f} s"
     uneven = np.flatnonzero(np.abs(np.diff(stamps) - period) > 1.0)
     if len(uneven):
         yield f"the ticks of the log are not {1e-6 * period:g} ms apart at {1e-9 * stamps[uneven[0]]:.3f} s"

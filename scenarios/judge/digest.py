@@ -12,6 +12,7 @@ from numpy.typing import NDArray
 from surefoot.planner.geometry import headings
 from surefoot.scenarios.errors import LogError
 from surefoot.scenarios.judge.body import knees
+from surefoot.scenarios.log.recorder import Kept
 from surefoot.scenarios.output import reason
 from surefoot.scenarios.record.provenance import RunConstants
 
@@ -315,6 +316,11 @@ class RunView:
         if function not in self._made:
             self._made[function] = function(self)
         return cast("T", self._made[function])
+
+    @cached_property
+    def kept(self) -> Kept | None:
+        """What of the run a flight recorder has kept; None where the log has all of it."""
+        return Kept.from_metadata(self.log.metadata, str(self.log.path))
 
     @cached_property
     def ticks(self) -> int:

@@ -47,6 +47,15 @@ REDUCTIONS = (
 )
 """Reductions that the checks use."""
 
+TOPICS = frozenset(
+    (
+        *(topic for topics, _ in _CHECKS for topic in topics),
+        *READS,
+        *(topic for reduction in REDUCTIONS for topic in reduction.needs),
+    )
+)
+"""Topics that the checks read, in one way or another."""
+
 
 def findings(digest: Digest) -> tuple[Finding, ...]:
     """Apply every check whose channels are there.

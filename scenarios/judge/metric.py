@@ -113,6 +113,7 @@ class Metric(Generic[T]):
         most: value that it never exceeds, likewise.
         tolerance: by how much two runs may differ that count as the same, in its unit and as a share of its value;
             None for what its unit and kind say.
+        at_end: whether it follows from the end of the run alone, of which a flight recorder keeps more.
     """
 
     name: str
@@ -130,6 +131,7 @@ class Metric(Generic[T]):
     least: float | None = None
     most: float | None = None
     tolerance: tuple[float, float] | None = None
+    at_end: bool = False
 
     def __call__(self, run: RunView) -> T:
         """Its value for a run."""
@@ -217,6 +219,7 @@ def metric(
     least: float | None = None,
     most: float | None = None,
     tolerance: tuple[float, float] | None = None,
+    at_end: bool = False,
 ) -> Callable[[Callable[[RunView], T]], Metric[T]]:
     """Make a function of a run a metric of its name; the first line of its documentation says what it is.
 
@@ -236,7 +239,7 @@ def metric(
         topics = tuple(dict.fromkeys((*fields, *reduced))) if needs is None else needs
         found = Metric(
             name, function, unit, scale, shown_unit, size, parts, topics, fields, reduces, body, repeatable, least,
-            most, tolerance,
+            most, tolerance, at_end,
         )  # fmt: skip
         _check(found)
         return found

@@ -1,7 +1,7 @@
 """The metrics there are, ours and those of other packages, and their values for a log."""
 
 import math
-from collections.abc import Callable, Iterator, Mapping
+from collections.abc import Callable, Iterable, Iterator, Mapping
 from functools import partial
 from types import ModuleType
 from typing import TYPE_CHECKING, Any
@@ -25,7 +25,7 @@ from surefoot.scenarios.judge import (
     sensed,
     walking,
 )
-from surefoot.scenarios.judge.digest import Digest, Reads, RunView, Source
+from surefoot.scenarios.judge.digest import CONTROL_TOPICS, HELD, SENSED, Digest, Reads, RunView, Source
 from surefoot.scenarios.judge.metric import Metric, Reduction
 from surefoot.scenarios.judge.placed import PLACED
 from surefoot.values import dataclass
@@ -167,6 +167,8 @@ def _foreign_value(run: RunView, name: str, notes: list[str]) -> Any:
 def _value(run: RunView, metric: Metric[Any]) -> Any:
     if not metric.applies(run.constants.fidelity) or not run.has(*metric.needs):
         return None
+    if run.kept is not None and not metric.at_end:
+        return None  # of a part of the run it would be another number
     return plain(metric(run))
 
 
@@ -181,6 +183,20 @@ def plain(value: Any, lost: Callable[[float], str | None] = lambda _: None) -> A
     if isinstance(value, float):
         return float.__pos__(value) if math.isfinite(value) else lost(value)
     return int.__pos__(value) if isinstance(value, int) and not isinstance(value, bool) else value
+
+
+def judged_topics() -> frozenset[str]:
+    """Topics that a verdict or a health check needs, by metrics of ours and of other packages."""
+    metrics = [metric for metric in map(known, METRICS) if metric is not None]
+    fields = (HELD, *_reads(metrics))
+    topics = (*CONTROL_TOPICS, SENSED, *health.TOPICS, *(topic for metric in metrics for topic in metric.needs))
+    reduced = (topic for metric in metrics for one in metric.reductions for topic in one.needs)
+    return frozenset((*topics, *reduced, *(topic for reads in fields for topic in reads)))
+
+
+def _reads(metrics: Iterable[Metric[Any]]) -> list[Reads]:
+    """Fields that metrics, health checks and what is said of pushes and commands read."""
+    return [health.READS, PLACED, pushed.READS, acted.READS, *(metric.reads for metric in metrics)]
 
 
 _REDUCING = Guard("a reduction")
@@ -210,8 +226,7 @@ def digest(log: "Log") -> Digest:
                         failed.add(reduction)  # its metric will say so, computing it anew
         return found
 
-    reads: list[Reads] = [health.READS, PLACED, pushed.READS, acted.READS, *(metric.reads for metric in metrics)]
-    gathered = Digest(log, constants, reads, reduce)
+    gathered = Digest(log, constants, _reads(metrics), reduce)
     for reduction in failed:
         gathered.reduced.forget(reduction)
     return gathered

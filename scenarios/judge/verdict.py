@@ -23,6 +23,7 @@ from surefoot.scenarios.file.translate import without
 from surefoot.scenarios.judge.acted import bent_commands, contradictions, idle_commands, not_there, unmet_ground
 from surefoot.scenarios.judge.digest import AbsentError, Digest, RunView, always
 from surefoot.scenarios.judge.metrics import OWN, digest, known, measure
+from surefoot.scenarios.judge.partial import is_measured, kept_note, unmeasured
 from surefoot.scenarios.judge.pushed import unacted_pushes
 from surefoot.scenarios.judge.walking import steps_added
 from surefoot.scenarios.log import Log
@@ -220,20 +221,24 @@ def judge(log: Log, gathered: Digest | None = None, strict: bool = False) -> Ver
     unproven = _listed("the log is not proven to be whole", (*log.unproven(), *without))
     untrue = (*_unfinished(log), *_incomplete(log), *(unproven if strict else ())) or contradictions(run)
     agenda = agenda_of(log, scenario)
+    seen = run.kept is None
     idle = (
         *_unacted(log, agenda, run.constants.control_rate),
         *_few(unacted_pushes(run)),
         *idle_commands(run, scenario.commands),
-        *unmet_ground(run),
+        *(unmet_ground(run) if seen else ()),
+        *(() if run.kept is None else unmeasured(run, run.kept, criteria, scenario, agenda)),
     )
     undone = (*idle, *not_there(measured.values, criteria, size.length))
-    lacking = _lacking(run, [name for name in criteria if _lookup(measured.values, name) is None])
-    reasons = (*untrue, *lacking, *_few(map(str, told_once(absent))), *undone, *missed(measured.values, criteria))
+    told = {name: bound for name, bound in criteria.items() if seen or is_measured(name)}
+    lacking = _lacking(run, [name for name in told if _lookup(measured.values, name) is None])
+    reasons = (*untrue, *lacking, *_few(map(str, told_once(absent))), *undone, *missed(measured.values, told))
     skipped = [name for name in scenario.criteria if name not in criteria]
     idle_keys = [note for note in agenda.notes if note not in agenda.standing or not run.has("/command")]
     unasked = (f"criterion {name} is not asked: a pendulum has no such metric" for name in skipped)
-    degraded = _degraded(measured.values, steps_added(run))
-    said = (*(() if strict else unproven), *unasked, *idle_keys, *bent_commands(run), *degraded, *measured.notes)
+    part = () if run.kept is None else (kept_note(run.kept),)
+    beside = (*part, *(() if strict else unproven), *unasked, *idle_keys, *bent_commands(run))
+    said = (*beside, *_degraded(measured.values, steps_added(run)), *measured.notes)
     return Verdict(not reasons, reasons, said, measured.values, criteria)
 
 

@@ -19,13 +19,13 @@ FALL_READS: Reads = {
 _STILL_READS: Reads = {"/truth": ("com_velocity",), "/contact": ("felt",)}
 
 
-@metric(needs=("/truth",), reads=FALL_READS)
+@metric(needs=("/truth",), reads=FALL_READS, at_end=True)
 def fell(run: RunView) -> bool:
     """Whether the robot fell."""
     return fall_time(run) is not None
 
 
-@metric(unit="s", needs=("/truth",), reads=FALL_READS, least=0.0, tolerance=(0.011, 0.0))
+@metric(unit="s", needs=("/truth",), reads=FALL_READS, least=0.0, tolerance=(0.011, 0.0), at_end=True)
 def fall_time(run: RunView) -> float | None:
     """First time at which the robot has fallen [s].
 
@@ -75,7 +75,9 @@ def _begun(run: RunView) -> int:
 _PLACE_READS: Reads = {"/truth": ("left_sole", "right_sole"), "/command": ("place", "heading")}
 
 
-@metric(unit="m", needs=("/truth", "/command"), shown=MM, reads=_PLACE_READS, least=0.0, tolerance=(0.001, 0.0))
+@metric(
+    unit="m", needs=("/truth", "/command"), shown=MM, reads=_PLACE_READS, least=0.0, tolerance=(0.001, 0.0), at_end=True
+)
 def place_error(run: RunView) -> float | None:
     """Distance at the end from the middle of the stance to the place where the robot was told to go last [m]."""
     place = _last_place(run)
@@ -84,7 +86,7 @@ def place_error(run: RunView) -> float | None:
     return float(np.hypot(*(0.5 * run.soles[-1, :, :2].sum(axis=0) - place[:2])))
 
 
-@metric(unit="rad", needs=("/truth", "/command"), reads=_PLACE_READS, least=0.0, tolerance=(0.002, 0.0))
+@metric(unit="rad", needs=("/truth", "/command"), reads=_PLACE_READS, least=0.0, tolerance=(0.002, 0.0), at_end=True)
 def heading_error(run: RunView) -> float | None:
     """Difference at the end of the mean heading of the soles from the one that the robot was told to have [rad]."""
     place = _last_place(run)

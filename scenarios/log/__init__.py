@@ -2,7 +2,9 @@
 
 from surefoot.scenarios.log.messages import ChannelData
 from surefoot.scenarios.log.reader import Log, read
+from surefoot.scenarios.log.recorder import Kept
 from surefoot.scenarios.log.spec import ChannelSpec, FieldSpec
+from surefoot.scenarios.log.thinning import Thinning
 from surefoot.scenarios.log.writer import AttachedFile, LogWriter, NoLog, PublishedSchema
 
 __all__ = [
@@ -10,9 +12,11 @@ __all__ = [
     "ChannelData",
     "ChannelSpec",
     "FieldSpec",
+    "Kept",
     "Log",
     "LogWriter",
     "NoLog",
     "PublishedSchema",
+    "Thinning",
     "read",
 ]

@@ -1,8 +1,8 @@
 """Channels of a log under way: values are copied into preallocated message records, which wait for their chunk."""
 
 import struct
-from collections.abc import Callable, Iterable, Mapping, Sequence, Set
-from itertools import chain
+from collections.abc import Callable, Iterator, Mapping, Sequence, Set
+from itertools import repeat
 from operator import attrgetter
 
 import numpy as np
@@ -18,7 +18,8 @@ class Clock:
     """When the chunk under way is due.
 
     Attributes:
-        due: simulated time [ns] from which the next message completes the chunk, or goes on to write the last one.
+        due: simulated time [ns] from which on the next message finds the chunk complete without it, or lets the last
+            one be written on. So a chunk has whole control ticks, and no message of a later time.
         complete: does so, at this time [ns].
         full: completes it whatever its time, since a channel can hold no more.
     """
@@ -27,7 +28,7 @@ class Clock:
         self.due, self.complete, self.full = due, complete, full
 
     def look(self, time_ns: int, full: bool) -> None:
-        """After a message at a time [ns], with which its channel may be full."""
+        """Before a message at a time [ns], for which its channel may have no room."""
         if full:
             self.full(time_ns)
         elif time_ns >= self.due:
@@ -49,21 +50,48 @@ class Waiting:
         self.count = self.total = 0
         self.times: list[int] = []
 
-    def take(self, offset: int) -> tuple[memoryview | bytes, bytes]:
-        """Hand over what waits.
-
-        Args:
-            offset: where its block begins in the chunk [bytes].
-
-        Returns:
-            the message records, valid until the next `append`, and their MessageIndex record.
-        """
+    def complete(self) -> int:
+        """Put into the messages waiting what their number in the file and their times decide; gives their size [B]."""
         raise NotImplementedError
+
+    def each(self) -> "Iterator[tuple[int, int, bytes | memoryview]]":
+        """Time [ns], channel id and record of each, once they are complete; the record is valid until an `append`."""
+        raise NotImplementedError
+
+    def taken(self) -> None:
+        """They are in a chunk, and wait no more."""
+        self.total += self.count
+        self.drop()
 
     def drop(self) -> None:
         """Forget what waits."""
-        self.times.clear()
+        if self.times:
+            self.times = []  # a new one: channels of the same rows share theirs
         self.count = 0
+
+
+class Slab:
+    """Memory of message records: of each channel one in a row, side by side.
+
+    Args:
+        capacity: rows.
+        width: of a row [bytes].
+
+    Attributes:
+        width: likewise.
+        memory: shape (capacity, width).
+        rows: the rows as wholes, shape (capacity,).
+    """
+
+    def __init__(self, capacity: int, width: int) -> None:
+        self.width, self.memory = width, np.zeros((capacity, width), np.uint8)
+        self.rows: NDArray[np.void] = self.memory.view(f"V{width}")[:, 0]
+        self._bytes = self.memory.reshape(-1).data
+
+    def piece(self, row: int, column: int, size: int) -> memoryview:
+        """A record of a size in a row, from a column on [bytes]."""
+        start = row * self.width + column
+        return self._bytes[start : start + size]
 
 
 class ChannelWriter(Waiting):
@@ -77,19 +105,25 @@ class ChannelWriter(Waiting):
 
     Attributes:
         spec: the channel.
+        size: of a message record [bytes].
+        slab: where the messages wait.
+        column: where in its rows they begin [bytes].
     """
 
     def __init__(self, spec: ChannelSpec, channel_id: int, capacity: int, clock: Clock) -> None:
         super().__init__(channel_id, clock)
         self.spec, self._capacity, self._stamped = spec, capacity, False
-        self._names = tuple(field.name for field in spec.fields)
-        self._records = blank_records(spec, channel_id, capacity)
+        self._names, self.size = tuple(field.name for field in spec.fields), spec.dtype.itemsize
+        self.settle(Slab(capacity, self.size), 0)
+
+    def settle(self, slab: Slab, column: int) -> None:
+        """Wait from now on in a slab, from a column of its rows on [bytes]; nothing waits yet, and nobody has views."""
+        self.slab, self.column = slab, column
+        self._records: NDArray[np.void] = slab.memory[:, column : column + self.size].view(self.spec.dtype)[:, 0]
+        self._records[:] = blank_records(self.spec, self.channel_id, self._capacity)
         self._views: tuple[NDArray[np.generic], ...] = tuple(self._records[name] for name in self._names)
         self._stamps = tuple(self._records[name] for name in ("_log_time", "_stamp", "_publish_time"))
-        self._sequence, self._index = self._records["_sequence"], np.zeros((capacity, 2), "<u8")
-        self._bytes, self._entries = (each.view(np.uint8).ravel().data for each in (self._records, self._index))
-        self._size = self._records.dtype.itemsize
-        self._offsets = np.arange(capacity, dtype=np.uint64) * np.uint64(self._size)
+        self._sequence = self._records["_sequence"]
 
     def append(self, time_ns: int, *values: ArrayLike) -> None:
         """Add a message; the values are copied.
@@ -100,15 +134,16 @@ class ChannelWriter(Waiting):
 
         Raises:
             ValueError: the number of values or a shape does not fit the channel.
-            LogError: the chunk that this message completes cannot be written.
+            LogError: the chunk that is complete without this message cannot be written.
         """
         n = self.count
-        self.times.append(time_ns)
-        for view, value in zip(self._views, values, strict=True):
-            view[n] = value
-        self.count = n = n + 1
         if time_ns >= self._clock.due or n == self._capacity:
             self._clock.look(time_ns, n == self._capacity)
+            n = self.count
+        for view, value in zip(self._views, values, strict=True):
+            view[n] = value
+        self.times.append(time_ns)
+        self.count = n + 1
 
     def put(self, time_ns: int, *sources: object, **given: ArrayLike) -> None:
         """Add a message by the names of its fields; the values are copied.
@@ -129,8 +164,6 @@ class ChannelWriter(Waiting):
     def filler(self, attributes: Mapping[str, str], given: Sequence[str] = ()) -> Callable[..., None]:
         """What adds messages of one source, without a look at names each time as `put` takes it.
 
-        Such a message completes no chunk by its time: those that come at each tick do, and they are added at its end.
-
         Args:
             attributes: of the source, dotted, by field.
             given: fields whose values go after the source, in this order.
@@ -147,13 +180,14 @@ class ChannelWriter(Waiting):
 
         def fill(time_ns: int, source: object, *more: ArrayLike) -> None:
             n = self.count
-            self.times.append(time_ns)
+            if time_ns >= self._clock.due or n == self._capacity:
+                self._clock.look(time_ns, n == self._capacity)
+                n = self.count
             found = more if values is None else (*values(source), *more)
             for view, value in zip(views, found, strict=True):
                 view[n] = value
-            self.count = n = n + 1
-            if n == self._capacity:
-                self._clock.full(time_ns)
+            self.times.append(time_ns)
+            self.count = n + 1
 
         return fill
 
@@ -172,46 +206,40 @@ class ChannelWriter(Waiting):
         """Message records, of which those that wait are the first."""
         return self._records
 
-    def fill(self, times_ns: Sequence[int], stamped: bool = False) -> None:
+    def fill(self, times_ns: list[int], stamped: bool = False) -> None:
         """Take over messages whose values were written into the views, while none waits.
 
         Args:
-            times_ns: their times [ns].
+            times_ns: their times, in a list that nobody changes any more [ns].
             stamped: whether times and numbers are written as well.
         """
-        self.times.extend(times_ns)
-        self.count, self._stamped = len(times_ns), stamped
+        self.times, self.count, self._stamped = times_ns, len(times_ns), stamped
 
-    def take(self, offset: int) -> tuple[memoryview, bytes]:
+    def complete(self) -> int:
         """See `Waiting`."""
-        n, stamps = self.count, self._stamps[0][: self.count]
+        n = self.count
         if not self._stamped:
             times = np.array(self.times, np.uint64)
             for view in self._stamps:
                 view[:n] = times
             self._sequence[:n] = np.arange(self.total, self.total + n)
         self._stamped = False
-        self.total += n
-        self.drop()
-        index = self._index
-        index[:n, 0] = stamps
-        np.add(self._offsets[:n], np.uint64(offset), out=index[:n, 1])
-        return self._bytes[: n * self._size], index_record(self.channel_id, self._entries[: n * _ENTRY])
+        return n * self.size
+
+    def each(self) -> Iterator[tuple[int, int, memoryview]]:
+        """See `Waiting`."""
+        for row, time in enumerate(self.times):
+            yield time, self.channel_id, self.slab.piece(row, self.column, self.size)
 
 
-_ENTRY = 16
+ENTRY = 16
 """Bytes of a message's entry in the index of its channel: time and offset."""
 
 
-def message_index(channel_id: int, times_ns: Iterable[int], offsets: Iterable[int]) -> bytes:
-    """MessageIndex record of a channel's messages in a chunk: times [ns] and byte offsets, as many of each."""
-    entries = tuple(chain.from_iterable(zip(times_ns, offsets, strict=True)))
-    return index_record(channel_id, struct.pack(f"<{len(entries)}Q", *entries))
-
-
-def index_record(channel_id: int, entries: bytes | memoryview) -> bytes:
-    """The same of times and offsets as they stand in it."""
-    return _INDEX_HEADER.pack(Opcode.MESSAGE_INDEX, len(entries) + 6, channel_id, len(entries)) + entries
+def message_index(channel_id: int, entries: Sequence[int]) -> bytes:
+    """MessageIndex record of a channel's messages in a chunk: time [ns] and offset [bytes] of each in turn."""
+    packed = struct.pack(f"<{len(entries)}Q", *entries)
+    return _INDEX_HEADER.pack(Opcode.MESSAGE_INDEX, len(packed) + 6, channel_id, len(packed)) + packed
 
 
 _HEADER = struct.Struct("<BQHIQQ")
@@ -228,29 +256,24 @@ class MessageWriter(Waiting):
         """Add an encoded message.
 
         Raises:
-            LogError: the chunk that this message completes cannot be written.
+            LogError: the chunk that is complete without this message cannot be written.
         """
-        self.times.append(time_ns)
-        self._waiting.append(data)
-        self.count += 1
         if time_ns >= self._clock.due:
             self._clock.complete(time_ns)
+        length, number = _HEADER.size - PREFIX_BYTES + len(data), self.total + self.count
+        self.times.append(time_ns)
+        self._waiting.append(_HEADER.pack(Opcode.MESSAGE, length, self.channel_id, number, time_ns, time_ns) + data)
+        self.count += 1
 
     def drop(self) -> None:
         """Forget what waits."""
         super().drop()
         self._waiting.clear()
 
-    def take(self, offset: int) -> tuple[bytes, bytes]:
+    def complete(self) -> int:
         """See `Waiting`."""
-        blocks: list[bytes] = []
-        offsets = []
-        for number, (time, data) in enumerate(zip(self.times, self._waiting, strict=True), start=self.total):
-            offsets.append(offset)
-            length = _HEADER.size - PREFIX_BYTES + len(data)
-            blocks += (_HEADER.pack(Opcode.MESSAGE, length, self.channel_id, number, time, time), data)
-            offset += _HEADER.size + len(data)
-        self.total += self.count
-        index = message_index(self.channel_id, self.times, offsets)
-        self.drop()
-        return b"".join(blocks), index
+        return sum(map(len, self._waiting))
+
+    def each(self) -> Iterator[tuple[int, int, bytes]]:
+        """See `Waiting`."""
+        return zip(self.times, repeat(self.channel_id), self._waiting, strict=False)

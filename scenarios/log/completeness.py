@@ -11,6 +11,8 @@ import numpy as np
 from mcap.opcode import Opcode
 from numpy.typing import NDArray
 
+from surefoot.scenarios.errors import LogError
+from surefoot.scenarios.log.recorder import Kept
 from surefoot.scenarios.log.scan import (
     INDEX_ENTRY,
     PREFIX,
@@ -137,9 +139,6 @@ def _of_all_together(spans: dict[int, list[tuple[int, int]]]) -> bool:
     return len(spans) > 1 and all(later[0] > earlier[1] for earlier, later in pairwise(ordered))
 
 
-KEPT_RECORD = "kept"
-"""Metadata record of a log that lacks the beginning of its run, with the number of messages dropped."""
-
 _TOPICS_SAID = 3
 _LOOSE_AT_ONCE = 1 << 15
 
@@ -229,9 +228,12 @@ class Completeness:
     @property
     def _dropped(self) -> int:
         """How many messages the log says to have dropped itself, before all others."""
-        kept = next((record.metadata for record in self._contents.metadata if record.name == KEPT_RECORD), {})
-        said = kept.get("messages_dropped", "")
-        return int(said) if said.isdecimal() else 0
+        records = {record.name: record.metadata for record in self._contents.metadata}
+        try:
+            kept = Kept.from_metadata(records, "")
+        except LogError:
+            return 0
+        return 0 if kept is None else kept.dropped
 
     def contradictions(self) -> Iterator[str]:
         """What of the log does not go with the rest, once everything was looked at; some are empty."""

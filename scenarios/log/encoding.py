@@ -15,18 +15,18 @@ from surefoot.scenarios.errors import LogError
 
 _LENGTH = struct.Struct("<I")
 
-_LZ4_LEVEL = -3
-"""Twice as fast as the default, for 8 % more bytes of a log."""
+_LZ4_LEVEL = -4
+"""In blocks for themselves it takes half the time of the default, for 5 % more bytes of a log."""
 
 GREATEST_CHUNK = 1 << 26
 """No sound chunk holds more; a size that is damaged, or made to hurt, must not exhaust the memory [bytes]."""
 
 
-def compress(data: bytes, method: str) -> bytes:
+def compress(data: bytes | memoryview, method: str) -> bytes:
     """Compress a chunk by lz4, zstd or, for an empty method, not at all."""
     if method == "lz4":
-        return bytes(lz4.frame.compress(data, store_size=True, compression_level=_LZ4_LEVEL))
-    return zstandard.compress(data) if method == "zstd" else data
+        return bytes(lz4.frame.compress(data, store_size=True, compression_level=_LZ4_LEVEL, block_linked=False))
+    return zstandard.compress(data) if method == "zstd" else bytes(data)
 
 
 def decompress(data: bytes | memoryview, method: str, size: int) -> bytes:

@@ -27,8 +27,8 @@ def content_at(data: Buffer, offset: int) -> bytes:
 def block_of(data: memoryview, chunk: ChunkPlace, channel_id: int, size: int, file: Buffer) -> memoryview | bytes:
     """Bytes of a channel's messages of `size` bytes, one after the other; those beyond the chunk are left out.
 
-    Where the first and the last one are as far apart as their number says, they stand in a row; `sound_records` shows
-    whether they do.
+    Where the first and the last one are as far apart as their number says, they stand in a row, as in logs of others
+    and of earlier versions; `sound_records` shows whether they do.
 
     Args:
         data: the decompressed chunk.
@@ -43,10 +43,17 @@ def block_of(data: memoryview, chunk: ChunkPlace, channel_id: int, size: int, fi
     return gathered(data, chunk.entries(channel_id, file), size)
 
 
-def gathered(data: memoryview, index: NDArray[np.void], size: int) -> bytes:
+def gathered(data: memoryview, index: NDArray[np.void], size: int) -> memoryview | bytes:
     """Bytes of messages that stand anywhere, one after the other; those beyond the data are left out."""
-    last = len(data) - size
-    return b"".join(data[start : start + size] for start in index["offset"].tolist() if start <= last)
+    offsets = index["offset"]
+    if len(offsets) and offsets.max() > len(data) - size:
+        offsets = offsets[offsets + size <= len(data)] if len(data) >= size else offsets[:0]
+    if not len(offsets):
+        return b""
+    # Each byte of the data as the beginning of a record: all are gathered at once.
+    records: NDArray[np.void] = np.ndarray((len(data) - size + 1,), f"V{size}", data, strides=(1,))
+    found: NDArray[np.uint8] = records[offsets].view(np.uint8)
+    return found.data
 
 
 def sound_records(block: NDArray[np.uint8], channel_id: int, dtype: np.dtype[Any]) -> NDArray[np.void]:

@@ -10,7 +10,7 @@ import numpy as np
 from numpy.typing import NDArray
 
 from surefoot.native.library import Bound, Library, place_of
-from surefoot.scenarios.log.channel import ChannelWriter, Clock
+from surefoot.scenarios.log.channel import ChannelWriter, Clock, Slab
 from surefoot.values import dataclass
 
 Array = NDArray[np.float64]
@@ -96,12 +96,16 @@ class RowWriter:
         sizes = [size for group in groups for _, size in _sizes(group)]
         if sum(sizes) != sum(field.size for writer in writers.values() for field in writer.spec.fields):
             raise ValueError("a row must hold every field of its channels exactly once")
+        self._writers, self._derive = list(writers.values()), layout.derive
+        slab, column = Slab(capacity, sum(writer.size for writer in self._writers)), 0
+        for writer in self._writers:
+            writer.settle(slab, column)
+            column += writer.size
         self._at = (
             layout.at or _places((*_sizes(layout.vectors), *layout.more_vectors.items())),
             _places((*_sizes(layout.numbers), *((name, 1) for name in layout.more_numbers))),
         )
         self._views, self._derived = (_views(layout.vectors), _views(layout.numbers)), _views(layout.derived)
-        self._writers, self._derive = list(writers.values()), layout.derive
         self._vectors, self._announced = np.zeros((capacity, _width(self._at[0]))), _width(self._at[1])
         # From plain numbers straight into memory: an array of them takes longer, and while they wait they grow cold.
         self._pack = struct.Struct(f"{self._announced}d").pack_into
@@ -113,6 +117,11 @@ class RowWriter:
         self._times: list[int] = []
         self._capacity, self._clock = capacity, clock
 
+    @property
+    def topics(self) -> tuple[str, ...]:
+        """Of its channels."""
+        return tuple(writer.spec.topic for writer in self._writers)
+
     def append(self, time_ns: int, numbers: tuple[float, ...], *vectors: Array) -> None:
         """Add a message to each channel; the values are copied.
 
@@ -123,11 +132,13 @@ class RowWriter:
 
         Raises:
             ValueError: the vectors do not fill the row, or the numbers are not as many as were announced.
-            LogError: the chunk that this row completes cannot be written.
+            LogError: the chunk that is complete without this row cannot be written.
         """
         if self._fresh is None:
             self._look(vectors)
         else:
+            if time_ns >= self._clock.due or len(self._times) == self._capacity:
+                self._make_room(time_ns)
             self._fresh += vectors
         self.again(time_ns, numbers)
 
@@ -135,16 +146,20 @@ class RowWriter:
         """The same with the very arrays of the row before, with values of now; of standing rows, and without arrays."""
         if len(numbers) != self._announced:
             raise ValueError(f"a row of {len(numbers)} numbers, where there are places for {self._announced}")
-        times = self._times
-        count = len(times)
+        count = len(self._times)
+        if time_ns >= self._clock.due or count == self._capacity:
+            self._make_room(time_ns)
+            count = len(self._times)
         self._pack(self._memory, 8 * self._announced * count, *numbers)
         if self._gather is not None:
             self._gather(count)
         elif self._standing:
             np.concatenate(self._standing, out=self._vectors[count])
-        times.append(time_ns)
-        if time_ns >= self._clock.due or count + 1 == self._capacity:
-            self._clock.look(time_ns, count + 1 == self._capacity)
+        self._times.append(time_ns)
+
+    def _make_room(self, time_ns: int) -> None:
+        """Have the chunk written that is complete without a row of this time [ns]."""
+        self._clock.look(time_ns, len(self._times) == self._capacity)
 
     def _look(self, vectors: tuple[Array, ...]) -> None:
         """Take arrays that are copied now, and by `again`, as views with one axis."""
@@ -154,7 +169,7 @@ class RowWriter:
 
     def drop(self) -> None:
         """Forget the rows that wait."""
-        self._times.clear()
+        self._times = []
         if self._fresh:
             self._fresh.clear()
 
@@ -253,7 +268,7 @@ class CompiledRows(RowWriter):
     def _bind(
         self, kernels: Library, row: Array, places: Mapping[Place, slice], before: Bound
     ) -> Callable[[int, int], None]:
-        records = [writer.records for writer in self._writers]
+        records, slab = [writer.records for writer in self._writers], self._writers[0].slab
         specs, begins = [writer.spec for writer in self._writers], [place_of(record) for record in records]
         fields = [(spec, begin, field) for spec, begin in zip(specs, begins, strict=True) for field in spec.fields]
         at = [places[spec.topic, field.name] for spec, _, field in fields]
@@ -275,10 +290,10 @@ class CompiledRows(RowWriter):
             sizes=integers(place.stop - place.start for place in at),
             whole=integers(field.kind == "int" for *_, field in fields),
             places=integers(begin + spec.places[field.name] for spec, begin, field in fields),
-            strides=integers(spec.dtype.itemsize for spec, *_ in fields),
+            strides=np.full(len(fields), slab.width),
             channels=len(records),
             records=integers(begins),
-            lengths=integers(spec.dtype.itemsize for spec in specs),
+            lengths=np.full(len(records), slab.width),
             header=integers(specs[0].places[name] for name in _HEADER),
         )
 

@@ -8,92 +8,19 @@ from pathlib import Path
 from types import TracebackType
 from typing import Literal, Self
 
-from mcap.records import Attachment, Channel, Chunk, Header, Metadata, Schema
+from mcap.records import Attachment, Channel, Chunk, Metadata, Schema
 
 from surefoot.native.library import library
-from surefoot.scenarios.errors import LogError
 from surefoot.scenarios.log.channel import ChannelWriter, Clock, MessageWriter, Waiting
-from surefoot.scenarios.log.encoding import MAGIC, Summary, chunk_head, compress, encoded
+from surefoot.scenarios.log.chunk import BlockMaker
+from surefoot.scenarios.log.encoding import compress, encoded
+from surefoot.scenarios.log.file import Defined, Head, IndexedChunk, LogFile, Sink
 from surefoot.scenarios.log.manifest import manifest
+from surefoot.scenarios.log.recorder import FlightRecorder
 from surefoot.scenarios.log.rows import CompiledRows, RowLayout, RowWriter
 from surefoot.scenarios.log.spec import PACKAGE, ChannelSpec
-from surefoot.scenarios.output import reason
+from surefoot.scenarios.log.thinning import THINNED, Sieve, ThinnedChannel, ThinnedMessages, ThinnedRows, Thinning
 from surefoot.values import dataclass
-
-
-class Output:
-    """An unbuffered file that keeps only whole records.
-
-    It never replaces another one, and a file that cannot be begun does not stay.
-
-    Attributes:
-        path: where the log is.
-        position: bytes written.
-        crc: CRC-32 of the bytes written.
-    """
-
-    __slots__ = ("_file", "crc", "path", "position")
-
-    def __init__(self, path: Path, beginning: bytes) -> None:
-        """Create the file with its beginning.
-
-        Raises:
-            LogError: it exists, cannot be created or the beginning does not fit.
-        """
-        self.path = path
-        self.position = self.crc = 0
-        try:
-            self._file = path.open("xb", buffering=0)
-        except FileExistsError:
-            raise LogError(f"{path}: exists already; choose another file, or delete it") from None
-        except OSError as error:
-            raise LogError(f"{path}: cannot be created, {reason(error)}; choose another directory") from None
-        try:
-            self._write(beginning)
-        except OSError as error:
-            self._file.close()
-            path.unlink(missing_ok=True)
-            raise LogError(f"{path}: cannot be written, {reason(error)}; no log was created") from None
-
-    def write(self, data: bytes) -> None:
-        """Append whole records.
-
-        Raises:
-            LogError: they could not be written; the file then holds what came before, under the name ``*.incomplete``.
-        """
-        try:
-            self._write(data)
-        except OSError as error:
-            kept = self._set_aside()
-            message = f"{self.path}: cannot be written on, {reason(error)}; what was written is kept in {kept.name}"
-            raise LogError(message) from None
-
-    @property
-    def closed(self) -> bool:
-        """Whether nothing more can be written."""
-        return self._file.closed
-
-    def close(self) -> None:
-        """Close the file."""
-        self._file.close()
-
-    def _write(self, data: bytes) -> None:
-        rest = memoryview(data)
-        while rest:
-            rest = rest[self._file.write(rest) :]
-        self.position += len(data)
-        self.crc = zlib.crc32(data, self.crc)
-
-    def _set_aside(self) -> Path:
-        """Cut off the record that did not fit and take away the name of a log, if the other name is free."""
-        kept = self.path.with_name(f"{self.path.name}.incomplete")
-        self._file.truncate(self.position)
-        self._file.close()
-        if kept.exists():
-            return self.path
-        self.path.replace(kept)
-        return kept
-
 
 Compression = Literal["lz4", "zstd", ""]
 CHUNK_PERIOD_NS = 90_000_000
@@ -102,8 +29,10 @@ CHUNK_PERIOD_NS = 90_000_000
 _WRITING_NS = 8_000_000
 """Simulated time in which a chunk is written, a part at each tick, so that none takes long [ns]."""
 
+WALKING_SHARE = 0.7
+"""What compression leaves of the messages of a walking robot; of a standing one it leaves less [-]."""
+
 _CAPACITY = 128
-_PROFILE, _LIBRARY = "", "surefoot"
 
 
 @dataclass(frozen=True, slots=True)
@@ -129,25 +58,32 @@ class PublishedSchema:
 
 
 @lru_cache(maxsize=128)
-def _defined(
-    number: int, topic: str, schema: PublishedSchema, metadata: tuple[tuple[str, str], ...]
-) -> tuple[bytes, bytes]:
+def _defined(number: int, topic: str, schema: PublishedSchema, metadata: tuple[tuple[str, str], ...]) -> Defined:
     """Records of a schema and a channel, the same in run after run of a campaign."""
-    return (
+    return Defined(
+        number,
         encoded(Schema(number, schema.descriptors, "protobuf", schema.name)),
         encoded(Channel(number, topic, "protobuf", dict(metadata), number)),
     )
 
 
+def _attachment(file: AttachedFile) -> Attachment:
+    return Attachment(0, 0, file.name, file.media_type, file.data)
+
+
 class LogWriter:
     """An MCAP file under way.
 
-    Messages wait in their channels until a chunk is due, which is then written in one go; so the file on disk is
-    always whole up to the last chunk. `close` adds the index. Usable as a context manager.
+    Messages wait in their channels until a chunk is due, which is then written in one go, in the order of their time.
+    So the file on disk is always whole up to the last chunk. `close` adds the index. Usable as a context manager.
 
     Attributes:
-        path: where the log is.
+        keep: time before its end that the log holds at least; None for all [s].
+        growth: by how much what the log holds grows in simulated time while the robot walks, by the last chunk; None
+            before there were two [B/s].
     """
+
+    _opens: bool
 
     def __init__(
         self,
@@ -155,6 +91,8 @@ class LogWriter:
         metadata: Mapping[str, Mapping[str, str]],
         attachments: Sequence[AttachedFile] = (),
         compression: Compression = "lz4",
+        keep: float | None = None,
+        thinning: Thinning | None = None,
     ) -> None:
         """Create the file; metadata and attachments are on disk when this returns.
 
@@ -163,34 +101,44 @@ class LogWriter:
             metadata: named records of key and value.
             attachments: files to carry.
             compression: of the chunks.
+            keep: time before its end that the log holds at least, and at most twice; None for all [s].
+            thinning: which channels are thinned, and to what; None for none.
 
         Raises:
             LogError: the file exists, or cannot be created or written; nothing of that name is then created.
         """
-        self.path = path
-        self._compression = compression
-        self._summary = Summary()
+        self._compression, self._thinning, self.keep = compression, thinning, keep
         self._channels: list[Waiting] = []
         self._rows: list[RowWriter] = []
+        self._blocks = BlockMaker()
+        self.growth: float | None = None
+        self._until: int | None = None
         self._begin_clock()
-        beginning = bytearray(MAGIC + encoded(Header(_PROFILE, _LIBRARY)))
-        head: list[Metadata | Attachment] = [Metadata(name, dict(values)) for name, values in metadata.items()]
-        head += [Attachment(0, 0, file.name, file.media_type, file.data) for file in attachments]
-        for record in (*head, *([manifest(head)] if head else ())):
-            add = self._summary.add_metadata if isinstance(record, Metadata) else self._summary.add_attachment
-            beginning += add(record, len(beginning))
-        self._output = Output(path, bytes(beginning))
+        first: list[Metadata | Attachment] = [Metadata(name, dict(values)) for name, values in metadata.items()]
+        first += map(_attachment, attachments)
+        head: list[Head] = [*first, *([manifest(first)] if first else ())]
+        self._sink: Sink = LogFile(path, head) if keep is None else FlightRecorder(path, head, round(1e9 * keep))
+
+    @property
+    def path(self) -> Path:
+        """Where the log is."""
+        return self._sink.path
 
     def channel(self, spec: ChannelSpec) -> ChannelWriter:
         """Add a channel, before or between messages."""
         schema = PublishedSchema(f"{PACKAGE}.{spec.message}", spec.descriptors)
-        number = self._define(spec.topic, schema, spec.metadata)
-        writer = ChannelWriter(spec, number, _CAPACITY, self._clock)
+        sieve = self._sieve(spec.topic)
+        number = self._define(spec.topic, schema, spec.metadata, sieve)
+        writer = (
+            ChannelWriter(spec, number, _CAPACITY, self._clock)
+            if sieve is None
+            else ThinnedChannel(spec, number, _CAPACITY, self._clock, sieve)
+        )
         self._channels.append(writer)
         return writer
 
-    def rows(self, layout: RowLayout) -> RowWriter:
-        """Fill channels of one rate together; errors as of `RowWriter`."""
+    def rows(self, layout: RowLayout) -> RowWriter | ThinnedRows:
+        """Fill channels of one rate together, which are thinned together; errors as of `RowWriter`."""
         kernels, derives = library(), layout.derive is not None and layout.compiled is None
         rows = (
             RowWriter(layout, _CAPACITY, self._clock)
@@ -198,32 +146,42 @@ class LogWriter:
             else CompiledRows(layout, _CAPACITY, self._clock, kernels)
         )
         self._rows.append(rows)
-        return rows
+        sieves = {topic: self._sieve(topic) for topic in rows.topics}
+        whole = [topic for topic, sieve in sieves.items() if sieve is None]
+        sieve = next(iter(sieves.values()))
+        if sieve is None or whole:
+            if len(whole) < len(sieves):
+                raise ValueError(f"rows of {', '.join(sieves)}, of which {', '.join(whole)} are not thinned")
+            return rows
+        return ThinnedRows(rows, sieve)
 
-    def message_channel(self, topic: str, schema: PublishedSchema, doc: str) -> MessageWriter:
-        """Add a channel of a published schema whose messages come encoded."""
-        writer = MessageWriter(self._define(topic, schema, {"doc": doc}), self._clock)
+    def message_channel(self, topic: str, schema: PublishedSchema, doc: str, sampled: bool = False) -> MessageWriter:
+        """Add a channel of a published schema whose messages come encoded; ``sampled`` ones may be thinned."""
+        sieve = self._sieve(topic) if sampled else None
+        number = self._define(topic, schema, {"doc": doc}, sieve)
+        writer = MessageWriter(number, self._clock) if sieve is None else ThinnedMessages(number, self._clock, sieve)
         self._channels.append(writer)
         return writer
 
-    def _define(self, topic: str, schema: PublishedSchema, metadata: Mapping[str, str]) -> int:
+    def _sieve(self, topic: str) -> Sieve | None:
+        return None if self._thinning is None else self._thinning.sieve(topic)
+
+    def _define(self, topic: str, schema: PublishedSchema, metadata: Mapping[str, str], sieve: Sieve | None) -> int:
         """Write the schema and the channel; gives the channel's number."""
         number = len(self._channels) + 1
-        records = _defined(number, topic, schema, tuple(metadata.items()))
-        self._output.write(b"".join(records))
-        self._summary.add_channel(number, *records)
+        noted = metadata if sieve is None else {**metadata, THINNED: str(sieve.rate)}
+        self._sink.add(_defined(number, topic, schema, tuple(noted.items())))
         return number
 
     def attach(self, file: AttachedFile) -> None:
         """Write an attachment after everything appended so far."""
         self.flush()
-        record = Attachment(0, 0, file.name, file.media_type, file.data)
-        self._output.write(self._summary.add_attachment(record, self._output.position))
+        self._sink.add(_attachment(file))
 
     def add_metadata(self, name: str, values: Mapping[str, str]) -> None:
         """Write a metadata record after everything appended so far."""
         self.flush()
-        self._output.write(self._summary.add_metadata(Metadata(name, dict(values)), self._output.position))
+        self._sink.add(Metadata(name, dict(values)))
 
     def flush(self) -> None:
         """Write what waits as one chunk, if anything waits."""
@@ -239,58 +197,54 @@ class LogWriter:
         waiting = [channel for channel in self._channels if channel.count]
         if not waiting:
             return
-        times = [channel.times for channel in waiting]
-        start, end = min(map(min, times)), max(map(max, times))
-        blocks, indexes, offset = [], [], 0
-        for channel in waiting:
-            block, index = channel.take(offset)
-            blocks.append(block)
-            indexes.append((channel.channel_id, index))
-            offset += len(block)
-        data = b"".join(blocks)
-        crc = zlib.crc32(data)  # while the bytes are near
+        opens = self._opens
+        self._opens = False
+        made = self._blocks.block(waiting)
+        crc = zlib.crc32(made.data)  # while the bytes are near
+        # The first has what is written once.
+        if self._until is not None and self._until < made.end_ns:
+            self.growth = WALKING_SHARE * len(made.data) * 1e9 / (made.end_ns - self._until)
+        self._until = made.end_ns
         yield
-        packed = compress(data, self._compression)
+        packed = compress(made.data, self._compression)
         yield
-        chunk = Chunk(self._compression, packed, end, start, crc, len(data))
-        head = chunk_head(chunk)
-        self._summary.add_chunk(chunk, self._output.position, len(head) + len(chunk.data), indexes)
-        self._output.write(b"".join((head, chunk.data, *(index for _, index in indexes))))
+        chunk = Chunk(self._compression, packed, made.end_ns, made.start_ns, crc, len(made.data))
+        self._sink.add_chunk(IndexedChunk(chunk, made.indexes, made.counts, opens))
 
     def close(self) -> None:
         """Write what waits and the index, and close the file; a second call does nothing."""
-        if self._output.closed:
+        if self._sink.closed:
             return
         self.flush()
-        counts = {channel.channel_id: channel.total for channel in self._channels}
-        self._output.write(self._summary.finish(self._output.position, counts, self._output.crc))
-        self._output.close()
+        self._sink.finish()
 
     def discard(self) -> None:
         """Close and remove the file: there is no run to log."""
-        self._output.close()
-        self.path.unlink(missing_ok=True)
+        self._sink.discard()
 
     def _begin_clock(self) -> None:
         self._writing: Iterator[None] = iter(())
+        self._opens = True
         # The first is shorter: whole tenths of a second are when plans are made, too.
         self._next, self._late = CHUNK_PERIOD_NS - _WRITING_NS, 0
         self._clock = Clock(self._next, self._go_on, self._full)
 
-    def _full(self, time_ns: int) -> None:
-        self._next = self._clock.due = time_ns + CHUNK_PERIOD_NS
+    def _full(self, _time_ns: int) -> None:
+        """Write a chunk before it is due; when the next one is due stays as it was."""
         self.flush()
+        self._clock.due = self._next
 
     def _go_on(self, time_ns: int) -> None:
         """Begin a chunk, or write the next part of the one that is being written."""
-        clock = self._clock
-        if time_ns >= self._next:
+        clock, due = self._clock, time_ns >= self._next
+        if due:
             deque(self._writing, maxlen=0)  # of one that is under way still, after a gap in time
             self._next, self._late = time_ns + CHUNK_PERIOD_NS, time_ns + _WRITING_NS
             self._writing = self._chunk()
         elif time_ns >= self._late:
             deque(self._writing, maxlen=0)
         clock.due = time_ns + 1 if next(self._writing, self) is None else self._next
+        self._opens |= due
 
     def __enter__(self) -> Self:
         return self
@@ -308,9 +262,10 @@ class NoLog(LogWriter):
         """Open nothing."""
         self._channels = []
         self._rows = []
+        self._thinning = self.keep = self.growth = None
         self._begin_clock()
 
-    def _define(self, topic: str, schema: PublishedSchema, metadata: Mapping[str, str]) -> int:
+    def _define(self, topic: str, schema: PublishedSchema, metadata: Mapping[str, str], sieve: Sieve | None) -> int:
         return len(self._channels) + 1
 
     def attach(self, file: AttachedFile) -> None:

@@ -45,6 +45,9 @@ def _int(name: str, doc: str, *shape: int) -> FieldSpec:
     return FieldSpec(name, shape, "-", "", doc, "int")
 
 
+_STEP = "in the physics step that ended at the message's time"
+"""Of which instant forces are: they follow from the state in which that step began."""
+
 _PUSHED = "sum of pushes, mean over the tick that ends at the message's time; NaN where a plant does not measure it"
 
 
@@ -54,11 +57,11 @@ def measurement(n: Sizes) -> ChannelSpec:
     fields = (
         _real("joint_position", n.nj, "rad", "", "encoders"),
         _real("joint_velocity", n.nj, "rad/s", "", "encoders"),
-        _real("joint_torque", n.nj, "N m", "", "applied"),
+        _real("joint_torque", n.nj, "N m", "", f"applied {_STEP}"),
         _real("gyro", 3, "rad/s", "imu", "angular velocity"),
-        _real("accelerometer", 3, "m/s^2", "imu", "specific force"),
-        _real("wrench_left", 6, "N, N m", "left sole", "contact wrench at the sole centre"),
-        _real("wrench_right", 6, "N, N m", "right sole", "contact wrench at the sole centre"),
+        _real("accelerometer", 3, "m/s^2", "imu", f"specific force {_STEP}"),
+        _real("wrench_left", 6, "N, N m", "left sole", f"contact wrench at the sole centre {_STEP}"),
+        _real("wrench_right", 6, "N, N m", "right sole", f"contact wrench at the sole centre {_STEP}"),
         _real("external_force", 3, "N", "world", _PUSHED),
     )
     return ChannelSpec("/measurement", "Measurement", fields, doc_of(measurement))
@@ -181,8 +184,8 @@ def planner_state(_: Sizes) -> ChannelSpec:
 def contact(_: Sizes) -> ChannelSpec:
     """Contacts planned, used by the controller and felt, every control tick."""
     fields = (
-        _real("zmp", 3, "m", "world", "from contact forces; NaN in flight"),
-        _real("normal_force", 2, "N", "", "left, right"),
+        _real("zmp", 3, "m", "world", f"from contact forces, of a body {_STEP}; NaN in flight"),
+        _real("normal_force", 2, "N", "", f"left, right; of a body {_STEP}"),
         _int("planned", "contact by the gait: left, right", 2),
         _int("active", "contact in the whole-body QP: left, right", 2),
         _int("felt", "contact by force: left, right", 2),

@@ -18,8 +18,9 @@ from surefoot.native.library import library
 from surefoot.planner.laws.profiles import Profile
 from surefoot.scenarios.errors import LogError, ScenarioError, SetupError
 from surefoot.scenarios.file.schema import Scenario
+from surefoot.scenarios.judge.metrics import judged_topics
 from surefoot.scenarios.judge.verdict import Verdict, judge
-from surefoot.scenarios.log import AttachedFile, LogWriter, read
+from surefoot.scenarios.log import AttachedFile, LogWriter, Thinning, read
 from surefoot.scenarios.output import reason
 from surefoot.scenarios.record.provenance import (
     AGENDA_RECORD,
@@ -252,7 +253,9 @@ def open_log(path: Path, walk: Walk) -> LogWriter:
         AttachedFile(SCENARIO_FILE, "application/yaml", walk.text.encode()),
         AttachedFile("robot.xml", "application/xml", without_looks(walk.robot.mjcf).encode()),
     ]
-    return LogWriter(path, metadata, attachments)
+    rate = walk.log.rate
+    thinning = None if rate is None else Thinning(rate, judged_topics())
+    return LogWriter(path, metadata, attachments, keep=walk.log.keep, thinning=thinning)
 
 
 def run_constants(walk: Walk) -> RunConstants:

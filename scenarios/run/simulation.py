@@ -133,6 +133,14 @@ class Simulation:
         return self._loop.end
 
     @property
+    def log_growth(self) -> float | None:
+        """By how much the log grows in simulated time while the robot walks; None without one, and at first [B/s].
+
+        With `log.keep` it is the growth of what would be written without.
+        """
+        return self._writer.growth
+
+    @property
     def planner(self) -> Planner:
         """The walking planner."""
         return self._loop.planning.planner

@@ -42,8 +42,8 @@ _TORQUE = "torque_ratio_max"
 _RESERVE = 0.05
 """Of its motors' torque, that such a bound leaves a weaker robot at least [-]."""
 
-_APART: tuple[Key, ...] = (("wbc",), ("planner", "recovery"), ("rates",), ("planner", "sample_time"))
-"""Keys whose units are those of parameters, or that follow from the clock."""
+_APART: tuple[Key, ...] = (("wbc",), ("planner", "recovery"), ("rates",), ("planner", "sample_time"), ("log",))
+"""Keys whose units are those of parameters, that follow from the clock, or that bound what is written."""
 
 _SOLES = ("foot_length", "foot_width")
 """Keys of `robot_options` that another robot has its own of."""

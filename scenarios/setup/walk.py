@@ -22,7 +22,7 @@ from surefoot.planner.types import FeetState, Twist
 from surefoot.scenarios.file.control import ControlSettings
 from surefoot.scenarios.file.dumped import scenario_yaml
 from surefoot.scenarios.file.group import controller_parameters
-from surefoot.scenarios.file.schema import Fault, PendulumSettings, PushSettings, Rates, Scenario, Start
+from surefoot.scenarios.file.schema import Fault, LogSettings, PendulumSettings, PushSettings, Rates, Scenario, Start
 from surefoot.scenarios.file.sensing import Sensing
 from surefoot.scenarios.setup.formulation import Formulation, cop_room, leg_reach, lowered, region_of
 from surefoot.scenarios.setup.gait import (
@@ -316,6 +316,11 @@ class Walk:
     def hardware(self) -> Hardware:
         """What sensors and motors do that nobody is told of."""
         return Hardware.of(self.sensing, self.keys.motors, self.size)
+
+    @property
+    def log(self) -> LogSettings:
+        """How much of the run its log holds."""
+        return self.keys.log or LogSettings()
 
     @property
     def tasks(self) -> tuple[str, ...]:

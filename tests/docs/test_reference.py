@@ -100,7 +100,15 @@ def test_every_key_of_the_table_is_one_and_takes_its_default(reference):
     planner = scenario.planner.model_copy(update={"recovery": None})
     assert (
         scenario.model_copy(
-            update={"wbc": None, "motors": None, "plant": None, "control": None, "planner": planner, "errors": errors}
+            update={
+                "wbc": None,
+                "motors": None,
+                "plant": None,
+                "control": None,
+                "log": None,
+                "planner": planner,
+                "errors": errors,
+            }
         )
         == Scenario()
     )

@@ -10,7 +10,7 @@ from surefoot.joints import JointCommand
 from surefoot.readings import Reading, Readings
 from surefoot.scenarios.errors import LogError
 from surefoot.scenarios.file.schema import Scenario
-from surefoot.scenarios.log import Log, LogWriter, read
+from surefoot.scenarios.log import Kept, Log, LogWriter, read
 from surefoot.scenarios.record.channels import Sizes
 from surefoot.scenarios.record.shadow import ShadowRecorder
 from surefoot.scenarios.run.assembly import Parts
@@ -37,7 +37,8 @@ class ShadowPlant:
         control_tick: number of the control tick at which was measured last.
 
     Raises:
-        LogError: the log is of another robot, or holds no walk in full physics, or no readings where they are needed.
+        LogError: the log is of another robot, or holds no walk in full physics, or not all readings where they are
+            needed.
     """
 
     def __init__(self, log: Log, walk: Walk, writer: LogWriter) -> None:
@@ -47,6 +48,11 @@ class ShadowPlant:
         if missing:
             right = "give the log of a run in full physics, with the same sensors"
             raise LogError(f"{log.path}: has no channel {missing[0]}; {right}")
+        stamps = log["/measurement"].time_ns
+        apart = [topic for topic in needed if not np.array_equal(log[topic].time_ns, stamps)]
+        if apart:
+            right = "give the log of a run without log.rate"
+            raise LogError(f"{log.path}: {apart[0]} has not a message for each one of /measurement; {right}")
         self._fields = {topic: _columns(log, topic) for topic in needed}
         if self._fields["/measurement"]["joint_position"].shape[1] != joints:
             raise LogError(f"{log.path}: a log of another robot than {walk.robot.name}; give one of it")
@@ -120,6 +126,8 @@ def walk_in_shadow(path: Path, scenario: Scenario, out: Path, on_progress: OnPro
     log = read(path)
     if "/measurement" not in log.numeric:
         raise LogError(f"{path}: holds no walk in full physics; give the log of one")
+    if (kept := Kept.from_metadata(log.metadata, str(path))) is not None:
+        raise LogError(f"{path}: has its run from {kept.begin:.3f} s on alone; give the log of a run without log.keep")
     lasts = (round(1e-9 * int(log["/measurement"].time_ns[-1]) * scenario.rates.control) + 1) / scenario.rates.control
     scenario = scenario.model_copy(update={"duration": lasts})
 

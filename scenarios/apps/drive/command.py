@@ -1,5 +1,6 @@
 """``surefoot drive``: the robot live in a browser, until a signal ends it."""
 
+import math
 from collections.abc import Callable
 from contextlib import suppress
 from pathlib import Path
@@ -54,7 +55,7 @@ def drive(
 
 
 def drive_scenario(scenario: "Scenario", out: Path, port: int | None, say: Callable[[str], None]) -> None:
-    """Drive a scenario's robot until a signal ends it; ``say`` is told where the page and where each log is.
+    """Drive a scenario's robot until a signal ends it; ``say`` is told of page and logs where they are, and their size.
 
     Raises:
         MissingExtraError: viser is not installed.
@@ -79,7 +80,7 @@ def drive_scenario(scenario: "Scenario", out: Path, port: int | None, say: Calla
             with suppress(OSError):
                 folder.rmdir()
             raise
-        say(f"log: {folder / LOG_NAME}")
+        say(f"log: {folder / LOG_NAME}, {log_size(simulation, folder / LOG_NAME)}")
         return simulation
 
     inputs = Inputs()
@@ -90,3 +91,24 @@ def drive_scenario(scenario: "Scenario", out: Path, port: int | None, say: Calla
             session.run(lambda: interrupts.count > 0)
         finally:
             session.close()
+
+
+MOST_KEPT = 3
+"""A flight recorder takes at most so many times what it is to keep, in its log and the one that takes its place."""
+
+MOST_BEGINNINGS = 4
+"""And so many times what a log begins with: twice the records beside the messages, and pictures of the scene."""
+
+
+def log_size(simulation: "Simulation", path: Path) -> str:
+    """Say what the log of a simulation that has just begun takes; the simulation goes on until that is known."""
+    from surefoot.scenarios.run.planning import RunFault
+
+    with suppress(RunFault):  # its end says why
+        while simulation.log_growth is None and not simulation.done:
+            simulation.advance()
+    growth, keep = simulation.log_growth or 0.0, simulation.walk.log.keep
+    if keep is None:
+        return f"{3600e-9 * growth:.1f} GB an hour while it walks; --set log.keep=60s keeps the last minute"
+    most = MOST_KEPT * keep * growth + MOST_BEGINNINGS * path.stat().st_size
+    return f"of which the last {keep:g} s are kept; it takes at most {math.ceil(1e-6 * most)} MB"

@@ -44,7 +44,7 @@ class Drawn:
     def __init__(
         self, writer: LogWriter, topic: str, schema: type[ProtobufMessage], template: Template, doc: str
     ) -> None:
-        self._channel = writer.message_channel(topic, published(schema), doc)
+        self._channel = writer.message_channel(topic, published(schema), doc, sampled=True)
         self._template = template.fresh()
 
     def append(self, time_ns: int, values: ArrayLike) -> None:
@@ -217,7 +217,9 @@ class BodyView:
             "/scene/world", published(SceneUpdate), "robot and terrain, each body in its frame"
         )
         self._scene_data = scene_data(world.mjcf())
-        self._scene_every = control_rate * max(SCENE_PERIOD, round(len(self._scene_data) / SCENE_RATE))
+        period = max(SCENE_PERIOD, round(len(self._scene_data) / SCENE_RATE))
+        # A flight recorder has it in all that it keeps.
+        self._scene_every = round(control_rate * (period if writer.keep is None else min(period, writer.keep)))
         self._walk = WalkView(writer, 0.5 * robot.sole_length, 0.5 * robot.sole_width)
         self._events = EventLog(writer)
         self._levers = np.zeros((2, 3, 2))

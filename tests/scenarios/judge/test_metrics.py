@@ -2,6 +2,8 @@
 
 import numpy as np
 import pytest
+from mcap.reader import make_reader
+from mcap.writer import Writer
 
 from surefoot.scenarios.errors import LogError
 from surefoot.scenarios.judge.digest import RunView
@@ -179,9 +181,29 @@ def test_an_empty_run_has_no_metrics_but_its_size(metrics, motion):
     assert {name for name, value in found.items() if value is not None} == {"steps_planned", "log_bytes"}
 
 
+def cut_anywhere(source, target):
+    """A log as other tools write it again: in order, in chunks of so many bytes."""
+    with source.open("rb") as before, target.open("wb") as after:
+        reader, writer, numbers = make_reader(before), Writer(after, chunk_size=200_000), {}
+        writer.start()
+        for record in reader.iter_metadata():
+            writer.add_metadata(record.name, record.metadata)
+        for file in reader.iter_attachments():
+            writer.add_attachment(0, 0, file.name, file.media_type, file.data)
+        for schema, channel, message in reader.iter_messages():
+            if channel.id not in numbers:
+                made = writer.register_schema(schema.name, schema.encoding, schema.data)
+                numbers[channel.id] = writer.register_channel(channel.topic, "protobuf", made, channel.metadata)
+            stamp = message.log_time
+            writer.add_message(numbers[channel.id], stamp, message.data, stamp, message.sequence)
+        writer.finish()
+    return target
+
+
 def test_windows_of_a_long_log_lose_no_tick_and_shift_none(tmp_path, robot, two_steps, motion):
-    """Chunks end within a tick, with some of its messages in the next one; what is gathered is as of the whole log."""
-    log = read(run_scenario(two_steps, tmp_path, None, motion(duration=9.0, zmp_offset=(0.003, 0.0)), robot).log)
+    """Chunks of others end within a tick, some of its messages in the next; gathered is what the whole log has."""
+    own = run_scenario(two_steps, tmp_path, None, motion(duration=9.0, zmp_offset=(0.003, 0.0)), robot).log
+    log = read(cut_anywhere(own, tmp_path / "cut.mcap"))
     gathered, whole = digest(log), RunView(log)
     sizes = [[len(part[topic]) for topic in ("/measurement", "/truth", "/timing")] for part in log.windows(log.numeric)]
     assert len(sizes) > 2

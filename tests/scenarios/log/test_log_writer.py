@@ -14,6 +14,7 @@ from mcap.reader import make_reader
 from mcap.records import Attachment, Chunk, ChunkIndex, Metadata
 from mcap_protobuf.decoder import DecoderFactory
 
+import surefoot.scenarios.log.file as log_file
 import surefoot.scenarios.log.writer as log_writer
 from surefoot.scenarios.errors import LogError
 from surefoot.scenarios.log import AttachedFile, ChannelSpec, FieldSpec, LogWriter, read
@@ -157,8 +158,8 @@ def test_nothing_is_lost_in_gaps_of_time(tmp_path, gaps):
 def test_no_tick_does_all_of_a_chunk(tmp_path, monkeypatch):
     done = []
     monkeypatch.setattr(log_writer, "compress", lambda data, _: done.append("compressed") or data)
-    write = log_writer.Output.write
-    monkeypatch.setattr(log_writer.Output, "write", lambda self, data: done.append("written") or write(self, data))
+    write = log_file.Output.write
+    monkeypatch.setattr(log_file.Output, "write", lambda self, data: done.append("written") or write(self, data))
     with LogWriter(tmp_path / "log.mcap", {}, compression="") as writer:
         channel = writer.channel(SPEC)
         for tick in range(60):

@@ -10,9 +10,11 @@ import time
 import numpy as np
 import pytest
 from mcap.reader import make_reader
+from mcap_doctor import complaints
 from mcap_protobuf.decoder import DecoderFactory
 
 from surefoot.scenarios.judge.inspection import inspect
+from surefoot.scenarios.judge.metrics import OWN
 from surefoot.scenarios.log import read
 from surefoot.scenarios.log.recover import recover
 from surefoot.scenarios.record.foxglove import DERIVED_TOPICS
@@ -57,6 +59,32 @@ def test_the_same_run_gives_the_same_content_but_for_the_clock_on_the_wall(log, 
     if not from_sensors:  # the other process does not read what is added to the catalogue
         assert first.attachments == second.attachments
         assert first.metadata == second.metadata
+
+
+def test_the_stock_doctor_finds_nothing(log):
+    assert not complaints(log)
+
+
+def test_a_flight_recorder_and_thinned_channels_in_full_physics(log, tmp_path, same_content):
+    """Each by itself and both together; the robot is felt by its sensors, whose readings do not judge."""
+    felt = tuple(key for key in SHORT if not key.startswith("sensing"))
+    whole = run_scenario(load_scenario("diagonal-walk", felt), tmp_path)
+    thin = run_scenario(load_scenario("diagonal-walk", (*felt, "log.rate=10")), tmp_path)
+    both = run_scenario(load_scenario("diagonal-walk", (*felt, "log.rate=10", "log.keep=1s")), tmp_path)
+    logs = [read(result.log) for result in (whole, thin, both)]
+    assert not any(complaints(each.path) or each.losses() for each in logs)
+    assert thin.verdict.passed == whole.verdict.passed
+    assert thin.verdict.reasons == whole.verdict.reasons
+    for name, value in thin.verdict.metrics.items():
+        assert value == whole.verdict.metrics[name] or not OWN[name].repeatable, name
+    assert len(logs[1]["/readings"]) == 35 < len(logs[0]["/readings"])
+    assert thin.log.stat().st_size < 0.85 * whole.log.stat().st_size
+    assert not both.verdict.passed
+    assert 1.0 <= logs[2]["/truth"].time[-1] + 0.002 - logs[2]["/truth"].time[0] < 2.2
+    assert logs[2].count("/scene/world") >= 1
+    begin = logs[2]["/truth"].time_ns[0]
+    assert logs[2]["/truth"].content() == logs[0]["/truth"].between(begin, 10**12).content()
+    assert not same_content(both.log, run_scenario(load_scenario(str(both.log)), tmp_path).log)
 
 
 def test_the_stock_reader_decodes_every_channel_by_its_schema(log):

@@ -7,8 +7,6 @@ from typing import TYPE_CHECKING, Annotated, Any, TypeVar, get_args
 
 import typer
 
-from surefoot.documented import doc_of
-
 if TYPE_CHECKING:
     from pydantic import BaseModel
 
@@ -84,7 +82,7 @@ def with_options(kind: Callable[..., T]) -> Callable[[Callable[[T], None]], Call
         def command(**given: Any) -> None:
             act(kind(**given))
 
-        command.__name__, command.__doc__ = act.__name__, doc_of(act)
+        command.__name__, command.__doc__ = act.__name__, act.__doc__
         command.__signature__ = inspect.signature(kind)  # type: ignore[attr-defined]
         return command
 

@@ -137,7 +137,7 @@ def test_a_message_bears_the_time_it_is_logged_at(parts):
 def test_a_log_may_say_that_it_dropped_its_beginning(tmp_path):
     for dropped, lacks in (("10", ()), ("9", ("10 messages of /x are missing",))):
         path = tmp_path / f"{dropped}.mcap"
-        with LogWriter(path, {"kept": {"messages_dropped": dropped}}) as writer:
+        with LogWriter(path, {"kept": {"keep": "1.0", "from": "0.02", "messages_dropped": dropped}}) as writer:
             x = writer.channel(SPEC)
             x.total = 10
             for tick in range(10, 30):

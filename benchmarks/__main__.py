@@ -11,7 +11,7 @@ import platform
 import sys
 from pathlib import Path
 
-from benchmarks import counts, history, log, plan, scaling, solvers, startup, tick
+from benchmarks import counts, history, log, memory, plan, scaling, solvers, startup, tick
 from benchmarks.table import Measure
 
 SECTIONS: dict[str, Measure] = {
@@ -27,6 +27,7 @@ SECTIONS: dict[str, Measure] = {
     "cores": scaling.cores,
     "solvers": solvers.solvers,
     "log": log.reading,
+    "memory": memory.reading,
 }
 
 

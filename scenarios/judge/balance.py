@@ -2,8 +2,9 @@
 
 import numpy as np
 
+from surefoot.scenarios.columns import Reads
 from surefoot.scenarios.judge.body import feet_lean
-from surefoot.scenarios.judge.digest import SENSED, Array, Mask, Reads, Rows, RunView
+from surefoot.scenarios.judge.digest import SENSED, Array, Mask, Rows, RunView
 from surefoot.scenarios.judge.metric import MM, OF_HALF_THE_FOOT, OF_THE_TIME, SHARE, metric, reduction
 from surefoot.scenarios.judge.placed import to_truth
 

@@ -1,28 +1,24 @@
 """A log as metrics and health checks see it: gathered in one pass with bounded memory, on common control ticks."""
 
-import tempfile
-from collections.abc import Callable, Hashable, Iterable, Iterator, Mapping
-from functools import cached_property
+from collections.abc import Callable, Iterable, Iterator, Mapping
+from functools import cached_property, partial
 from pathlib import Path
-from typing import IO, TYPE_CHECKING, Any, TypeAlias, TypeVar, cast
+from typing import TYPE_CHECKING, Any, TypeAlias, TypeVar, cast
 
 import numpy as np
 from numpy.typing import NDArray
 
 from surefoot.planner.geometry import headings
+from surefoot.scenarios.columns import Columns, KeptChannel, Reads, keep
 from surefoot.scenarios.errors import LogError
 from surefoot.scenarios.judge.body import knees
 from surefoot.scenarios.log.recorder import Kept
-from surefoot.scenarios.output import reason
 from surefoot.scenarios.record.provenance import RunConstants
 
 if TYPE_CHECKING:
     from surefoot.scenarios.log import ChannelData, Log
 
 T = TypeVar("T")
-
-Reads = Mapping[str, tuple[str, ...]]
-"""Names of fields by topic."""
 
 CONTROL_TOPICS = ("/measurement", "/truth", "/estimate", "/contact", "/reference", "/wbc", "/torque", "/timing")
 """Topics with a message in every control tick."""
@@ -43,124 +39,6 @@ def always(fidelity: str) -> tuple[str, ...]:
     body = ("/measurement", "/estimate", "/wbc", "/torque")
     topics = (*CONTROL_TOPICS, "/planner_state", "/plan", "/footstep")
     return topics if fidelity == "full" else tuple(topic for topic in topics if topic not in body)
-
-
-TIME = "time_ns"
-"""Key of the times of a topic's messages, among those of its fields."""
-
-
-HELD_BYTES = 16 << 20
-"""What all columns together may take in memory: a minute of a walk."""
-
-
-class Columns:
-    """Arrays by key, each joined of its parts.
-
-    From a file an array is mapped anew whenever it is asked for, so that its memory is free again as soon as it is
-    dropped, however long the log.
-    """
-
-    def __init__(self) -> None:
-        self._parts: dict[Hashable, list[NDArray[Any]]] = {}
-        self._files: dict[Hashable, IO[bytes]] = {}
-        self._kinds: dict[Hashable, tuple[tuple[int, ...], np.dtype[Any]]] = {}
-        self._rows: dict[Hashable, int] = {}
-        self._unlike: set[Hashable] = set()
-        self._held, self._spilled = 0, False
-
-    def __contains__(self, key: Hashable) -> bool:
-        return key in self._kinds
-
-    def __iter__(self) -> Iterator[Hashable]:
-        return iter(self._kinds)
-
-    def add(self, key: Hashable, values: NDArray[Any]) -> None:
-        """Append a part, which nobody may change from then on; a key whose parts cannot be joined is forgotten.
-
-        Raises:
-            LogError: there is no room for the files.
-        """
-        kind, sound = (values.shape[1:], values.dtype), values.ndim > 0 and not values.dtype.hasobject
-        if key in self._unlike or not sound or self._kinds.setdefault(key, kind) != kind:
-            self.forget(key)
-            return
-        self._rows[key] = self._rows.get(key, 0) + len(values)
-        if self._spilled:
-            self._write(key, values)
-            return
-        self._parts.setdefault(key, []).append(values)
-        self._held += values.nbytes
-        if self._held > HELD_BYTES:
-            self._spill()
-
-    def forget(self, key: Hashable) -> None:
-        """Drop what there is of a key, and what comes."""
-        self._unlike.add(key)
-        for table in (self._parts, self._files, self._kinds):
-            table.pop(key, None)
-
-    def __len__(self) -> int:
-        return len(self._kinds)
-
-    def rows(self, key: Hashable) -> int:
-        """Length of an array."""
-        return self._rows.get(key, 0)
-
-    def __getitem__(self, key: Hashable) -> NDArray[Any]:
-        """The array of a key; it cannot be written to."""
-        shape, dtype = self._kinds[key]
-        if not self._spilled:
-            if len(self._parts[key]) > 1:
-                self._parts[key] = [np.concatenate(self._parts[key])]
-            (values,) = self._parts[key]
-            values.flags.writeable = False
-            return values
-        if not self._rows[key] or 0 in shape:
-            return np.empty((self._rows[key], *shape), dtype)
-        self._files[key].flush()
-        return np.asarray(np.memmap(self._files[key], dtype, "r", shape=(self._rows[key], *shape)))
-
-    def _spill(self) -> None:
-        self._spilled = True
-        for key, parts in self._parts.items():
-            for part in parts:
-                self._write(key, part)
-        self._parts.clear()
-
-    def _write(self, key: Hashable, values: NDArray[Any]) -> None:
-        try:
-            if key not in self._files:
-                self._files[key] = tempfile.TemporaryFile(prefix="surefoot-")  # noqa: SIM115  open as long as it is used
-            self._files[key].write(values.tobytes())
-        except OSError as error:
-            what = f"{tempfile.gettempdir()}: no place to digest a long log, {reason(error)}"
-            raise LogError(f"{what}; set TMPDIR to a directory with more room") from None
-
-
-class KeptChannel:
-    """Fields of a channel over the whole run; one that was not kept is read from the log when it is asked for."""
-
-    def __init__(self, log: "Log", topic: str, columns: Columns) -> None:
-        self._log, self._topic = log, topic
-        self._columns = columns
-
-    def __len__(self) -> int:
-        return self._columns.rows((self._topic, TIME))
-
-    @property
-    def time_ns(self) -> NDArray[np.int64]:
-        """Simulated time of each message, shape (n,) [ns]."""
-        return self._columns[self._topic, TIME]
-
-    @property
-    def time(self) -> NDArray[np.float64]:
-        """Simulated time of each message, shape (n,) [s]."""
-        return np.asarray(self.time_ns / 1e9)
-
-    def field(self, name: str) -> NDArray[Any]:
-        """Values of one field, shape (n, *field shape)."""
-        kept = (self._topic, name)
-        return self._columns[kept] if kept in self._columns else self._log[self._topic].field(name)
 
 
 Channel: TypeAlias = "ChannelData | KeptChannel"
@@ -227,15 +105,10 @@ class Digest(Window):
         for number, channels in enumerate(_in_step(log.windows(topics))):
             if number and not any(map(len, channels.values())):
                 continue  # nothing was put off: of nothing, the first part has told all kinds of fields
-            for topic, channel in channels.items():
-                kept.add((topic, TIME), channel.time_ns)
-                there = {field.name for field in channel.fields}
-                for name in held[topic]:
-                    if name in there:
-                        kept.add((topic, name), channel.field(name))
+            keep(kept, channels, held)
             for key, values in reduce(Window(log, channels)).items():
                 self.reduced.add(key, np.array(values))  # of which a view would keep all that it is of
-        super().__init__(log, {topic: KeptChannel(log, topic, kept) for topic in topics})
+        super().__init__(log, {topic: KeptChannel(topic, kept, partial(log.__getitem__, topic)) for topic in topics})
 
 
 LAG_NS = 100_000_000

@@ -5,8 +5,9 @@ import numpy as np
 from surefoot.planner.geometry import corners, headings, rotations, sole_corners
 from surefoot.planner.ground.terrain import Box, Terrain
 from surefoot.planner.types import GRAVITY, Foot, Footstep
+from surefoot.scenarios.columns import Reads
 from surefoot.scenarios.judge.body import feet_lean
-from surefoot.scenarios.judge.digest import SENSED, Array, Mask, Reads, Rows, RunView
+from surefoot.scenarios.judge.digest import SENSED, Array, Mask, Rows, RunView
 from surefoot.scenarios.judge.metric import DEG, MM, metric
 from surefoot.scenarios.judge.placed import to_truth
 from surefoot.scenarios.judge.walking import FALL_READS, fall_time, runs_of

@@ -5,9 +5,10 @@ from math import inf
 
 import numpy as np
 
+from surefoot.scenarios.columns import Reads
 from surefoot.scenarios.errors import LogError
 from surefoot.scenarios.judge import balance, computing_checks, effort, motion_checks
-from surefoot.scenarios.judge.digest import SENSED, Digest, Reads, RunView
+from surefoot.scenarios.judge.digest import SENSED, Digest, RunView
 from surefoot.scenarios.judge.finding import Finding, shared
 
 _BODY = ("/truth", "/measurement", "/estimate", "/torque")

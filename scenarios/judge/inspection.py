@@ -1,15 +1,18 @@
 """What a log says about itself: verdict, health, topics and rates."""
 
+import math
+from collections.abc import Iterable
 from dataclasses import asdict
 from typing import Any
 
 import numpy as np
+from numpy.typing import NDArray
 
 from surefoot.scenarios.judge.finding import Finding
 from surefoot.scenarios.judge.health import findings
 from surefoot.scenarios.judge.metrics import digest
 from surefoot.scenarios.judge.verdict import Verdict, judge, scenario_of
-from surefoot.scenarios.log import ChannelData, Log
+from surefoot.scenarios.log import ChannelData, FieldSpec, Log
 from surefoot.scenarios.log.reader import RECOVERED
 from surefoot.values import dataclass
 
@@ -92,20 +95,45 @@ def _file_findings(log: Log, end: float) -> list[Finding]:
     return [Finding("file", "warning", end if log.truncated else None, None, cause) for cause in causes]
 
 
-def topic_summary(channel: ChannelData) -> dict[str, dict[str, Any]]:
-    """Summarise every field of a channel: what it is, how many values are not finite, least, mean and greatest."""
-    summary: dict[str, dict[str, Any]] = {}
-    for field in channel.fields:
-        values = channel.field(field.name).astype(float)
-        sound = values[np.isfinite(values)]
-        spread = (float(sound.min()), float(sound.mean()), float(sound.max())) if sound.size else (None, None, None)
-        summary[field.name] = {
+def topic_summary(parts: Iterable[ChannelData]) -> dict[str, dict[str, Any]]:
+    """Summarise every field of a channel that comes in parts, of which there is one at least.
+
+    Returns:
+        by field: what it is, how many values are not finite, least, mean and greatest.
+    """
+    spreads: dict[FieldSpec, _Spread] = {}
+    for part in parts:
+        for field in part.fields:
+            spreads.setdefault(field, _Spread()).add(part.field(field.name))
+    return {
+        field.name: {
             "shape": list(field.shape),
             "unit": field.unit,
             "frame": field.frame,
             "doc": field.doc,
-            "messages": len(values),
-            "not_finite": int(values.size - sound.size),
-            **dict(zip(("min", "mean", "max"), spread, strict=True)),
+            **spread.to_json(),
         }
-    return summary
+        for field, spread in spreads.items()
+    }
+
+
+class _Spread:
+    """Number, least, mean and greatest of values that come in parts."""
+
+    def __init__(self) -> None:
+        self._messages = self._values = self._sound = 0
+        self._least, self._greatest, self._sum = math.inf, -math.inf, 0.0
+
+    def add(self, values: NDArray[Any]) -> None:
+        """Values of more messages, shape (n, ...)."""
+        sound = values[np.isfinite(values)].astype(float)
+        self._messages, self._values = self._messages + len(values), self._values + values.size
+        if sound.size:
+            self._sound, self._sum = self._sound + sound.size, self._sum + float(sound.sum())
+            self._least, self._greatest = min(self._least, sound.min()), max(self._greatest, sound.max())
+
+    def to_json(self) -> dict[str, Any]:
+        """What is told of them."""
+        told = (float(self._least), self._sum / self._sound, float(self._greatest)) if self._sound else (None,) * 3
+        counts = {"messages": self._messages, "not_finite": self._values - self._sound}
+        return {**counts, **dict(zip(("min", "mean", "max"), told, strict=True))}

@@ -16,7 +16,8 @@ from typing import Any, Generic, TypeVar, Union, get_args, get_origin, get_type_
 
 from surefoot.documented import doc_of
 from surefoot.errors import ParameterError
-from surefoot.scenarios.judge.digest import Array, Reads, RunView
+from surefoot.scenarios.columns import Reads
+from surefoot.scenarios.judge.digest import Array, RunView
 from surefoot.values import dataclass
 
 __all__ = ["RESERVED", "TRUTH", "Metric", "Reads", "Reduction", "RunView", "metric", "reduction"]

@@ -11,6 +11,7 @@ import numpy as np
 from surefoot.errors import PartError
 from surefoot.guard import Guard, MisfitError, shown
 from surefoot.plugins import Declared, PluginError
+from surefoot.scenarios.columns import Reads
 from surefoot.scenarios.errors import LogError, Problem, nearest
 from surefoot.scenarios.judge import (
     acted,
@@ -25,7 +26,7 @@ from surefoot.scenarios.judge import (
     sensed,
     walking,
 )
-from surefoot.scenarios.judge.digest import CONTROL_TOPICS, HELD, SENSED, Digest, Reads, RunView, Source
+from surefoot.scenarios.judge.digest import CONTROL_TOPICS, HELD, SENSED, Digest, RunView, Source
 from surefoot.scenarios.judge.metric import Metric, Reduction
 from surefoot.scenarios.judge.placed import PLACED
 from surefoot.values import dataclass

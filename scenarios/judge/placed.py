@@ -3,7 +3,8 @@
 import numpy as np
 
 from surefoot.planner.geometry import yaw_rotations
-from surefoot.scenarios.judge.digest import Array, Mask, Reads, Rows, RunView
+from surefoot.scenarios.columns import Reads
+from surefoot.scenarios.judge.digest import Array, Mask, Rows, RunView
 
 _TOPIC = "/estimation"
 

@@ -5,8 +5,9 @@ from collections.abc import Iterator, Sequence
 import numpy as np
 from numpy.typing import NDArray
 
+from surefoot.scenarios.columns import Reads
 from surefoot.scenarios.errors import LogError
-from surefoot.scenarios.judge.digest import Array, Mask, Reads, RunView
+from surefoot.scenarios.judge.digest import Array, Mask, RunView
 from surefoot.scenarios.record.provenance import AskedPush, asked_pushes
 from surefoot.values import dataclass
 

@@ -2,8 +2,9 @@
 
 import numpy as np
 
+from surefoot.scenarios.columns import Reads
 from surefoot.scenarios.judge.body import lies, lost
-from surefoot.scenarios.judge.digest import Mask, Reads, RunView
+from surefoot.scenarios.judge.digest import Mask, RunView
 from surefoot.scenarios.judge.metric import MM, metric
 
 STILL_SPEED = 0.02

@@ -1,6 +1,7 @@
 """Messages of one channel: out of a block of bytes, and as numpy arrays by field name."""
 
 import struct
+from collections.abc import Collection
 from typing import Any
 
 import numpy as np
@@ -71,7 +72,6 @@ class ChannelData:
         topic: the channel's topic.
         fields: its fields, each with its unit, frame and meaning.
         joints: names of the robot's joints, by which columns are called; () when the log does not say.
-        time_ns: simulated time of each message, shape (n,) [ns].
     """
 
     def __init__(
@@ -84,11 +84,16 @@ class ChannelData:
         self.topic = topic
         self.fields = fields
         self.joints = joints
-        self.time_ns: NDArray[np.int64] = times
+        self._times: NDArray[np.int64] = times
         self._records = records
 
     def __len__(self) -> int:
         return len(self._records)
+
+    @property
+    def time_ns(self) -> NDArray[np.int64]:
+        """Simulated time of each message, shape (n,) [ns]."""
+        return self._times
 
     @property
     def time(self) -> NDArray[np.float64]:
@@ -106,7 +111,8 @@ class ChannelData:
         """These messages and those that follow."""
         if not len(self) or not len(following):
             return following if not len(self) else self
-        return ChannelData(self.topic, self.fields, np.concatenate((self._records, following._records)))
+        records = np.concatenate((self._records, following._records))
+        return ChannelData(self.topic, self.fields, records, self.joints)
 
     def content(self) -> bytes:
         """Bytes of all messages in order, for exact comparison of two runs."""
@@ -118,16 +124,34 @@ class ChannelData:
         Raises:
             LogError: the channel has no such field.
         """
-        self._require(name)
-        return np.array(self._records[name])
+        self._chosen(name)
+        return self.values((name,))[name]
+
+    def values(self, names: Collection[str]) -> dict[str, NDArray[Any]]:
+        """Values of several fields that the channel has, by name, each of shape (n, *field shape)."""
+        return {name: np.array(self._records[name]) for name in names}
 
     def columns(self) -> dict[str, NDArray[Any]]:
         """Time [s] and every element of every field as ``name_i_j`` or ``name.joint``, each of shape (n,)."""
+        found = self.values([field.name for field in self.fields])
         table: dict[str, NDArray[Any]] = {"time": self.time}
         for field in self.fields:
-            values = np.moveaxis(self.field(field.name), 0, -1)
+            values = np.moveaxis(found[field.name], 0, -1)
             table |= {column.name: values[column.place] for column in field.columns(self.joints)}
         return table
+
+    def frame(self, pandas: Any) -> Any:
+        """The messages as a data frame; see `Log.frame`, which imports the package."""
+        found = self.values([field.name for field in self.fields])
+        index = pandas.Index(self.time, name="time")
+        parts = [pandas.DataFrame(index=index)]
+        for field in self.fields:
+            names = [column.name for column in field.columns(self.joints)]
+            # A field at a time, by its own memory: a table of all columns would hold them twice.
+            parts.append(pandas.DataFrame(found.pop(field.name).reshape(len(index), -1), index, names, copy=False))
+        frame = pandas.concat(parts, axis=1)
+        frame.attrs.update(self.notes())
+        return frame
 
     def notes(self) -> dict[str, dict[str, str]]:
         """Unit, frame and meaning (``doc``) of each of the `columns`."""
@@ -139,11 +163,12 @@ class ChannelData:
 
     def only(self, name: str) -> "ChannelData":
         """The same messages with one field; errors as of `field`."""
-        self._require(name)
-        only = tuple(field for field in self.fields if field.name == name)
-        return ChannelData(self.topic, only, self._records, self.joints)
+        return ChannelData(self.topic, self._chosen(name), self._records, self.joints)
 
-    def _require(self, name: str) -> None:
-        if all(field.name != name for field in self.fields):
+    def _chosen(self, name: str) -> tuple[FieldSpec, ...]:
+        """The field of a name, alone; or a LogError."""
+        chosen = tuple(field for field in self.fields if field.name == name)
+        if not chosen:
             right = nearest(name, [field.name for field in self.fields])
             raise LogError(f"channel {self.topic} has no field '{name}'; {right}")
+        return chosen

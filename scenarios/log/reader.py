@@ -5,8 +5,10 @@ import math
 import mmap
 import stat
 import zlib
-from collections.abc import Callable, Collection, Iterator, Mapping, Sequence
-from functools import cached_property
+from collections import Counter
+from collections.abc import Callable, Collection, Iterable, Iterator, Mapping, Sequence
+from functools import cached_property, partial
+from itertools import zip_longest
 from pathlib import Path
 from typing import TYPE_CHECKING, Any
 
@@ -14,15 +16,18 @@ import numpy as np
 from mcap.records import Attachment, Metadata
 
 from surefoot.pointers import IS_A_POINTER, POINTER_BYTES, is_pointer
+from surefoot.scenarios.columns import HELD_BYTES, Columns, KeptChannel, Reads, in_order, keep
 from surefoot.scenarios.errors import LogError, nearest, require
 from surefoot.scenarios.log.completeness import Completeness
 from surefoot.scenarios.log.encoding import GREATEST_CHUNK, MAGIC, decompress
+from surefoot.scenarios.log.long_channel import LongChannel
 from surefoot.scenarios.log.manifest import RECORD as MANIFEST
 from surefoot.scenarios.log.manifest import not_as_written
 from surefoot.scenarios.log.messages import MESSAGE_BYTES, ChannelData, block_of, content_at, gathered, sound_records
 from surefoot.scenarios.log.one_run import twice_named, twin
 from surefoot.scenarios.log.scan import INDEX_ENTRY, Buffer, ChunkPlace, index_chunk, release, scan
 from surefoot.scenarios.log.spec import FieldSpec, layout_of, record_dtype
+from surefoot.scenarios.log.stretches import FARTHEST, FIRST, LAST, START, between, grouped
 
 if TYPE_CHECKING:
     from pandas import DataFrame
@@ -35,6 +40,9 @@ GREATEST_RATIO = 100
 
 WINDOW = 4.0
 """Simulated time that is read at once where a whole log is gone through [s]."""
+
+_LET_GO = 1 << 22
+"""Of a file that is gone through, what may be in memory behind the chunk that is read [bytes]."""
 
 
 class Log:
@@ -94,9 +102,12 @@ class Log:
         return f"Log({str(self.path)!r}, {start:.3f} to {end:.3f} s{state}: {topics or 'empty'})"
 
     def __getitem__(self, topic: str) -> ChannelData:
-        """Messages of a topic; errors as of `load`."""
+        """Messages of a topic: held if they are few, else each field is read when it is asked for; errors as of `load`.
+
+        Few are those that take up to 16 MB, such as half a minute of a channel of the control rate.
+        """
         self.load(topic)
-        return self._loaded[topic]
+        return self._loaded.get(topic) or LongChannel(self, topic, self.fields(topic))
 
     def frame(self, topic: str) -> "DataFrame":
         """Messages of a topic as a pandas data frame: the index is time [s], the elements of a field are columns.
@@ -107,18 +118,16 @@ class Log:
             LogError: there is no such topic, its messages are not of a fixed layout, or pandas is missing.
         """
         pandas = require("pandas", "frame", "a data frame", f"use log['{topic}'].field(name)")
-        channel = self[topic]
-        frame: DataFrame = pandas.DataFrame(channel.columns()).set_index("time")
-        frame.attrs.update(channel.notes())
-        return frame
+        return self[topic].frame(pandas)
 
     def load(self, *topics: str) -> None:
-        """Load topics in one pass through the file.
+        """Load topics in one pass through the file, those of them that are short enough to be held.
 
         Raises:
             LogError: there is no such topic, or its messages are not of a fixed layout.
         """
-        wanted = [topic for topic in topics if topic not in self._loaded]
+        sizes = {topic: record_dtype(self.fields(topic)).itemsize for topic in topics if topic not in self._loaded}
+        wanted = [topic for topic, size in sizes.items() if size * self.count(topic) <= HELD_BYTES]
         if wanted:
             self._loaded.update(self._read(wanted, self.contents.chunks))
 
@@ -133,35 +142,114 @@ class Log:
             if topic not in self or (filled and not self.count(topic)):
                 raise LogError(f"{self.path}: has no messages of {topic}, which {use} needs; give a log that has them")
 
-    def window(self, topic: str, start: float, end: float) -> ChannelData:
-        """Messages of a topic from a time on and up to another one [s]; only their part of the file is read.
+    def window(self, topic: str, start: float | None, end: float | None) -> ChannelData:
+        """Messages of a topic from a time on and up to another one [s], None for all that there are.
+
+        Only their part of the file is read.
 
         Raises:
             LogError: there is no such topic, its messages are not of a fixed layout, or the times are not finite.
         """
-        if not (math.isfinite(start) and math.isfinite(end)):
-            raise LogError(f"{self.path}: no time from {start} s to {end} s; give finite times")
-        first, last = round(start * 1e9), round(end * 1e9)
-        chunks = [chunk for chunk in self.contents.chunks if chunk.start_ns <= last and chunk.end_ns >= first]
-        return self._read([topic], chunks)[topic].between(first, last)
+        span = self._span(start, end)
+        return between(self._read([topic], self._chunks(span)), span)[topic]
 
-    def windows(self, topics: Collection[str], duration: float = WINDOW) -> Iterator[dict[str, ChannelData]]:
+    def windows(
+        self,
+        topics: Collection[str],
+        duration: float = WINDOW,
+        start: float | None = None,
+        end: float | None = None,
+        verify: bool = True,
+    ) -> Iterator[dict[str, ChannelData]]:
         """Go through the file once in bounded memory, topics together, for a duration at a time, to the next chunk [s].
 
-        Chunks that do not agree with their checksum are left out and noted in `damage`.
+        Args:
+            topics: that are read.
+            duration: of a part [s].
+            start: time of the first messages, those of the log if None [s].
+            end: time of the last messages, likewise [s].
+            verify: leave out chunks that do not agree with their checksum, and note them in `damage`.
 
         Raises:
-            LogError: there is no such topic, or its messages are not of a fixed layout.
+            LogError: there is no such topic, its messages are not of a fixed layout, or the times are not finite.
         """
-        group: list[ChunkPlace] = []
-        size = 0
-        for chunk in self.contents.chunks:
-            group.append(chunk)
-            size += chunk.size
-            if chunk.end_ns - group[0].start_ns >= duration * 1e9 or size > GREATEST_CHUNK:
-                yield self._read(topics, group, verify=True, loose=False)
-                group, size = [], 0
-        yield self._read(topics, group, verify=True)
+        span = self._span(start, end)
+        for group in grouped(self._chunks(span), duration):
+            yield between(self._read(topics, group, verify, loose=False), span)
+        yield between(self._read(topics, (), verify), span)
+
+    def parts(self, topic: str, start: float | None = None, end: float | None = None) -> Iterator[ChannelData]:
+        """Messages of a topic in order of time, a few seconds of them at once; errors as of `windows`.
+
+        Args:
+            topic: theirs.
+            start: time of the first messages, those of the log if None [s].
+            end: time of the last messages, likewise [s].
+        """
+        for _, found in self.stretches([topic], start, end):
+            if len(found[topic]):
+                yield found[topic]
+
+    def stretches(
+        self, topics: Collection[str], start: float | None = None, end: float | None = None
+    ) -> Iterator[tuple[int, dict[str, ChannelData]]]:
+        """Go through topics together in order of time; errors as of `windows`.
+
+        Messages outside of all chunks are held together, and so are those of chunks that overlap in time.
+
+        Args:
+            topics: that are read.
+            start: time of the first messages, those of the log if None [s].
+            end: time of the last messages, likewise [s].
+
+        Yields:
+            a time [ns], and all messages before it that did not come yet.
+        """
+        span, numbers = self._span(start, end), {self._number(topic) for topic in topics}
+        chunks = sorted((c for c in self._chunks(span) if not c.channels.isdisjoint(numbers)), key=START)
+        rest, groups = self._read(topics, ()), list(grouped(chunks, WINDOW))
+        for group, following in zip_longest(groups, groups[1:]):
+            found = self._read(topics, group, loose=False)
+            until = min(following[0].start_ns, LAST) if following else LAST
+            joined = {topic: rest[topic].joined(found[topic]) for topic in topics}
+            rest = between(joined, (until, LAST))
+            yield until, between(between(joined, (FIRST, until - 1)), span)
+        yield LAST + 1, between(rest, span)
+
+    def gather(self, reads: Reads, start: float | None = None, end: float | None = None) -> dict[str, KeptChannel]:
+        """Read some fields of topics in one pass and keep them, many of them in temporary files.
+
+        Args:
+            reads: names of fields by topic; those that there are not are left out.
+            start: time of the first messages, those of the log if None [s].
+            end: time of the last messages, likewise [s].
+
+        Returns:
+            the channels, in order of time.
+
+        Raises:
+            LogError: errors as of `windows`; there is no room for the files.
+        """
+        kept, topics = Columns(), [topic for topic in reads if topic in self.numeric]
+        for channels in self.windows(topics, start=start, end=end, verify=False):
+            keep(kept, channels, reads)
+        for topic in topics:
+            in_order(kept, topic)
+        return {topic: KeptChannel(topic, kept, partial(self.window, topic, start, end)) for topic in topics}
+
+    def _span(self, start: float | None, end: float | None) -> tuple[int, int] | None:
+        """First and last time of a stretch [ns], None for all of the log; or a LogError."""
+        if start is None and end is None:
+            return None
+        first, last = -FARTHEST if start is None else start, FARTHEST if end is None else end
+        if not (math.isfinite(first) and math.isfinite(last)):
+            raise LogError(f"{self.path}: no time from {start} s to {end} s; give finite times")
+        return round(first * 1e9), round(last * 1e9)
+
+    def _chunks(self, span: tuple[int, int] | None) -> list[ChunkPlace]:
+        """Chunks with messages of a stretch of time [ns]."""
+        every = self.contents.chunks
+        return every if span is None else [one for one in every if one.start_ns <= span[1] and one.end_ns >= span[0]]
 
     def fields(self, topic: str) -> tuple[FieldSpec, ...]:
         """Fields of a topic.
@@ -190,18 +278,22 @@ class Log:
         number = self._number(topic)
         for time, offset in self.contents.loose.get(number, ()):
             yield time, content_at(self.data, offset)
-        for chunk in self.contents.chunks:
-            data = self._decompressed(chunk) if chunk.count(number) else None
-            if data is not None:
-                for time, offset in chunk.entries(number, self.data).tolist():
-                    if offset + MESSAGE_BYTES <= len(data):
-                        yield time, content_at(data, offset)
+        for chunk, data in self._unpacked(chunk for chunk in self.contents.chunks if chunk.count(number)):
+            for time, offset in chunk.entries(number, self.data).tolist():
+                if offset + MESSAGE_BYTES <= len(data):
+                    yield time, content_at(data, offset)
 
     def count(self, topic: str) -> int:
         """Number of messages of a topic, by the index."""
-        number = self._ids[topic]
-        chunked = sum(chunk.count(number) for chunk in self.contents.chunks)
-        return chunked + len(self.contents.loose.get(number, ()))
+        return self._counts[self._ids[topic]]
+
+    @cached_property
+    def _counts(self) -> Counter[int]:
+        """Number of messages by channel id."""
+        found = Counter({number: len(entries) for number, entries in self.contents.loose.items()})
+        for chunk in self.contents.chunks:
+            found.update({number: chunk.count(number) for number in chunk.channels})
+        return found
 
     def time_range(self) -> tuple[float, float]:
         """First and last time of all messages [s]; zeros when there is none."""
@@ -216,9 +308,9 @@ class Log:
         `damage` tells what does not agree. Of data that agree with their checksum as a whole, chunks are not compared
         with theirs.
         """
-        for chunk in self.contents.chunks:
-            if chunk.position not in self._verified:
-                self._sound(chunk)
+        left = (chunk for chunk in self.contents.chunks if chunk.position not in self._verified)
+        for _ in self._unpacked(left, verify=True):
+            pass
 
     def lacks(self) -> tuple[str, ...]:
         """What of the log is missing or cannot be read, in words, when everything was looked at.
@@ -257,10 +349,20 @@ class Log:
 
     def sound_chunks(self) -> Iterator[tuple[ChunkPlace, bytes]]:
         """Every chunk that agrees with its checksum, and its decompressed bytes; the others add to `damage`."""
-        for chunk in self.contents.chunks:
-            data = self._sound(chunk)
+        return self._unpacked(self.contents.chunks, verify=True)
+
+    def _unpacked(self, chunks: Iterable[ChunkPlace], verify: bool = False) -> Iterator[tuple[ChunkPlace, bytes]]:
+        """Those chunks that can be unpacked, with their bytes; the memory of the file is let go behind them."""
+        begin = end = 0
+        for chunk in chunks:
+            data = self._sound(chunk) if verify else self._decompressed(chunk)
             if data is not None:
                 yield chunk, data
+            if not begin <= chunk.position <= begin + _LET_GO:
+                release(self.data, begin, end)
+                begin = chunk.position
+            end = chunk.position + chunk.length
+        release(self.data, begin, end)
 
     def _number(self, topic: str) -> int:
         if topic not in self._ids:
@@ -281,27 +383,24 @@ class Log:
         fields = {topic: self.fields(topic) for topic in topics}
         types = {topic: record_dtype(fields[topic]) for topic in topics}
         sizes = {self._ids[topic]: dtype.itemsize for topic, dtype in types.items()}
-        blocks: dict[int, list[memoryview | bytes]] = {number: [] for number in sizes}
+        blocks: dict[int, bytearray] = {number: bytearray() for number in sizes}
         expected, channels = dict.fromkeys(sizes, 0), self.contents.channels
-        for chunk in chunks:
-            numbers = sizes.keys() & chunk.channels
-            data = (self._sound(chunk) if verify else self._decompressed(chunk)) if numbers or verify else None
-            if data is not None:
-                view = memoryview(data)
-                for number in numbers:
-                    count = chunk.count(number)
-                    expected[number] += count
-                    if count * sizes[number] > len(view):
-                        what = f"lists more of {channels[number].topic} than the chunk can hold"
-                        self.damage.append(f"the index at byte {chunk.position} {what}")
-                    elif count:
-                        blocks[number].append(block_of(view, chunk, number, sizes[number], self.data))
+        for chunk, data in self._unpacked(
+            (chunk for chunk in chunks if verify or not chunk.channels.isdisjoint(sizes)), verify
+        ):
+            view = memoryview(data)
+            for number in sizes.keys() & chunk.channels:
+                count = chunk.count(number)
+                expected[number] += count
+                if count * sizes[number] > len(view):
+                    what = f"lists more of {channels[number].topic} than the chunk can hold"
+                    self._note(f"the index at byte {chunk.position} {what}")
+                elif count:
+                    blocks[number] += block_of(view, chunk, number, sizes[number], self.data)
         for number in sizes.keys() & self.contents.loose.keys() if loose else ():
             entries = np.array(self.contents.loose[number], INDEX_ENTRY)
             expected[number] += len(entries)
-            blocks[number].append(gathered(memoryview(self.data), entries, sizes[number]))
-        if chunks:
-            release(self.data, chunks[0].position, chunks[-1].position + chunks[-1].length)
+            blocks[number] += gathered(memoryview(self.data), entries, sizes[number])
         return {
             topic: self._channel(topic, fields[topic], dtype, blocks[self._ids[topic]], expected[self._ids[topic]])
             for topic, dtype in types.items()
@@ -312,15 +411,13 @@ class Log:
         topic: str,
         fields: tuple[FieldSpec, ...],
         dtype: np.dtype[Any],
-        blocks: list[memoryview | bytes],
+        block: bytearray,
         expected: int,
     ) -> ChannelData:
-        """The messages in some blocks of bytes, of which so many are expected."""
-        number = self._ids[topic]
-        whole = np.frombuffer(b"".join(blocks), np.uint8)
-        records = sound_records(whole, number, dtype)
+        """The messages in a block of bytes, of which so many are expected."""
+        records = sound_records(np.frombuffer(block, np.uint8), self._ids[topic], dtype)
         if len(records) < expected:
-            self.damage.append(f"{expected - len(records)} messages of {topic} are damaged or not of its layout")
+            self._note(f"{expected - len(records)} messages of {topic} are damaged or not of its layout")
         return ChannelData(topic, fields, records, self.joints)
 
     def _sound(self, chunk: ChunkPlace) -> bytes | None:
@@ -341,10 +438,13 @@ class Log:
         try:
             return decompress(memoryview(self.data)[chunk.data], chunk.compression, chunk.size)
         except LogError as error:
-            note = f"at byte {chunk.position} {error}"
-            if note not in self.damage:
-                self.damage.append(note)
+            self._note(f"at byte {chunk.position} {error}")
             return None
+
+    def _note(self, loss: str) -> None:
+        """Note what could not be read, once."""
+        if loss not in self.damage:
+            self.damage.append(loss)
 
     def _index_rest(self) -> None:
         """Index chunks that stand without an index, or whose channels are defined only inside them."""

@@ -60,10 +60,11 @@ class _Rewriter:
         self._position = self._crc = 0
         self._summary = Summary()
         self._counts: dict[int, int] = {}
+        self._schemas: dict[int, bytes] = {}
+        self._channels: set[int] = set()
 
     def run(self) -> int:
         contents = self._log.contents
-        chunks = [(place, index_chunk(data, contents)) for place, data in self._log.sound_chunks()]
         self._write(MAGIC + encoded(Header("", "surefoot recover")))
         for record in contents.metadata:
             if record.name != RECOVERED:
@@ -74,8 +75,9 @@ class _Rewriter:
         self._write(self._summary.add_metadata(origin, self._position))
         for attachment in contents.attachments:
             self._write(self._summary.add_attachment(attachment, self._position))
-        self._define()
-        for place, index in chunks:
+        for place, data in self._log.sound_chunks():
+            index = index_chunk(data, contents)
+            self._define()
             chunk = Chunk(
                 compression=place.compression,
                 data=bytes(self._log.data[place.data]),
@@ -85,19 +87,24 @@ class _Rewriter:
                 uncompressed_size=place.size,
             )
             self._chunk(chunk, index)
+        self._define()
         self._loose()
         self._write(self._summary.finish(self._position, self._counts, self._crc))
         return sum(self._counts.values())
 
     def _define(self) -> None:
+        """Write the schemas and channels that are known by now, and were not before."""
         contents = self._log.contents
-        schemas = {schema.id: encoded(schema) for schema in contents.schemas.values()}
-        for record in schemas.values():
-            self._write(record)
-        for channel in contents.channels.values():
-            record = encoded(channel)
-            self._summary.add_channel(channel.schema_id, schemas.get(channel.schema_id), record)
-            self._write(record)
+        for number, schema in contents.schemas.items():
+            if number not in self._schemas:
+                self._schemas[number] = encoded(schema)
+                self._write(self._schemas[number])
+        for number, channel in contents.channels.items():
+            if number not in self._channels:
+                self._channels.add(number)
+                record = encoded(channel)
+                self._summary.add_channel(channel.schema_id, self._schemas.get(channel.schema_id), record)
+                self._write(record)
 
     def _chunk(self, chunk: Chunk, index: Index) -> None:
         record = encoded(chunk)

@@ -63,22 +63,22 @@ def inspect(told: InspectOptions) -> None:
 def _show_topic(log: "Log", topic: str, told: InspectOptions) -> None:
     """Summarise a topic, or export it and say where it is; what is said in words is printed."""
     from surefoot.scenarios.judge.inspection import topic_summary
-    from surefoot.scenarios.show.console import export, print_topic, selected
+    from surefoot.scenarios.show.console import print_topic
+    from surefoot.scenarios.show.export import export, selected
 
     if topic == EVENTS and topic in log:
         _show_events(log, told)
         return
-    channel = selected(log, topic, told.start, told.end, told.field)
+    chosen = selected(log, topic, told.start, told.end, told.field)
+    if told.export is not None:
+        count, file = export(chosen, told.export, told.force), str(told.export)
+        typer.echo(json.dumps({"file": file, "messages": count}) if told.as_json else file)
+    elif told.as_json:
+        typer.echo(json.dumps(topic_summary(chosen), allow_nan=False))
+    else:
+        print_topic(topic, topic_summary(chosen))
     for loss in log.damage:
         typer.echo(f"not read: {loss}", err=True)
-    if told.export is not None:
-        export(channel, told.export, told.force)
-        file = str(told.export)
-        typer.echo(json.dumps({"file": file, "messages": len(channel)}) if told.as_json else file)
-    elif told.as_json:
-        typer.echo(json.dumps(topic_summary(channel), allow_nan=False))
-    else:
-        print_topic(topic, topic_summary(channel))
 
 
 EVENTS = "/events"
@@ -202,7 +202,10 @@ def replay(told: ReplayOptions) -> None:
     if told.html is not None:
         from surefoot.scenarios.show.replay.page import write_page
 
-        write_page(told.log, told.html, window, told.force)
+        rate = write_page(told.log, told.html, window, told.force)
+        if rate < window.frame_rate:
+            right = "--from and --to choose a part that is shown at the full rate"
+            typer.echo(f"note: the page shows {rate:.3g} pictures of a simulated second; {right}", err=True)
         typer.echo(str(told.html))
     elif told.video is not None:
         from surefoot.scenarios.show.replay.video import Film, write_video

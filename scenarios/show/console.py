@@ -1,8 +1,5 @@
 """What a person sees: a progress line on standard error, tables on standard output, numbers in engineers' units."""
 
-import csv
-import importlib
-import io
 import sys
 import time
 from collections.abc import Callable, Collection, Iterable, Iterator, Mapping, Sequence
@@ -13,14 +10,10 @@ from shlex import quote
 from types import TracebackType
 from typing import TYPE_CHECKING, Any, Self
 
-import numpy as np
 import typer
 
-from surefoot.scenarios.errors import LogError, require
 from surefoot.scenarios.judge.finding import Finding
 from surefoot.scenarios.judge.verdict import FIRST_METRICS, Verdict, bound_text, shown_unit, value_text
-from surefoot.scenarios.log import ChannelData, Log
-from surefoot.scenarios.output import refuse_existing, write_whole
 from surefoot.scenarios.run.skeleton import Progress
 
 if TYPE_CHECKING:
@@ -199,67 +192,3 @@ def print_table(head: Sequence[str], rows: Iterable[Sequence[str]], red: Collect
     for at, row in enumerate(every):
         line = "  ".join(cell.ljust(width) for cell, width in zip(row, widths, strict=False)).rstrip()
         typer.secho(line, bold=True if at == 0 else None, fg="red" if row[0] in red else None)
-
-
-_ROWS_AT_ONCE = 4096
-
-
-def selected(log: Log, topic: str, start: float | None, end: float | None, field: str | None) -> ChannelData:
-    """Messages of a topic in a window of time, open where an end is None [s], with one field or all.
-
-    Raises:
-        LogError: there is no such topic or field, its messages are not of a fixed layout, or none is in the window.
-    """
-    if start is not None and end is not None and start > end:
-        raise LogError(f"--from {start:g} is after --to {end:g}; give the earlier time as --from")
-    first, last = log.time_range()
-    channel = log.window(topic, first if start is None else start, last if end is None else end)
-    if not len(channel):
-        raise LogError(f"{log.path}: no message of {topic} in that time; the log is from {first:.3f} s to {last:.3f} s")
-    return channel if field is None else channel.only(field)
-
-
-def export(channel: ChannelData, path: Path, replace: bool = False) -> None:
-    """Write a channel to a file; time is the first column, the others are those of `ChannelData.columns`.
-
-    CSV has units in its headings, parquet has unit, frame and meaning as metadata of the columns.
-
-    Raises:
-        LogError: the ending is unknown, the file exists or cannot be written, or pyarrow is needed and missing.
-    """
-    writers: Mapping[str, Callable[[ChannelData], bytes]] = {".csv": _csv, ".npz": _npz, ".parquet": _parquet}
-    write = writers.get(path.suffix.lower())
-    if write is None:
-        raise LogError(f"{path}: unknown kind of file '{path.suffix}'; end its name in {', '.join(writers)}")
-    refuse_existing(path, replace)
-    data = write(channel)
-    with write_whole(path, replace) as temporary:
-        temporary.write_bytes(data)
-
-
-def _csv(channel: ChannelData) -> bytes:
-    table, text = channel.columns(), io.StringIO()
-    writer = csv.writer(text, lineterminator="\n")
-    units = {name: note["unit"] for name, note in channel.notes().items()}
-    writer.writerow(name if units[name] in ("", "-") else f"{name} [{units[name]}]" for name in table)
-    for first in range(0, len(channel), _ROWS_AT_ONCE):
-        writer.writerows(
-            zip(*(column[first : first + _ROWS_AT_ONCE].tolist() for column in table.values()), strict=True)
-        )
-    return text.getvalue().encode()
-
-
-def _npz(channel: ChannelData) -> bytes:
-    data = io.BytesIO()
-    fields: dict[str, Any] = {field.name: channel.field(field.name) for field in channel.fields}
-    np.savez_compressed(data, time=channel.time, **fields)
-    return data.getvalue()
-
-
-def _parquet(channel: ChannelData) -> bytes:
-    pyarrow = require("pyarrow", "parquet", "parquet", "export to .csv or .npz")
-    parquet = importlib.import_module("pyarrow.parquet")
-    table, notes, data = pyarrow.table(channel.columns()), channel.notes(), io.BytesIO()
-    fields = [column.with_metadata(notes[column.name]) for column in table.schema]
-    parquet.write_table(table.cast(pyarrow.schema(fields)), data)
-    return data.getvalue()

@@ -1,6 +1,6 @@
 """Where two runs part, channel by channel, bit by bit and by a tolerance; and what their logs were made of."""
 
-from collections.abc import Callable, Iterator, Mapping
+from collections.abc import Callable, Collection, Iterator, Mapping, Sequence
 from functools import partial
 from operator import itemgetter
 from typing import Any
@@ -13,6 +13,7 @@ from surefoot.scenarios.file.source import parse
 from surefoot.scenarios.file.units import is_number
 from surefoot.scenarios.judge.metrics import measure
 from surefoot.scenarios.log import ChannelData, FieldSpec, Log
+from surefoot.scenarios.log.stretches import FIRST, LAST, between
 from surefoot.scenarios.record.provenance import RECORD, SCENARIO_FILE
 from surefoot.values import dataclass
 
@@ -90,56 +91,87 @@ def compare_channels(a: Log, b: Log, tolerance: float) -> tuple[ChannelDifferenc
         tolerance: two values agree when they differ by no more than this times the greater magnitude, or than this
             itself when both are below 1.
     """
-    common = [topic for topic in a.topics if topic in b and topic not in WALL_CLOCK]
-    opened = [(_open(a, topic), _open(b, topic)) for topic in common]
-    pairs = [(first, second) for first, second in opened if first is not None and second is not None]
-    reach = min(_last([first for first, _ in pairs]), _last([second for _, second in pairs]))
+    common = [one for one in a.topics if one in b and one not in WALL_CLOCK and one in a.numeric and one in b.numeric]
+    folds = {topic: _Fold(a.fields(topic), b.fields(topic), tolerance) for topic in common}
+    for parts in _together(a, b, common):
+        for topic, fold in folds.items():
+            fold.add(*(part[topic] for part in parts))
+    reach = min(max((fold.last[side] for fold in folds.values()), default=0) for side in (0, 1))
     whole = not (a.truncated or b.truncated)
-    reaches = [reach if whole else min(reach, _last([first]), _last([second])) for first, second in pairs]
-    found = (_compare(*pair, tolerance, end) for pair, end in zip(pairs, reaches, strict=True))
+    # A truncated log has channels that end up to a chunk earlier than others.
+    found = (fold.difference(topic, reach if whole else min(reach, *fold.last)) for topic, fold in folds.items())
     return tuple(sorted(found, key=_order))
 
 
 def unreadable(log: Log, topics: tuple[str, ...]) -> tuple[str, ...]:
     """Those of the topics whose messages are not of a fixed layout, so that they cannot be compared by field."""
-    return tuple(topic for topic in topics if _open(log, topic) is None)
+    return tuple(topic for topic in topics if topic not in log.numeric)
 
 
-def _open(log: Log, topic: str) -> ChannelData | None:
-    try:
-        return log[topic]
-    except LogError:
-        return None
+def _together(a: Log, b: Log, topics: Collection[str]) -> Iterator[tuple[dict[str, ChannelData], ...]]:
+    """Messages of both logs before one time after the other, a few seconds of them at once."""
+    steps = [log.stretches(topics) for log in (a, b)]
+    until, waiting = [FIRST, FIRST], [dict[str, ChannelData](), dict[str, ChannelData]()]
+    now = FIRST
+    while now <= LAST:
+        for side in (0, 1):
+            if until[side] == now:
+                until[side], more = next(steps[side])
+                kept = waiting[side]
+                waiting[side] = {topic: kept[topic].joined(more[topic]) if kept else more[topic] for topic in topics}
+        now = min(until)
+        yield tuple(between(one, (FIRST, now - 1)) for one in waiting)
+        waiting = [between(one, (now, LAST)) for one in waiting]
 
 
-def _last(channels: list[ChannelData]) -> int:
-    """Time of the last message of all [ns]; a truncated log has channels that end up to a chunk earlier than others."""
-    return max((int(channel.time_ns[-1]) for channel in channels if len(channel)), default=0)
+class _Fold:
+    """Compares the messages of a channel in two logs, part by part.
+
+    Attributes:
+        last: time of the last message in the first and in the second log, 0 without one [ns].
+    """
+
+    def __init__(self, a: Sequence[FieldSpec], b: Sequence[FieldSpec], tolerance: float) -> None:
+        there = {field.name: field for field in b}
+        self._shared = [field for field in a if _same_layout(field, there.get(field.name))]
+        self._layout, self._tolerance = tuple(_layout_differences(a, b)), tolerance
+        self._messages, self.last = [0, 0], [0, 0]
+        self._exact: FirstDifference | None = None
+        self._tolerated: FirstDifference | None = None
+        self._alone: int | None = None
+
+    def add(self, a: ChannelData, b: ChannelData) -> None:
+        """Messages of both between the same two times."""
+        for side, part in enumerate((a, b)):
+            self._messages[side] += len(part)
+            if len(part):
+                self.last[side] = max(self.last[side], int(part.time_ns[-1]))
+        if self._alone is None:
+            alone = np.setxor1d(a.time_ns, b.time_ns)
+            self._alone = int(alone[0]) if len(alone) else None
+        if self._exact is None or self._tolerated is None:
+            self._compare(a, b)
+
+    def _compare(self, a: ChannelData, b: ChannelData) -> None:
+        rows_a, rows_b = _paired(a.time_ns, b.time_ns)
+        times, exact, tolerated = a.time_ns[rows_a], [], []
+        for field in self._shared:
+            values = a.field(field.name)[rows_a], b.field(field.name)[rows_b]
+            named = partial(field.element, joints=a.joints or b.joints)
+            exact += _first(named, times, _bits_differ(*values), *values)
+            tolerated += _first(named, times, _values_differ(*values, self._tolerance), *values)
+        self._exact, self._tolerated = self._exact or _earliest(exact), self._tolerated or _earliest(tolerated)
+
+    def difference(self, topic: str, reach_ns: int) -> ChannelDifference:
+        """What was found, of logs that both reach up to a time [ns]."""
+        alone = None if self._alone is None or self._alone >= reach_ns else self._alone * 1e-9
+        counts = (self._messages[0], self._messages[1])
+        return ChannelDifference(topic, counts, self._exact, self._tolerated, alone, self._layout)
 
 
 def _order(found: ChannelDifference) -> tuple[float, int]:
     place = _CHAIN.index(found.topic) if found.topic in _CHAIN else len(_CHAIN)
     return (np.inf if found.time is None else found.time, place)
-
-
-def _compare(a: ChannelData, b: ChannelData, tolerance: float, reach_ns: int) -> ChannelDifference:
-    rows_a, rows_b = _paired(a.time_ns, b.time_ns)
-    times, exact, tolerated = a.time_ns[rows_a], [], []
-    shared = {field.name: field for field in b.fields}
-    for field in a.fields:
-        if _same_layout(field, shared.get(field.name)):
-            values = a.field(field.name)[rows_a], b.field(field.name)[rows_b]
-            named = partial(field.element, joints=a.joints or b.joints)
-            exact += _first(named, times, _bits_differ(*values), *values)
-            tolerated += _first(named, times, _values_differ(*values, tolerance), *values)
-    return ChannelDifference(
-        topic=a.topic,
-        messages=(len(a), len(b)),
-        exact=_earliest(exact),
-        tolerated=_earliest(tolerated),
-        only_one=_only_one(a.time_ns, b.time_ns, reach_ns),
-        layout=tuple(_layout_differences(a, b)),
-    )
 
 
 def _paired(a: NDArray[np.int64], b: NDArray[np.int64]) -> tuple[NDArray[np.intp], NDArray[np.intp]]:
@@ -158,13 +190,6 @@ def _numbered(times: NDArray[np.int64]) -> NDArray[np.void]:
     pairs = np.zeros(len(times), [("time", "<i8"), ("count", "<i8")])
     pairs["time"], pairs["count"] = times, np.arange(len(times)) - first
     return pairs
-
-
-def _only_one(a: NDArray[np.int64], b: NDArray[np.int64], reach_ns: int) -> float | None:
-    """First time before both logs end at which only one of the channels has a message."""
-    alone = np.setxor1d(a, b)
-    alone = alone[alone < reach_ns]
-    return float(alone[0]) * 1e-9 if len(alone) else None
 
 
 def _earliest(found: list[tuple[int, FirstDifference]]) -> FirstDifference | None:
@@ -205,8 +230,8 @@ def _same_layout(a: FieldSpec, b: FieldSpec | None) -> bool:
     return b is not None and (a.shape, a.kind) == (b.shape, b.kind)
 
 
-def _layout_differences(a: ChannelData, b: ChannelData) -> Iterator[str]:
-    here, there = ({field.name: field for field in channel.fields} for channel in (a, b))
+def _layout_differences(a: Sequence[FieldSpec], b: Sequence[FieldSpec]) -> Iterator[str]:
+    here, there = ({field.name: field for field in fields} for fields in (a, b))
     for name, field in here.items():
         other = there.get(name)
         if other is None:

@@ -24,9 +24,9 @@ def touching(log: Log) -> tuple[Touch, ...]:
 
     A log without such ticks has none, and neither has one whose world cannot be read.
     """
-    if "/truth" not in log or all(field.name != "self_contact" for field in log["/truth"].fields):
+    if "/truth" not in log.numeric or all(field.name != "self_contact" for field in log.fields("/truth")):
         return ()
-    truth = log["/truth"]
+    truth = log.gather({"/truth": ("self_contact",)})["/truth"]
     ticks = np.flatnonzero(truth.field("self_contact"))
     if not ticks.size:
         return ()
@@ -39,15 +39,16 @@ def touching(log: Log) -> tuple[Touch, ...]:
         _, model = world(log)
     except LogError:
         return ()
-    states, data, found = truth.field("q"), mujoco.MjData(model), dict[tuple[str, str], float]()
-    still = np.zeros(model.nv)
-    if states.shape[1] != model.nq:
-        return ()
-    for tick in ticks[np.unique(np.linspace(0, ticks.size - 1, min(ticks.size, MOST_TICKS)).astype(int))]:
-        pinocchio_to_mujoco(states[tick], still, data.qpos, data.qvel)
+    data, found, still = mujoco.MjData(model), dict[tuple[str, str], float](), np.zeros(model.nv)
+    chosen = np.unique(np.linspace(0, ticks.size - 1, min(ticks.size, MOST_TICKS)).astype(int))
+    for time in truth.time[ticks[chosen]].tolist():
+        state = log.window("/truth", time, time).field("q")[0]
+        if state.shape != (model.nq,):
+            return ()
+        pinocchio_to_mujoco(state, still, data.qpos, data.qvel)
         mujoco.mj_fwdPosition(model, data)
         for bodies in model.geom_bodyid[data.contact.geom]:
             if bodies.all():
                 one, other = sorted(model.body(body).name for body in bodies)
-                found.setdefault((one, other), float(truth.time[tick]))
+                found.setdefault((one, other), time)
     return tuple(Touch(*pair, time) for pair, time in found.items())

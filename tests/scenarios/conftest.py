@@ -158,7 +158,7 @@ def robots() -> FakeRobots:
     return FakeRobots()
 
 
-@pytest.fixture
+@pytest.fixture(scope="session")
 def robot() -> SimpleNamespace:
     return SimpleNamespace(
         name="stand-in",
@@ -181,12 +181,12 @@ def robot() -> SimpleNamespace:
     )
 
 
-@pytest.fixture
+@pytest.fixture(scope="session")
 def motion() -> type[Motion]:
     return Motion
 
 
-@pytest.fixture
+@pytest.fixture(scope="session")
 def two_steps() -> Scenario:
     return Scenario(name="two-steps", gait={"steps": 2})
 

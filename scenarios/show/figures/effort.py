@@ -84,33 +84,47 @@ def _draw_groups(
         Panel(f"{name} [%]", partial(_group, name=name, topic=topic, percent_of=percent_of))
         for name in ("left leg", "right leg", "upper body")
     ]
-    left, right, upper = draw_panels(area, view, behind, title, panels)
+    axes = draw_panels(area, view, behind, title, panels)
+    left, right, upper = axes
     same = left.get_legend_handles_labels()[1] == right.get_legend_handles_labels()[1]
     for one in (left, upper) if same else (left, right, upper):
         legend(one, 6 if same else 4)
+    peaks = [_peaks(one) for one in axes]
+    # The same range for all groups; the limits come into sight when a torque comes near them.
+    largest = max([20.0, *(peak for group in peaks for peak in group.values())])
+    for one, group in zip(axes, peaks, strict=True):
+        if group:
+            worst = max(group, key=lambda label: group[label])
+            text = f"largest: {worst.removesuffix(', largest')} {group[worst]:.0f} %"
+            one.text(0.995, 0.03, text, transform=one.transAxes, ha="right", va="bottom", fontsize=7, bbox=_PLATE)
+            one.set_ylim(-1.2 * largest, 1.2 * largest)
+            for limit in (-100.0, 100.0):
+                one.axhline(limit, color=BLACK, linewidth=0.9, linestyle="--")
 
 
 def _group(axes: Axes, view: LogView, name: str, topic: str, percent_of: Callable[[LogView], Percent]) -> None:
-    """Draw each label's joint, of several the largest size, and say which is the largest of all."""
+    """Draw each label's joint, of several the largest size."""
     names, percent = percent_of(view)
     members = groups(names, _roles(view))[name]
     if not members:
         raise MissingError("such joints")
-    peaks = {}
     for number, (label, joints) in enumerate(members.items()):
-        chosen = np.nan_to_num(percent[:, joints])
+        chosen = np.nan_to_num(percent[:, joints], posinf=np.nan, neginf=np.nan)
         color = GREY if len(joints) > 1 else CYCLE[number % len(CYCLE)]
         values = np.abs(chosen).max(axis=1) if len(joints) > 1 else chosen[:, 0]
-        peaks[label] = float(np.abs(values).max())
         curve(axes, view.time(topic), values, label, color, linewidth=0.9)
-    worst = max(peaks, key=lambda label: peaks[label])
-    text = f"largest: {worst.removesuffix(', largest')} {peaks[worst]:.0f} %"
-    axes.text(0.995, 0.03, text, transform=axes.transAxes, ha="right", va="bottom", fontsize=7, bbox=_PLATE)
-    # The same range for all groups; the limits come into sight when a torque comes near them.
-    largest = max(20.0, float(np.max(np.abs(percent), initial=0.0, where=np.isfinite(percent))))
-    axes.set_ylim(-1.2 * largest, 1.2 * largest)
-    for limit in (-100.0, 100.0):
-        axes.axhline(limit, color=BLACK, linewidth=0.9, linestyle="--")
+
+
+def _peaks(axes: Axes) -> dict[str, float]:
+    """Largest size of the curves in axes by their labels, those drawn in parts together; thinning keeps extremes."""
+    found: dict[str, float] = {}
+    for line in axes.lines:
+        label = str(line.get_label()).removeprefix("_")
+        if label.startswith("child"):  # no curve, but what stands behind them
+            continue
+        values = np.abs(np.asarray(line.get_ydata(), float))
+        found[label] = max(found.get(label, 0.0), float(np.nanmax(values, initial=0.0)))
+    return found
 
 
 def groups(names: tuple[str, ...], roles: Roles) -> dict[str, dict[str, list[int]]]:
@@ -157,8 +171,8 @@ def draw_solver(area: Area, view: LogView, behind: Background) -> None:
     """Draw iterations, what went wrong and when, and the time of each part."""
     panels = (
         Panel("iterations [-]", _iterations, columns=1, height=0.7),
-        Panel("", _events, height=0.9),
-        Panel("time per tick [µs]", _timing, columns=4, height=1.6),
+        Panel("", _events, height=0.9, in_parts=False),
+        Panel("time per tick [µs]", _timing, columns=4, height=1.6, in_parts=False),
     )
     draw_panels(area, view, behind, "Solvers and wall-clock times", panels)
 

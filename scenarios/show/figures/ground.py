@@ -1,6 +1,6 @@
 """Figures of the ground: the walk from above, where the soles are pressed, how far from slipping and from the plan."""
 
-from collections.abc import Callable, Iterator
+from collections.abc import Callable, Iterable, Iterator, Sequence
 from contextlib import suppress
 from functools import partial
 from itertools import pairwise, zip_longest
@@ -196,7 +196,7 @@ def draw_top_view(area: Area, view: LogView, _: Background) -> None:
     heading(area, "Top view")
     for one, stretch in zip_longest(axes, rows):
         one.set_ylabel("y [m]")
-        handles = [*_supports(one, view), *_footprints(one, view), *_paths(one, view)]
+        handles = [*_supports(one, view), *_footprints(one, view, stretch), *_paths(one, view)]
         if not handles:
             note(one, "not in this log: /truth, /contact, /reference")
         one.margins(0.04)
@@ -242,16 +242,18 @@ def is_wide(view: LogView) -> bool:
 
 
 def _supports(axes: Axes, view: LogView) -> list[Artist]:
-    try:
-        vertices = view.field("/reference", "support", SUPPORT_VERTICES, 2)
-    except MissingError:
+    polygons: list[Array] = []
+    for part in view.parts():
+        with suppress(MissingError):
+            vertices = part.field("/reference", "support", SUPPORT_VERTICES, 2)
+            flat = vertices.reshape(len(vertices), -1)
+            changed = np.concatenate(([True], np.any(flat[1:] != flat[:-1], axis=1)))
+            polygons += list(vertices[changed & np.isfinite(flat).all(axis=1)])
+    if not polygons:
         return []
-    flat = vertices.reshape(len(vertices), -1)
-    changed = np.concatenate(([True], np.any(flat[1:] != flat[:-1], axis=1)))
-    polygons = vertices[changed & np.isfinite(flat).all(axis=1)]
     polygons = polygons[:: -(-len(polygons) // _MOST_POLYGONS) or 1]
     style: dict[str, Any] = {"facecolor": SUPPORT, "edgecolor": GREY, "linewidth": 0.5}
-    axes.add_collection(PolyCollection(list(polygons), alpha=0.12, **style))
+    axes.add_collection(PolyCollection(polygons, alpha=0.12, **style))
     return [Patch(alpha=0.2, label="planned support", **style)]
 
 
@@ -259,32 +261,54 @@ _Print = tuple[int, Array, str]
 """Foot, x y and a heading last [m, rad], and what stands beside it."""
 
 
-def _footprints(axes: Axes, view: LogView) -> list[Artist]:
-    """Where the soles stood at the window's begin and landed since, and where they were last planned to land."""
+_MOST_NAMED = 150
+"""More footprints than these leave no room for their numbers."""
+
+
+def _footprints(axes: Axes, view: LogView, stretch: tuple[float, float] | None) -> list[Artist]:
+    """Where the soles stood at the window's begin and landed since, and where they were last planned to land.
+
+    Of a row of a strip only those in its stretch of x [m].
+    """
     try:
         length, width = view.number("foot_length"), view.number("foot_width")
     except MissingError:
         return []
-    entries: list[Artist] = []
-    for foot, pose, label in (*_first_feet(view), *_touchdowns(view, "actual")):
-        (corners,) = level_corners(pose[None], length, width)
-        axes.fill(*corners.T, facecolor=FEET[foot], edgecolor=FEET[foot], alpha=0.55, linewidth=0.8, zorder=2)
+    taken = list(_in_sight((*_first_feet(view), *_touchdowns(view, "actual")), stretch, length))
+    planned = list(_in_sight((*_touchdowns(view, "planned"), *_ahead(view)), stretch, length))
+    for side, color in enumerate(FEET):
+        poses = [pose for foot, pose, _ in taken if foot == side]
+        _soles(axes, poses, length, width, facecolor=color, edgecolor=color, alpha=0.55, linewidth=0.8, zorder=2)
+    for _, pose, label in taken if len(taken) <= _MOST_NAMED else ():
+        corner = level_corners(pose[None], length, width)[0, 2]
         below: dict[str, Any] = {"textcoords": "offset points", "ha": "right", "va": "top"}
-        axes.annotate(label, corners[2], (-2, -2), fontsize=6.5, zorder=5, annotation_clip=True, **below)
-    for _, pose, _ in (*_touchdowns(view, "planned"), *_ahead(view)):
-        (corners,) = level_corners(pose[None], length, width)
-        axes.fill(*corners.T, facecolor="none", edgecolor=FOOTSTEP, linestyle="--", linewidth=0.9, zorder=3)
-        entries = [Patch(facecolor="none", edgecolor=FOOTSTEP, linestyle="--", label="footstep planned")]
+        axes.annotate(label, corner, (-2, -2), fontsize=6.5, zorder=5, annotation_clip=True, **below)
+    dashed: dict[str, Any] = {"facecolor": "none", "edgecolor": FOOTSTEP, "linestyle": "--"}
+    _soles(axes, [pose for _, pose, _ in planned], length, width, linewidth=0.9, zorder=3, **dashed)
     soles = [Patch(color=FEET[foot], alpha=0.55, label=f"{FOOT_NAMES[foot]} footprint") for foot in (0, 1)]
-    return [*soles, *entries]
+    return [*soles, *([Patch(label="footstep planned", **dashed)] if planned else [])]
+
+
+def _in_sight(prints: Iterable[_Print], stretch: tuple[float, float] | None, length: float) -> Iterator[_Print]:
+    """Footprints of soles of a length [m] that reach into a stretch of x [m]."""
+    least, most = (-np.inf, np.inf) if stretch is None else stretch
+    return (one for one in prints if least - length <= one[1][0] <= most + length)
+
+
+def _soles(axes: Axes, poses: Sequence[Array], length: float, width: float, **style: Any) -> None:
+    """Draw the outlines of soles at x y and a heading last, together: there may be thousands."""
+    if poses:
+        axes.add_collection(PolyCollection([level_corners(pose[None], length, width)[0] for pose in poses], **style))
+        axes.autoscale_view()
 
 
 def _first_feet(view: LogView) -> Iterator[_Print]:
     """Soles on the ground when the window begins; a foot in the air leaves no print."""
+    begin = next(view.parts())
     for foot, name in enumerate(FOOT_NAMES):
         with suppress(MissingError):
-            if view.field("/contact", "felt", 2)[0, foot]:
-                pose = view.field("/truth", f"{name}_sole", 7)[0]
+            if begin.field("/contact", "felt", 2)[0, foot]:
+                pose = begin.field("/truth", f"{name}_sole", 7)[0]
                 yield foot, np.array([*pose[:2], headings(pose[3:])]), ""
 
 

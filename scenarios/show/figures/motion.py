@@ -42,14 +42,18 @@ def draw_balance(area: Area, view: LogView, behind: Background) -> None:
     heights = [*[2.6] * len(stretches), 2.9]
     *parts, last = area.subfigures(len(heights), 1, squeeze=False, height_ratios=heights)[:, 0]
     first, other = _directions(view)
-    title, columns = BALANCE_TITLE, 7
+    title, columns, drawn = BALANCE_TITLE, 7, []
     for part, stretch in zip(parts, stretches, strict=True):
         panels = (
             Panel(f"{first} [m]", partial(_positions, axis=0), columns, handles=(support_handle(),)),
             Panel(f"{other} [m]", partial(_positions, axis=1)),
         )
-        draw_panels(part, view, behind, title, panels, stretch)
+        drawn.append(draw_panels(part, view, behind, title, panels, stretch))
         title, columns = "", 0
+    for row in zip(*drawn, strict=True):  # one direction in all strips, on one scale
+        low, high = zip(*(one.get_ylim() for one in row), strict=True)
+        for one in row:
+            one.set_ylim(min(low), max(high))
     errors = (
         Panel(f"{first}\nerror [mm]", partial(_errors, axis=0), columns=3),
         Panel(f"{other}\nerror [mm]", partial(_errors, axis=1)),

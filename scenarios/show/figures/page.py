@@ -14,7 +14,7 @@ from surefoot.scenarios.judge.verdict import judge
 from surefoot.scenarios.log import Log, read
 from surefoot.scenarios.output import refuse_existing, shown
 from surefoot.scenarios.palette import BLACK, BLUE, VERMILION
-from surefoot.scenarios.record.provenance import ABSENT
+from surefoot.scenarios.record.provenance import ABSENT, END_RECORD
 from surefoot.scenarios.show.figures.effort import draw_joints, draw_solver, draw_torques
 from surefoot.scenarios.show.figures.ground import draw_grip, draw_soles, draw_top_view, is_wide, strip_height
 from surefoot.scenarios.show.figures.motion import draw_balance, draw_feet, draw_height, strips
@@ -166,13 +166,14 @@ def plot(
     refuse_existing(out, replace)
     log = read(log_path)
     view = LogView(log, start, end)
-    figure = page(view, _header(view)) if what is None else single(view, _header(view), what)
+    header = _header(view, _verdict(log) if start is None and end is None else _part(log))
+    figure = page(view, header) if what is None else single(view, header, what)
     save(figure, out, replace)
     return Plotted(out, _notes(log))
 
 
-def _header(view: LogView) -> str:
-    """Two lines: which run and its verdict; the stretch of time and what made it."""
+def _header(view: LogView, outcome: str) -> str:
+    """Two lines: which run and its verdict, or how it ended; the stretch of time and what made it."""
     log = view.log
     try:
         scenario, seed, fidelity = (view.constant(name) for name in ("scenario", "seed", "fidelity"))
@@ -183,7 +184,7 @@ def _header(view: LogView) -> str:
     parts = (("surefoot", "surefoot"), ("git_revision", "revision"), ("mujoco", "mujoco"))
     made = [f"{label} {versions[part][:12]}" for part, label in parts if versions.get(part, ABSENT) not in ("", ABSENT)]
     window = f"{view.start:.3f} s to {view.end:.3f} s"
-    return f"{name}: {_verdict(log)}\n{', '.join([window, *made])}".replace("$", r"\$")
+    return f"{name}: {outcome}\n{', '.join([window, *made])}".replace("$", r"\$")
 
 
 def _verdict(log: Log) -> str:
@@ -193,6 +194,13 @@ def _verdict(log: Log) -> str:
         return "no verdict"
     first = f" ({shorten(verdict.reasons[0], _REASON)})" if verdict.reasons else ""
     return f"{'pass' if verdict.passed else 'fail'}{first}"
+
+
+def _part(log: Log) -> str:
+    """How the run of a log ended of which only a part is looked at, so that nothing of it is judged."""
+    end = log.metadata.get(END_RECORD, {})
+    told = f", which ended at {end['time']} s: {end['kind']}" if {"time", "kind"} <= end.keys() else ""
+    return f"a part of the run{told}"
 
 
 def _notes(log: Log) -> tuple[str, ...]:
@@ -228,7 +236,10 @@ def overlay(a: LogView, b: LogView, header: str, divergence: float | None) -> Fi
         if len(missing) == len(styles):
             raise missing[0]
 
-    panels = [Panel(label, partial(both, topic=topic, name=name, axis=axis)) for label, topic, name, axis in _BOTH]
+    panels = [
+        Panel(label, partial(both, topic=topic, name=name, axis=axis), in_parts=False)
+        for label, topic, name, axis in _BOTH
+    ]
     with in_style():
         figure, (top, area) = canvas(_A3, (0.5, 9.5))
         top.text(0.01, 0.9, header, ha="left", va="top", fontsize=9, linespacing=1.4)

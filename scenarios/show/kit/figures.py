@@ -1,5 +1,6 @@
 """How figures look, how curves are thinned, and how they are saved."""
 
+import math
 from collections.abc import Iterator, Sequence
 from contextlib import contextmanager
 from io import BytesIO
@@ -109,8 +110,16 @@ def curve(
     buckets: int = BUCKETS,
     **style: Any,
 ) -> None:
-    """Draw a curve over time, thinned to some buckets without losing an extreme; shapes (n,)."""
-    rows = kept(values, buckets)
+    """Draw a curve over time, thinned to some buckets without losing an extreme; shapes (n,).
+
+    Of a curve that is drawn in parts each gets its share of the buckets of all the axes. Parts behind the first have
+    its label behind an underscore, which keeps them out of the legend.
+    """
+    first, last = axes.get_xlim()
+    share = (time[-1] - time[0]) / (last - first) if len(time) and last > first else 1.0
+    rows = kept(values, max(math.ceil(buckets * min(share, 1.0)), 1))
+    if label in {line.get_label() for line in axes.lines}:
+        label = f"_{label}"
     axes.plot(time[rows], values[rows], color=color, label=label, **style)
 
 
@@ -132,9 +141,11 @@ def reference_curve(
 
 def legend(axes: Axes, columns: int = 4, handles: Sequence[Artist] = ()) -> None:
     """Put the legend above the axes, outside the data."""
-    found, labels = axes.get_legend_handles_labels()
-    if every := [*found, *handles]:
-        names = [*labels, *(str(handle.get_label()) for handle in handles)]
+    drawn, labels = axes.get_legend_handles_labels()
+    found = {str(handle.get_label()): handle for handle in reversed(handles)}
+    found |= dict(zip(reversed(labels), reversed(drawn), strict=True))  # of what was drawn in parts the first
+    if found:
+        every, names = [*reversed(found.values())], [*reversed(found)]
         axes.legend(every, names, loc="lower left", bbox_to_anchor=(0.0, 1.0), ncols=columns)
 
 

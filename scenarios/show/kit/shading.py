@@ -8,7 +8,7 @@ from matplotlib.lines import Line2D
 from matplotlib.patches import Patch
 
 from surefoot.scenarios.errors import LogError
-from surefoot.scenarios.judge.digest import SINGLE_SUPPORT, RunView
+from surefoot.scenarios.judge.digest import SINGLE_SUPPORT, RunView, Window
 from surefoot.scenarios.judge.walking import fall_time
 from surefoot.scenarios.palette import BLACK, PUSH
 from surefoot.scenarios.show.kit.figures import Area, heading, legend, or_say
@@ -102,6 +102,7 @@ class Panel:
         columns: of its legend; 0 for none.
         height: over that of the others [-].
         handles: of its legend, beside those of its curves.
+        in_parts: whether it is drawn part by part of a long log, each beside the one before.
     """
 
     label: str
@@ -109,6 +110,22 @@ class Panel:
     columns: int = 0
     height: float = 1.0
     handles: tuple[Patch, ...] = ()
+    in_parts: bool = True
+
+    def drawn(self, axes: Axes, view: LogView) -> None:
+        """Draw a window.
+
+        Raises:
+            MissingError: no part of it has what is drawn.
+        """
+        missing, parts = [], list(view.parts()) if self.in_parts else [view]
+        for part in parts:
+            try:
+                self.draw(axes, part)
+            except MissingError as absent:
+                missing.append(absent)
+        if len(missing) == len(parts):
+            raise missing[0]
 
 
 def draw_panels(
@@ -133,7 +150,7 @@ def draw_panels(
     for one, panel in zip(axes, panels, strict=True):
         one.set_ylabel(panel.label)
         with or_say(one):
-            panel.draw(one, view)
+            panel.drawn(one, view if stretch is None else view.within(*stretch))
         if panel.columns:
             legend(one, panel.columns, panel.handles)
     return axes
@@ -174,9 +191,12 @@ def _pushes(view: LogView) -> tuple[Stretch, ...]:
 
 
 def _fall(view: LogView) -> float | None:
+    """Time of a fall in the window; not of one from before, after which the robot lies at its begin [s]."""
     try:
-        run = RunView(view.log)
+        run = RunView(Window(view.log, view.channels))
         time = fall_time(run) if run.has("/truth") else None
     except LogError:
         return None
-    return time if time is not None and view.start <= time <= view.end else None
+    if time is None or not view.start <= time <= view.end:
+        return None
+    return time if time > run.time[0] or time <= view.log.time_range()[0] else None

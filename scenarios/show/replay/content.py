@@ -25,11 +25,13 @@ class ReplayWindow:
         start: first time, the log's if None [s].
         end: last time, the log's if None [s].
         frame_rate: frames per simulated second [Hz].
+        most: frames; where there would be more, there are fewer per second. None for any number.
     """
 
     start: float | None = None
     end: float | None = None
     frame_rate: float = 30.0
+    most: int | None = None
 
 
 @dataclass(frozen=True, slots=True)
@@ -39,10 +41,12 @@ class Frames:
     Attributes:
         time: of each frame, shape (n,) [s].
         rows: of the control-rate channels, shape (n,).
+        rate: frames per simulated second [Hz].
     """
 
     time: Array
     rows: NDArray[np.intp]
+    rate: float
 
     def strongest(self, strength: Array, ticks: Array, seconds: float) -> NDArray[np.intp]:
         """Row of the greatest strength, by control tick, within some seconds before each frame, its own included."""

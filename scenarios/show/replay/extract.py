@@ -1,18 +1,21 @@
 """From a log to what a replay shows of it: which frames, where the bodies are in them, and what they look like."""
 
+import math
 from collections.abc import Iterator
+from pathlib import Path
 
 import numpy as np
 from scipy.spatial.transform import Rotation
 
 from surefoot.engine import mujoco
+from surefoot.scenarios.columns import Reads
 from surefoot.scenarios.errors import LogError
 from surefoot.scenarios.judge.body import torso
-from surefoot.scenarios.judge.digest import RunView
+from surefoot.scenarios.judge.digest import RunView, Window
 from surefoot.scenarios.judge.verdict import agenda_of, scenario_of
 from surefoot.scenarios.log import Log
 from surefoot.scenarios.palette import FEET, Color
-from surefoot.scenarios.record.provenance import WORLD_FILE
+from surefoot.scenarios.record.provenance import WORLD_FILE, RunConstants
 from surefoot.scenarios.show.logview import FOOT_NAMES, rows_at
 from surefoot.scenarios.show.replay import content
 from surefoot.scenarios.show.replay.content import Array, Frames, Replay, ReplayWindow
@@ -20,34 +23,63 @@ from surefoot.sim.bodies import BodyPoses
 from surefoot.sim.shapes import drawn_shapes
 from surefoot.sim.triangles import Triangles, merged, triangles
 
+READS: Reads = {
+    "/truth": ("q", "com", "left_sole", "right_sole"),
+    "/measurement": ("external_force", "wrench_left", "wrench_right"),
+    "/estimate": ("dcm",),
+    "/contact": ("zmp", "planned", "cop_left", "cop_right"),
+    "/reference": ("com", "dcm", "zmp", "support"),
+    "/footsteps": ("next", "next_foot"),
+}
+"""Fields of which a replay shows something in each frame."""
 
-def choose_frames(run: RunView, window: ReplayWindow) -> Frames:
+
+def choose_frames(run: RunView, window: ReplayWindow, whole: tuple[float, float]) -> Frames:
     """Frames of a window, without those in which the robot's state is not finite.
+
+    Args:
+        run: the run, in the window at least.
+        window: what is asked for.
+        whole: first and last time of the log [s].
 
     Raises:
         LogError: the window holds no tick of the log.
     """
-    if len(run.time) == 0:
-        raise LogError(f"{run.log.path}: ends before the first control tick; there is nothing to replay")
     ticks = run.time
-    first, last = float(ticks[0]), float(ticks[-1])
+    first, last = (ticks[0], ticks[-1]) if len(ticks) else (math.inf, -math.inf)
     start = first if window.start is None else max(window.start, first)
     end = last if window.end is None else min(window.end, last)
     if not start <= end:
-        asked = " ".join(f"{word} {t:g} s" for word, t in (("from", window.start), ("to", window.end)) if t is not None)
-        raise LogError(f"{run.log.path}: nothing {asked}; the log goes from {first:g} s to {last:g} s")
-    # Only frames with a tick of their own, so that one damaged time stamp does not make hours of them.
-    numbers = np.unique(
-        np.floor((ticks[(ticks >= start - 1e-9) & (ticks <= end + 1e-9)] - start) * window.frame_rate + 1e-6)
-    )
+        raise _nothing(run.log.path, window, whole)
+    inside, rate = ticks[(ticks >= start - 1e-9) & (ticks <= end + 1e-9)] - start, window.frame_rate
+    numbers = _numbers(inside, rate)
+    if window.most is not None and len(numbers) > window.most:
+        rate *= window.most / (len(numbers) + 1)
+        numbers = _numbers(inside, rate)
     if not len(numbers):
         raise LogError(f"{run.log.path}: no control tick from {start:g} s to {end:g} s; choose another part")
-    time = start + numbers / window.frame_rate
+    time = start + numbers / rate
     rows = rows_at(ticks, time)
     sound = np.isfinite(run.field("/truth", "q")[rows]).all(axis=1)
     if not sound.any():
         raise LogError(f"{run.log.path}: the robot's state is never finite; there is nothing to replay")
-    return Frames(time[sound], rows[sound])
+    return Frames(time[sound], rows[sound], rate)
+
+
+def _numbers(times: Array, rate: float) -> Array:
+    """Numbers of the frames that have a tick of their own, so that one damaged time stamp does not make hours of them.
+
+    Args:
+        times: of the ticks, from the first frame on, shape (n,) [s].
+        rate: frames per second [Hz].
+    """
+    return np.unique(np.floor(times * rate + 1e-6))
+
+
+def _nothing(path: Path, window: ReplayWindow, whole: tuple[float, float]) -> LogError:
+    """A window holds nothing of a log that goes from one time to another [s]."""
+    asked = " ".join(f"{word} {t:g} s" for word, t in (("from", window.start), ("to", window.end)) if t is not None)
+    return LogError(f"{path}: nothing {asked}; the log goes from {whole[0]:g} s to {whole[1]:g} s")
 
 
 _SHOWN = ("/truth", "/measurement", "/estimate", "/contact", "/reference")
@@ -60,13 +92,18 @@ def extract(log: Log, window: ReplayWindow | None = None) -> Replay:
     Raises:
         LogError: the log does not describe such a run, or has nothing in that window.
     """
-    run, window = RunView(log), window or ReplayWindow()
-    if run.constants.fidelity == "pendulum":
+    constants, window = RunConstants.from_metadata(log.metadata, str(log.path)), window or ReplayWindow()
+    if constants.fidelity == "pendulum":
         raise LogError(f"{log.path}: a pendulum has no body to replay; run the scenario with fidelity full")
     mjcf, model = world(log)
     log.require("a replay", *_SHOWN)
-    log.load(*_SHOWN)
-    frames = choose_frames(run, window)
+    if "/truth" not in log or not log.count("/truth"):
+        raise LogError(f"{log.path}: ends before the first control tick; there is nothing to replay")
+    if not all(math.isfinite(time) for time in (window.start, window.end) if time is not None):
+        raise _nothing(log.path, window, log.time_range())
+    before = None if window.start is None else window.start - content.PUSH_SHOWN
+    run = RunView(Window(log, log.gather(READS, before, window.end)), constants)
+    frames = choose_frames(run, window, log.time_range())
     configurations = run.field("/truth", "q")[frames.rows]
     if configurations.shape[1] != model.nq:
         raise LogError(f"{log.path}: /truth and world.xml are of different robots; replay needs an intact log")
@@ -77,7 +114,7 @@ def extract(log: Log, window: ReplayWindow | None = None) -> Replay:
     facts = _facts(run, frames, position[:, pushed] + turned)
     return Replay(
         title=run.constants.scenario,
-        frame_rate=window.frame_rate,
+        frame_rate=frames.rate,
         time=frames.time,
         configuration=configurations,
         body_names=names,
@@ -85,7 +122,7 @@ def extract(log: Log, window: ReplayWindow | None = None) -> Replay:
         body_quaternion=quaternion,
         surfaces=surfaces(model),
         tracks=tuple(content.tracks(facts)),
-        footprints=tuple(_taken_footprints(run, frames, facts.sole)),
+        footprints=tuple(_taken_footprints(log, frames, facts.sole)),
         mjcf=mjcf,
     )
 
@@ -144,7 +181,7 @@ def _facts(run: RunView, frames: Frames, pushed: Array) -> content.Facts:
         planned_zmp=run.field("/reference", "zmp")[rows],
         polygon=run.field("/reference", "support")[rows],
         contacts=run.field("/contact", "planned")[rows] != 0,
-        soles=run.soles[rows],
+        soles=np.stack([run.sole(foot)[rows] for foot in (0, 1)], axis=1),
         cop=np.stack([run.field("/contact", f"cop_{side}")[rows] for side in FOOT_NAMES], axis=1),
         force=np.stack([run.field("/measurement", f"wrench_{side}")[rows, :3] for side in FOOT_NAMES], axis=1),
         ahead=ahead,
@@ -155,19 +192,18 @@ def _facts(run: RunView, frames: Frames, pushed: Array) -> content.Facts:
     )
 
 
-def _taken_footprints(run: RunView, frames: Frames, sole: content.SoleSize) -> Iterator[content.Footprint]:
+def _taken_footprints(log: Log, frames: Frames, sole: content.SoleSize) -> Iterator[content.Footprint]:
     """Where the feet stood at first, and every touchdown until the last frame."""
-    if run.has("/footsteps"):
-        first = run.log["/footsteps"]
+    first = next(log.parts("/footsteps"), None) if "/footsteps" in log.numeric else None
+    if first is not None:
         for color, name in zip(FEET, FOOT_NAMES, strict=True):
-            yield content.Footprint(
-                color, content.sole_corners(first.field(f"current_{name}")[:1], sole)[0], float(first.time[0])
-            )
-    if run.has("/footstep"):
-        taken = run.log["/footstep"]
+            corners = content.sole_corners(first.field(f"current_{name}")[:1], sole)[0]
+            yield content.Footprint(color, corners, float(first.time[0]))
+    if "/footstep" in log.numeric:
+        taken = log.window("/footstep", None, float(frames.time[-1]))
         corners = content.sole_corners(taken.field("actual"), sole)
         for time, foot, place in zip(taken.time.tolist(), taken.field("foot").tolist(), corners, strict=True):
-            if time <= frames.time[-1] and np.isfinite(place).all():
+            if np.isfinite(place).all():
                 yield content.Footprint(FEET[foot == 1], place, time)
 
 

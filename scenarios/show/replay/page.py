@@ -1,5 +1,6 @@
 """The page: a recording of the scene in viser's own viewer, with charts beside it that follow its timeline."""
 
+import dataclasses
 import html
 import json
 from collections.abc import Mapping, Sequence
@@ -12,9 +13,9 @@ from typing import Any
 import numpy as np
 
 from surefoot.scenarios import palette
-from surefoot.scenarios.log import read
+from surefoot.scenarios.log import Log, read
 from surefoot.scenarios.output import refuse_existing, write_whole
-from surefoot.scenarios.show.logview import FOOT_NAMES, LogView, MissingError, rows_at
+from surefoot.scenarios.show.logview import FOOT_NAMES, STANCES, LogView, MissingError, rows_at
 from surefoot.scenarios.show.replay.content import Array, Replay, ReplayWindow
 from surefoot.scenarios.show.replay.extract import extract
 from surefoot.scenarios.show.replay.gate import serving
@@ -113,8 +114,29 @@ CHARTS = (
 """Beside the picture of every replay and of a robot that is driven."""
 
 
-def write_page(log: Path, out: Path, window: ReplayWindow | None = None, replace: bool = False) -> None:
+LEAD = 3.0
+"""How long before a replay begins the step began at most in which it does [s]."""
+
+
+def beside_replay(log: Log, replay: Replay) -> LogView:
+    """What the charts beside a replay are drawn of."""
+    reads = {topic: set(names) for topic, names in STANCES.items()}
+    for chart in CHARTS:
+        for curve in chart.curves:
+            reads.setdefault(curve.topic, set()).add(curve.field)
+    begin, end = float(replay.time[0]), float(replay.time[-1])
+    return LogView(log, begin - LEAD, end, {topic: tuple(sorted(names)) for topic, names in reads.items()})
+
+
+MOST_FRAMES = 600
+"""Frames of a page, which holds all of them at once, as does the browser that shows it: 20 s at the full rate."""
+
+
+def write_page(log: Path, out: Path, window: ReplayWindow | None = None, replace: bool = False) -> float:
     """Write the page of a log; errors as of `extract`.
+
+    Returns:
+        frames per simulated second, fewer than asked for where there would be more than `MOST_FRAMES` [Hz].
 
     Raises:
         MissingExtraError: viser is not installed.
@@ -122,10 +144,12 @@ def write_page(log: Path, out: Path, window: ReplayWindow | None = None, replace
     """
     refuse_existing(out, replace)
     opened = read(log)
-    replay, view = extract(opened, window), LogView(opened)
+    replay = extract(opened, dataclasses.replace(window or ReplayWindow(), most=MOST_FRAMES))
+    view = beside_replay(opened, replay)
     charts = [chart.told(chart.values(view, replay.time)) for chart in CHARTS]
     with write_whole(out, replace) as temporary:
         temporary.write_text(page(replay, charts), encoding="utf-8")
+    return replay.frame_rate
 
 
 def page(replay: Replay, charts: Sequence[Mapping[str, Any]] = ()) -> str:

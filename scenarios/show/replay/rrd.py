@@ -9,10 +9,9 @@ import numpy as np
 from surefoot.scenarios.errors import require
 from surefoot.scenarios.log import Log, read
 from surefoot.scenarios.output import refuse_existing, write_whole
-from surefoot.scenarios.show.logview import LogView
 from surefoot.scenarios.show.replay.content import Array, Replay, ReplayWindow, Track
 from surefoot.scenarios.show.replay.extract import extract
-from surefoot.scenarios.show.replay.page import CHARTS
+from surefoot.scenarios.show.replay.page import CHARTS, beside_replay
 from surefoot.scenarios.show.replay.scene import closed, rgb
 
 TIMELINE = "time"
@@ -119,7 +118,7 @@ class Recorder:
 
     def _curves(self, log: Log) -> Iterator[tuple[str, Array, Any]]:
         """Path, values and look of every curve that the log has."""
-        view = LogView(log)
+        view = beside_replay(log, self._replay)
         for index, chart in enumerate(CHARTS):
             for curve, values in chart.values(view, self._replay.time).items():
                 width = 1.0 if curve.planned else 2.0

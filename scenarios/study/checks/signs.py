@@ -12,8 +12,9 @@ import numpy as np
 
 from surefoot.planner.geometry import frame_rotation, headings
 from surefoot.planner.types import GRAVITY
+from surefoot.scenarios.columns import Reads
 from surefoot.scenarios.judge.body import leg
-from surefoot.scenarios.judge.digest import Array, RunView
+from surefoot.scenarios.judge.digest import CONTROL_TOPICS, Array, RunView, Window
 from surefoot.scenarios.judge.feet import stance_slips
 from surefoot.scenarios.judge.walking import runs_of
 from surefoot.scenarios.log import Log
@@ -281,6 +282,19 @@ class Parting:
     end: float
 
 
+_WRENCHES = tuple(f"wrench_{side}" for side in FOOT_NAMES)
+_READS: Reads = {
+    **dict.fromkeys(CONTROL_TOPICS, ()),
+    "/truth": ("com", "torso_tilt", "left_sole", "right_sole"),
+    "/reference": ("com", "phase", "stance", "swing_position", "zmp_reference"),
+    "/measurement": _WRENCHES,
+    "/contact": ("zmp", "normal_force", "planned", "active"),
+    "/wbc": _WRENCHES,
+    "/torque": ("command",),
+}
+"""Fields of which the signs are made, read in one pass."""
+
+
 @dataclass(frozen=True, slots=True)
 class Trace:
     """The signs of a run.
@@ -298,7 +312,7 @@ class Trace:
     @classmethod
     def of(cls, log: Log) -> "Trace":
         """The signs of a log, as far as it has what they need."""
-        run = RunView(log)
+        run = RunView(Window(log, log.gather(_READS)))
         parts = stages(run)
         values: dict[str, Array] = {}
         for sign in SIGNS if parts else ():

@@ -9,14 +9,15 @@ from functools import partialmethod
 import numpy as np
 import pytest
 
+from surefoot.scenarios.columns import HELD_BYTES, Columns
 from surefoot.scenarios.errors import LogError
-from surefoot.scenarios.judge.digest import HELD_BYTES, Columns, RunView
+from surefoot.scenarios.judge.digest import RunView
 from surefoot.scenarios.judge.metrics import compute, digest
 from surefoot.scenarios.log import ChannelSpec, FieldSpec, Log, LogWriter, read
 from surefoot.scenarios.log.spec import layout_of
 from surefoot.scenarios.record import channels
 from surefoot.scenarios.run.run import run_scenario
-from surefoot.scenarios.show.console import export, selected
+from surefoot.scenarios.show.export import export, selected
 
 pytestmark = pytest.mark.unit
 
@@ -62,7 +63,7 @@ def test_metrics_of_a_log_in_parts_are_those_of_the_whole(tmp_path, motion, two_
     parts, whole = compute(read(path)), RunView(read(path))
     monkeypatch.setattr(Log, "windows", partialmethod(Log.windows, duration=0.5))
     for held in (0, HELD_BYTES):
-        monkeypatch.setattr("surefoot.scenarios.judge.digest.HELD_BYTES", held)
+        monkeypatch.setattr("surefoot.scenarios.columns.HELD_BYTES", held)
         gathered = digest(read(path))
         for function in gathered.reduced:
             assert np.array_equal(gathered.reduced[function], function(whole), equal_nan=True)
@@ -73,7 +74,7 @@ def test_columns_hold_the_same_in_files_as_in_memory(monkeypatch):
     held, filed = Columns(), Columns()
     for n in (3, 0, 2):
         for columns, limit in ((held, HELD_BYTES), (filed, 0)):
-            monkeypatch.setattr("surefoot.scenarios.judge.digest.HELD_BYTES", limit)
+            monkeypatch.setattr("surefoot.scenarios.columns.HELD_BYTES", limit)
             columns.add("a", np.arange(4.0 * n).reshape(n, 4)[:, ::2])
             columns.add("none", np.zeros(0))
             columns.add("unlike", np.zeros((n, n)))
@@ -88,20 +89,21 @@ def test_no_room_for_a_long_log_is_a_sentence(monkeypatch):
     def full(**_):
         raise OSError(errno.ENOSPC, "No space left on device")
 
-    monkeypatch.setattr("surefoot.scenarios.judge.digest.HELD_BYTES", 0)
-    monkeypatch.setattr("surefoot.scenarios.judge.digest.tempfile.TemporaryFile", full)
+    monkeypatch.setattr("surefoot.scenarios.columns.HELD_BYTES", 0)
+    monkeypatch.setattr("surefoot.scenarios.columns.tempfile.TemporaryFile", full)
     with pytest.raises(LogError, match="no space left on device; set TMPDIR"):
         Columns().add("a", np.zeros(1))
 
 
 def test_csv_npz_and_columns_agree(log, tmp_path):
-    part = selected(log, "/x", 1.0, 1.1, None)
-    export(part, tmp_path / "x.csv")
+    part = log.window("/x", 1.0, 1.1)
+    chosen = selected(log, "/x", 1.0, 1.1, None)
+    assert export(chosen, tmp_path / "x.csv") == len(part)
     with (tmp_path / "x.csv").open(newline="") as file:
         rows = list(csv.reader(file))
     assert rows[0] == ["time [s]", "a", *(f"b_{i}_{j}" for i in range(2) for j in range(3)), "n"]
     assert np.array_equal(np.array(rows[1:], float), np.column_stack(list(part.columns().values())))
-    export(part, tmp_path / "x.npz")
+    export(chosen, tmp_path / "x.npz")
     with np.load(tmp_path / "x.npz") as data:
         assert np.array_equal(data["b"], part.field("b"))
         assert np.array_equal(data["time"], part.time)
@@ -148,11 +150,11 @@ def test_columns_are_called_by_their_joints_and_have_the_unit_of_their_element(m
 
 
 def test_exports_keep_units(moved, tmp_path):
-    export(moved["/r"].only("command"), tmp_path / "r.csv")
+    export(selected(moved, "/r", None, None, "command"), tmp_path / "r.csv")
     head = (tmp_path / "r.csv").read_text().splitlines()[0]
     assert head == "time [s],command.left_knee [N m],command.right_knee [N m]"
     parquet = pytest.importorskip("pyarrow.parquet")
-    export(moved["/r"], tmp_path / "r.parquet")
+    export(selected(moved, "/r", None, None, None), tmp_path / "r.parquet")
     field = parquet.read_schema(tmp_path / "r.parquet").field("command.left_knee")
     assert field.metadata == {b"unit": b"N m", b"frame": b"", b"doc": b"commanded [at the output]"}
 

@@ -5,6 +5,8 @@ from types import SimpleNamespace
 import numpy as np
 import pytest
 
+from surefoot.scenarios.log import Log, read
+from surefoot.scenarios.run.run import run_scenario
 from surefoot.scenarios.study.checks.signs import SIGNS, Stage, Trace, stages
 
 pytestmark = pytest.mark.unit
@@ -117,3 +119,11 @@ def test_friction_parts_only_above_what_all_steps_of_the_baseline_use():
     (parting,) = trace(0.4, 0.6).partings(trace(0.75, 0.6))
     assert parting.text.endswith("for the left foot in step 1: 0.75, at most 0.6 in the baseline")
     assert parting.excess == pytest.approx(1.5)
+
+
+def test_a_trace_is_made_in_one_pass_through_the_log(tmp_path, motion, two_steps, robot, monkeypatch):
+    log = read(run_scenario(two_steps, tmp_path, simulate=motion(duration=2.2), robot=robot).log)
+    again = []
+    monkeypatch.setattr(Log, "window", lambda _, topic, *__: again.append(topic))
+    assert Trace.of(log).labels
+    assert not again

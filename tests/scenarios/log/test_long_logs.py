@@ -158,6 +158,7 @@ READERS = {
 def test_twice_the_log_takes_no_more_memory(logs, tmp_path, long, monkeypatch, reader):
     """Beside a few numbers for each tick, which are 8 bytes each, in the metrics."""
     monkeypatch.setattr("surefoot.scenarios.columns.HELD_BYTES", 0)
+    monkeypatch.setattr("surefoot.scenarios.log.one_run._GROUP", 16)  # chunks: both logs have more than one group
     peak(READERS[reader], logs[0], tmp_path)  # what is made once, such as caches
     shorter, longer = (peak(READERS[reader], path, tmp_path) for path in logs)
     ticks = 500 * (SECONDS[1] - SECONDS[0])

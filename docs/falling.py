@@ -78,10 +78,11 @@ def _with_unit(name: str, value: Any) -> str:
 
 def _health(found: inspection.Inspection) -> Iterator[str]:
     """Rows of the warnings that have a time, and of the fall."""
-    told = [(one.time, f"`{one.check}`", one.cause.partition(":")[0]) for one in found.health if one.time is not None]
-    told.append((found.verdict.metrics["fall_time"], "the verdict", "it fell"))
-    yield from ("| from [s] | check | finding |", "|---|---|---|")
-    yield from (f"| {time:.3f} | {check} | {cause} |" for time, check, cause in sorted(told))
+    told = [(one.time, f"`{one.check}`", one.relation or "", one.found) for one in found.health if one.time is not None]
+    fall = (found.verdict.metrics["fall_time"], "the verdict", "effect", "it fell")
+    told.insert(sum(row[0] <= fall[0] for row in told), fall)
+    yield from ("| from [s] | check | | finding |", "|---|---|---|---|")
+    yield from (f"| {time:.3f} | {check} | {relation} | {what} |" for time, check, relation, what in told)
 
 
 def _at(log: Log, topic: str, field: str, time: float) -> Any:

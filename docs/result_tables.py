@@ -283,6 +283,42 @@ def _nearest(row: dict[str, str]) -> str:
     return f"{row['ratio']}, {row['model']}"
 
 
+def known_table() -> str:
+    """How often the first line of `surefoot inspect` is the known cause of a fall."""
+    known, lines = rows("known-falls"), []
+    campaigns = list(dict.fromkeys(row["campaign"] for row in known))
+    for cause in (*dict.fromkeys(row["cause"] for row in known), "all"):
+        of_cause = [row for row in known if cause in (row["cause"], "all")]
+        cells = []
+        for campaign in campaigns:
+            right = [row["right"] == "yes" for row in of_cause if row["campaign"] == campaign]
+            cells.append(f"{sum(right)} of {len(right)}" if right else "")
+        lines.append([cause.replace("_", " "), *cells])
+    return table(["cause", *(f"`{campaign}`" for campaign in campaigns)], lines)
+
+
+def given_up_table() -> str:
+    """What counts of plans tell of falls that come, and of those that do not."""
+    heads = [
+        "walks",
+        "told by",
+        "taken back by",
+        "wrong",
+        "told when it came",
+        "0.2 s before",
+        "taken back in the last second",
+    ]
+    lines = [
+        [
+            *(row["kind"], row["tell"], row["back"], f"{row['wrong']} in {int(row['walked']) + int(row['falls'])}"),
+            *(f"{row[name]} of {row['falls']}" for name in ("told", "early")),
+            row["lost"],
+        ]
+        for row in rows("given-up")
+    ]
+    return table(heads, lines)
+
+
 TABLES: dict[str, tuple[str, Callable[[], str]]] = {
     "magnitudes": ("robot-files.md", magnitudes_table),
     "push-map-pendulum": ("campaigns.md", partial(push_table, "push-map-pendulum")),
@@ -290,6 +326,8 @@ TABLES: dict[str, tuple[str, Callable[[], str]]] = {
     "push-gains": ("campaigns.md", partial(gains_table, "push-map-pendulum")),
     "random": ("campaigns.md", random_table),
     "recovery-numbers": ("recovery-results.md", numbers_table),
+    "known-falls": ("falling.md", known_table),
+    "given-up": ("recovery.md", given_up_table),
     "abilities": ("recovery-results.md", partial(search_table, "abilities")),
     "profiles-walk": (
         "profiles.md",

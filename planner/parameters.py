@@ -204,6 +204,8 @@ class RecoveryParameters:
         longer: by how much the margin lets a single support last longer [s].
         most_steps: steps that the margin counts with; the sum over more of them has converged [-].
         fall_margin: how far outside the capture margin the DCM is of a robot that will fall [m].
+        fall_plans: plans on end with the DCM so far outside that tell a fall; a touchdown makes up for fewer [-].
+        regained_plans: plans on end with margin that take it back; fewer come in the middle of falls [-].
         sole_gap: least distance of soles side by side [m].
         across: how far beyond its stance foot a foot may land, with the thighs apart [m].
         clear: gap of soles one ahead of the other from which on the foot may cross [m].
@@ -238,6 +240,8 @@ class RecoveryParameters:
     longer: float = quantity(0.2, "s")
     most_steps: int = 5
     fall_margin: float = quantity(0.15, "m")
+    fall_plans: int = 3
+    regained_plans: int = 5
     sole_gap: float = quantity(0.01, "m")
     across: float = quantity(0.12, "m")
     clear: float = quantity(0.02, "m")

@@ -16,7 +16,7 @@ from surefoot.planner.laws.profiles import PROFILES, Profile
 from surefoot.planner.model.jerk import WorldMotion
 from surefoot.planner.parameters import PlannerParameters
 from surefoot.planner.plan import WalkPlan
-from surefoot.planner.recovery.recovery import Recovery, Sight
+from surefoot.planner.recovery.recovery import Recovery, Sight, falling
 from surefoot.planner.recovery.step_adjustment import StepBounds, StepProblem
 from surefoot.planner.references.com_height import HeightProfile, SmoothHeight
 from surefoot.planner.references.window import ReferencePreview, Window
@@ -219,7 +219,8 @@ class WalkingPlanner:
         catching = execution.catching
         if free[0] or catching:
             shift = shifts[0] if free[0] else balance.shift
-            balance = Balance(balance.planned, balance.movable, shift, balance.delay, balance.lost, catching)
+            counts = balance.lost, catching, balance.safe
+            balance = Balance(balance.planned, balance.movable, shift, balance.delay, *counts)
         if execution.phase.swing_foot is not None:
             execution.swing_to(footsteps[0], time, feet, motion.solver is SolverStatus.HELD)
         self._plan = self._world_plan(time, support, window, local, motion, footsteps, balance)
@@ -346,5 +347,5 @@ class WalkingPlanner:
             age=age,
             late_touchdown=self._execution.waited,
             early_touchdown=self._execution.early,
-            falling=told or balance.lost,
+            falling=(told or balance.lost > 0) and falling(balance, told, self.parameters.recovery),
         )

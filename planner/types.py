@@ -184,7 +184,8 @@ class PlanStatus:
         age: number of ticks since the last plan in which both axes were solved; 0 for a fresh one.
         late_touchdown: ticks for which the phase clock has waited for the touchdown.
         early_touchdown: the swing foot has landed before its time; its foothold is fixed, single support goes on.
-        falling: no step will save the body any more, as far as the planner can tell.
+        falling: no step will save the body any more, as far as the planner can tell; see
+            `planner.recovery.recovery.falling`.
     """
 
     solver: SolverStatus
@@ -207,16 +208,19 @@ class Balance:
         movable: the same where the steps to come may be moved as far as legs, and what may be adapted, let them [m].
         shift: by how much the next landing is moved from where it nominally is, world frame, shape (2,) [m].
         delay: how much later than nominally it is made to come [s].
-        lost: the DCM is farther outside `movable` than that of a robot that can be saved.
+        lost: plans on end, this one among them, whose DCM is farther outside `movable` than that of a robot that can be
+            saved.
         catching: place or time of the next landing are being adapted, but on stairs and blocks.
+        safe: while a fall is told: plans on end, this one among them, whose `movable` is not negative.
     """
 
     planned: float = math.nan
     movable: float = math.nan
     shift: Array = field(default_factory=lambda: np.full(2, math.nan))
     delay: float = math.nan
-    lost: bool = False
+    lost: int = 0
     catching: bool = False
+    safe: int = 0
 
 
 @dataclass(frozen=True, slots=True)

@@ -6,6 +6,7 @@ from collections.abc import Callable
 import numpy as np
 
 from surefoot.planner.geometry import frame_rotation, signed_distance
+from surefoot.planner.parameters import RecoveryParameters
 from surefoot.planner.plan import WalkPlan
 from surefoot.planner.recovery.capture_margin import CaptureMargin, PlannedMargin
 from surefoot.planner.recovery.step_adjustment import StepAdjustment, StepBounds, StepProblem
@@ -19,13 +20,37 @@ from surefoot.planner.swing.step_region import Shifts, reachable_shifts, shifts_
 from surefoot.planner.types import Array, Balance, FeetState, Foot, PhaseKind
 from surefoot.values import maker
 
-_a_balance = maker(Balance)
+_a_balance, _UNTOLD = maker(Balance), Balance()
 
 Sight = tuple[Support, Array, Window]
 """What carries the robot, CoM position, velocity and acceleration in that plan frame, shape (2, 3), and references."""
 
 See = Callable[..., Sight]
 """Tells what is seen: as the execution is, or as another one would be that is its argument."""
+
+
+def counted(before: Balance, movable: float, numbers: RecoveryParameters, unsure: float = 0.0) -> tuple[int, int]:
+    """`Balance.lost` and `Balance.safe` of a plan with a margin after another plan.
+
+    Args:
+        before: of that other one.
+        movable: how far the DCM is inside what steps that are moved capture [m].
+        numbers: of the planner.
+        unsure: how far the DCM may be from where it is estimated [m].
+    """
+    lost = before.lost + 1 if movable < -numbers.fall_margin else 0
+    return lost, before.safe + 1 if movable >= unsure else 0
+
+
+def falling(balance: Balance, before: bool, numbers: RecoveryParameters) -> bool:
+    """Whether a fall is coming: some plans on end tell it, and some that have margin again take it back.
+
+    Args:
+        balance: of this plan.
+        before: whether it was coming in the plan before.
+        numbers: of the planner.
+    """
+    return balance.safe < numbers.regained_plans if before else balance.lost >= numbers.fall_plans
 
 
 class Recovery:
@@ -203,8 +228,10 @@ class Recovery:
         shift, delay = (last.balance.shift, last.balance.delay) if last is not None and kept else (np.zeros(2), 0.0)
         # Hips save many that are less far out. Steps that a law moves of its own accord may save more than that.
         told = self._movable is not None or not execution.adapts
-        lost = told and movable < -p.recovery.fall_margin
-        return _a_balance(planned - unsure, movable - unsure, shift, delay, lost)
+        lost = safe = 0
+        if movable < unsure or (last is not None and last.status.falling):
+            lost, safe = counted(_UNTOLD if last is None else last.balance, movable, p.recovery, unsure)
+        return _a_balance(planned - unsure, movable - unsure, shift, delay, lost if told else 0, False, safe)
 
     def adjusted(
         self, step: StepProblem | None, local: Array, window: Window, unsure: float = 0.0

@@ -67,10 +67,11 @@ class Window:
         path: of the log.
         size: of the log [bytes].
         metadata: of the log.
+        attachments: likewise.
     """
 
     def __init__(self, log: "Log", channels: Mapping[str, Channel]) -> None:
-        self.path, self.size, self.metadata = log.path, log.size, log.metadata
+        self.path, self.size, self.metadata, self.attachments = log.path, log.size, log.metadata, log.attachments
         self._channels = channels
 
     def __contains__(self, topic: str) -> bool:

@@ -1,13 +1,14 @@
 """What a health check finds in a log."""
 
-from dataclasses import asdict
 from typing import Any, Literal
 
 import numpy as np
 
-from surefoot.scenarios.judge.digest import Mask, RunView
+from surefoot.scenarios.judge.digest import Array, Mask, RunView
 from surefoot.scenarios.judge.walking import fall_time
 from surefoot.values import dataclass
+
+Relation = Literal["cause", "effect"]
 
 
 @dataclass(frozen=True, slots=True)
@@ -19,28 +20,47 @@ class Finding:
         status: ok or warning.
         time: of the first evidence [s]; None where all is well, and where the evidence is of the whole run.
         value: the evidence at its strongest, in the check's unit.
-        cause: what was found and its likely cause; empty when all is well.
+        found: what was found; empty when all is well.
+        likely: why, as far as is known.
+        relation: to the fall of the run: a cause acted before balance was lost, or is not as believed. An effect comes
+            after a cause, or after the loss of balance. None of a run that did not fall, and where neither is known.
     """
 
     check: str
     status: Literal["ok", "warning"]
     time: float | None
     value: float | None
-    cause: str = ""
+    found: str = ""
+    likely: str = ""
+    relation: Relation | None = None
+
+    @property
+    def cause(self) -> str:
+        """What was found, and why."""
+        return ": ".join(filter(None, (self.found, self.likely)))
 
     def to_json(self) -> dict[str, Any]:
         """Write as one JSON object."""
-        return asdict(self)
+        return {
+            "check": self.check,
+            "status": self.status,
+            "time": self.time,
+            "value": self.value,
+            "relation": self.relation,
+            "cause": self.cause,
+        }
 
 
-def judged(check: str, time: float | None, value: float | None, cause: str) -> Finding:
-    """A warning where there is a time of the first evidence; else all is well, and no cause is told."""
-    return Finding(check, "ok" if time is None else "warning", time, value, "" if time is None else cause)
+def judged(check: str, time: float | None, value: float | None, found: str = "", likely: str = "") -> Finding:
+    """A warning where there is a time of the first evidence; else all is well, and nothing is told."""
+    if time is None:
+        return Finding(check, "ok", None, value)
+    return Finding(check, "warning", time, value, found, likely)
 
 
-def shared(check: str, warn: bool, value: float | None, cause: str) -> Finding:
+def shared(check: str, warn: bool, value: float | None, found: str = "", likely: str = "") -> Finding:
     """What a check finds in a run as a whole, at no time of its own."""
-    return Finding(check, "warning" if warn else "ok", None, value, cause if warn else "")
+    return Finding(check, "warning", None, value, found, likely) if warn else Finding(check, "ok", None, value)
 
 
 def first(run: RunView, evidence: Mask) -> float | None:
@@ -52,3 +72,9 @@ def standing(run: RunView) -> int:
     """Ticks before a fall: what comes after it is no gait."""
     fall = fall_time(run)
     return run.ticks if fall is None else int(np.searchsorted(run.time, fall))
+
+
+def pushes(run: RunView) -> Array:
+    """Sum of the pushes at each tick, zero where it was not measured, shape (n, 3) [N]."""
+    topic = "/measurement" if run.has("/measurement") else "/truth"
+    return np.nan_to_num(run.field(topic, "external_force"))

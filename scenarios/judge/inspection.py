@@ -11,7 +11,8 @@ from numpy.typing import NDArray
 from surefoot.scenarios.judge.finding import Finding
 from surefoot.scenarios.judge.health import findings
 from surefoot.scenarios.judge.metrics import digest
-from surefoot.scenarios.judge.verdict import Verdict, judge, scenario_of
+from surefoot.scenarios.judge.scenario import scenario_of
+from surefoot.scenarios.judge.verdict import Verdict, judge
 from surefoot.scenarios.log import ChannelData, FieldSpec, Log
 from surefoot.scenarios.log.reader import RECOVERED
 from surefoot.values import dataclass
@@ -55,7 +56,7 @@ class Inspection:
     def to_json(self) -> dict[str, Any]:
         """Write as one JSON object: the verdict's names, and beside them those of this class."""
         rest = {name: value for name, value in asdict(self).items() if name != "verdict"}
-        return {**self.verdict.to_json(), **rest}
+        return {**self.verdict.to_json(), **rest, "health": [one.to_json() for one in self.health]}
 
 
 def inspect(log: Log, strict: bool = False) -> Inspection:

@@ -4,8 +4,8 @@ import numpy as np
 
 from surefoot.planner.types import GRAVITY
 from surefoot.scenarios.judge import balance, effort, feet, walking
-from surefoot.scenarios.judge.digest import Array, RunView
-from surefoot.scenarios.judge.finding import Finding, first, judged, standing
+from surefoot.scenarios.judge.digest import RunView
+from surefoot.scenarios.judge.finding import Finding, first, judged, pushes, standing
 from surefoot.scenarios.judge.metric import Reduction
 
 FORCE_WINDOW = 0.5
@@ -27,39 +27,47 @@ def forces_match_weight(run: RunView) -> Finding:
     ticks, rate, mass = standing(run), run.constants.control_rate, run.constants.mass
     width = round(FORCE_WINDOW * run.constants.similarity.time * rate)
     if ticks <= width:
-        return judged("contact_forces", None, None, "")
-    force = run.field("/contact", "normal_force")[:ticks].sum(axis=1) + _push(run)[:ticks, 2]
+        return judged("contact_forces", None, None)
+    force = run.field("/contact", "normal_force")[:ticks].sum(axis=1) + pushes(run)[:ticks, 2]
     impulse = np.concatenate(([0.0], np.cumsum(force))) / rate
     velocity = run.field("/truth", "com_velocity")[:ticks, 2]
     mean = (impulse[width:ticks] - impulse[: ticks - width]) * rate / width
     needed = mass * (GRAVITY + (velocity[width:] - velocity[:-width]) * rate / width)
     error = (mean - needed) / (mass * GRAVITY)
     value = float(error[np.argmax(np.abs(error))])
-    cause = (
-        f"over half a second the feet carry {100 * abs(value):.0f} % of the weight too "
-        f"{'much' if value > 0 else 'little'}: the robot is not as heavy as the log says, something but the feet "
-        "carries it, or contacts chatter between ticks"
-    )
+    amount = f"{100 * abs(value):.0f} % of the weight too {'much' if value > 0 else 'little'}"
+    likely = "the robot is not as heavy as the log says, something but the feet carries it, or contacts chatter"
     # What a window has in it is evidence at its end.
     found = np.concatenate((np.zeros(width, dtype=np.bool_), np.abs(error) > FORCE_TOLERANCE))
-    return judged("contact_forces", first(run, found), value, cause)
+    said = f"over half a second the feet carry {amount}"
+    return judged("contact_forces", first(run, found), value, said, likely)
 
 
 def foot_slip(run: RunView) -> Finding:
     """How far a sole moves on the ground [m]."""
     slips = feet.stance_slips(run, standing(run))
     if not slips:
-        return judged("foot_slip", None, None, "")
+        return judged("foot_slip", None, None)
     worst = max(slips, key=lambda slip: slip.distance)
     most = SLIP * run.constants.similarity.length
     begun = min((slip for slip in slips if slip.distance > most), key=lambda slip: slip.since(most), default=worst)
     also = "" if begun.foot == worst.foot else f", the {_FEET[worst.foot]} one"
-    cause = (
-        f"the {_FEET[begun.foot]} foot slips{also} by up to {1000 * worst.distance:.0f} mm in a stance: the ground has "
-        "less friction than the controller counts on, or the foot is planned in contact while it is hardly loaded"
-    )
-    time = float(run.time[begun.since(most)]) if worst.distance > most else None
-    return judged("foot_slip", time, worst.distance, cause)
+    found = f"the {_FEET[begun.foot]} foot slips{also} by up to {1000 * worst.distance:.0f} mm in a stance"
+    if not worst.distance > most:
+        return judged("foot_slip", None, worst.distance)
+    return judged("foot_slip", float(run.time[begun.since(most)]), worst.distance, found, _why_slips(run))
+
+
+def _why_slips(run: RunView) -> str:
+    from surefoot.scenarios.judge.beliefs import beliefs
+
+    known = beliefs(run)
+    true, believed = known.friction
+    hardly = "the foot is planned in contact while it is hardly loaded"
+    if known.less_friction:
+        least = min((true, *known.slippery.values()))
+        return f"the ground has a friction of {least:g} and the controller counts on {believed:g}, or {hardly}"
+    return f"the friction is as the controller counts on, so something pulls the foot along, or {hardly}"
 
 
 _FEET = ("left", "right")
@@ -70,13 +78,13 @@ def late_touchdowns(run: RunView) -> Finding:
     planned, swings = run.field("/reference", "phase_duration"), walking.swings_ended(run)
     late = np.array([(end - start) / run.constants.control_rate - float(planned[start]) for start, end in swings])
     if not len(late):
-        return judged("touchdowns", None, None, "")
+        return judged("touchdowns", None, None)
     missed, most = walking.touchdowns_missed(run), LATE * run.constants.similarity.time
     count = np.count_nonzero(late > most)
     never = f"{missed} of {len(late)} swings end without their foot ever touching the ground; " if missed else ""
-    cause = (
-        f"{never}{count} of {len(late)} touchdowns are late, the worst by {1000 * late.max():.0f} ms: the ground is "
-        "lower than planned, the swing foot lags behind its reference, or its contact is felt too late"
+    found = f"{never}{count} of {len(late)} touchdowns are late, the worst by {1000 * late.max():.0f} ms"
+    likely = (
+        "the ground is lower than planned, the swing foot lags behind its reference, or its contact is felt too late"
     )
     # A touchdown is late from when it is overdue, and missed from the end of its swing.
     overdue = [float(run.time[start]) + float(planned[start]) + most for start, _ in np.array(swings)[late > most]]
@@ -84,7 +92,7 @@ def late_touchdowns(run: RunView) -> Finding:
         ends = run.time[[end for _, end in swings]]
         touched = np.searchsorted(run.log["/footstep"].time if run.has("/footstep") else [], ends, side="right")
         overdue += ends[touched < 1 + np.arange(len(ends))].tolist()[:1]
-    return judged("touchdowns", min(overdue, default=None), float(late.max()), cause)
+    return judged("touchdowns", min(overdue, default=None), float(late.max()), found, likely)
 
 
 def zmp_at_edge(run: RunView) -> Finding:
@@ -92,20 +100,14 @@ def zmp_at_edge(run: RunView) -> Finding:
     outside = ~balance.zmp_inside(run)[: standing(run)]
     share = float(outside.mean()) if len(outside) else 0.0
     if not share > OUTSIDE:
-        return judged("zmp_margin", None, share, "")
+        return judged("zmp_margin", None, share)
     begin = int(np.argmax(outside))
-    pushed = bool(np.any(_push(run)[max(0, begin - run.constants.control_rate) : begin + 1]))
-    reason = (
+    pushed = bool(np.any(pushes(run)[max(0, begin - run.constants.control_rate) : begin + 1]))
+    likely = (
         "a push moves it" if pushed else "the plan asks for it, the CoM does not follow the plan, or a foot is tilted"
     )
-    cause = f"the ZMP is at the edge of the support in {100 * share:.1f} % of the ticks: {reason}"
-    return judged("zmp_margin", float(run.time[begin]), share, cause)
-
-
-def _push(run: RunView) -> Array:
-    """Sum of the pushes, zero where it was not measured, shape (n, 3) [N]."""
-    topic = "/measurement" if run.has("/measurement") else "/truth"
-    return np.nan_to_num(run.field(topic, "external_force"))
+    found = f"the ZMP is at the edge of the support in {100 * share:.1f} % of the ticks"
+    return judged("zmp_margin", float(run.time[begin]), share, found, likely)
 
 
 def torque_saturation(run: RunView) -> Finding:
@@ -113,11 +115,9 @@ def torque_saturation(run: RunView) -> Finding:
     ratio, numbers = run.reduced(effort.torque_ratio).T
     saturated = ratio >= effort.AT_LIMIT
     joint = run.constants.joint_names[int(numbers[np.argmax(saturated)])]
-    cause = (
-        f"{joint} is at its torque limit, joints are saturated in {np.count_nonzero(saturated)} ticks: the motion asks "
-        "for more than the motor gives, by an impact, a push, a straight knee or a gain that is too high"
-    )
-    return judged("torque_limits", first(run, saturated), float(np.nanmax(ratio)), cause)
+    found = f"{joint} is at its torque limit, joints are saturated in {np.count_nonzero(saturated)} ticks"
+    likely = "the motion asks for more than the motor gives, by an impact, a push, a straight knee or too high a gain"
+    return judged("torque_limits", first(run, saturated), float(np.nanmax(ratio)), found, likely)
 
 
 def joint_stops(run: RunView) -> Finding:
@@ -125,24 +125,20 @@ def joint_stops(run: RunView) -> Finding:
     time, joint, over, worst = _joint(run, effort.joint_overrun, PAST_STOP)
     margin = 0.0 - over
     also = "" if joint == worst else f", {worst}"
-    cause = (
-        f"{joint} is past its stop{also} by up to {np.degrees(over):.1f} deg, as only a simulated one allows: the "
-        "motion asks for more than the joint has, or a push or an impact overcame the controller"
-    )
-    return judged("joint_stops", time, margin, cause)
+    found = f"{joint} is past its stop{also} by up to {np.degrees(over):.1f} deg, as only a simulated one allows"
+    likely = "the motion asks for more than the joint has, or a push or an impact overcame the controller"
+    return judged("joint_stops", time, margin, found, likely)
 
 
 def joint_speeds(run: RunView) -> Finding:
     """Largest joint speed over the joint's no-load speed before a fall [-]."""
     if not run.constants.velocity_limit:
-        return judged("joint_speeds", None, None, "")
+        return judged("joint_speeds", None, None)
     time, joint, ratio, worst = _joint(run, effort.joint_speed_ratio, 1.0)
     also = "" if joint == worst else f", {worst}"
-    cause = (
-        f"{joint} turns faster than its no-load speed{also} at up to {100 * ratio:.0f} % of it, where a real motor has "
-        "no torque left and the simulated one has all of it: what comes after is not to be trusted"
-    )
-    return judged("joint_speeds", time, ratio, cause)
+    found = f"{joint} turns faster than its no-load speed{also} at up to {100 * ratio:.0f} % of it"
+    likely = "a real motor has no torque left there, the simulated one has all of it, and what comes after is no motion"
+    return judged("joint_speeds", time, ratio, found, likely)
 
 
 def _joint(run: RunView, largest: Reduction, most: float) -> tuple[float | None, str, float, str]:

@@ -82,11 +82,20 @@ def estimation_nees(run: RunView) -> dict[str, float] | None:
     """Mean square of errors over deviations, each number alone: 1 of an estimator that knows how wrong it is [-]."""
     found = {}
     for name in _PARTS:
-        error, deviation = _settled(run, f"{name}_error"), _settled(run, f"{name}_deviation")
-        sound = np.isfinite(error).all(axis=1) & (deviation > 0.0).all(axis=1)
+        values = squares(run, name)
+        sound = np.isfinite(values)
         if not sound.any():
             return None
-        found[name] = float(np.mean((error[sound] / deviation[sound]) ** 2))
+        found[name] = float(np.mean(values[sound]))
+    return found
+
+
+def squares(run: RunView, name: str) -> Array:
+    """Mean square of a part's errors over their deviations at each tick once settled, NaN where either is not told."""
+    error, deviation = _settled(run, f"{name}_error"), _settled(run, f"{name}_deviation")
+    sound = np.isfinite(error).all(axis=1) & (deviation > 0.0).all(axis=1)
+    found = np.full(len(error), np.nan)
+    found[sound] = np.mean((error[sound] / deviation[sound]) ** 2, axis=1)
     return found
 
 

@@ -3,32 +3,25 @@
 import json
 import math
 from collections.abc import Iterable, Iterator, Mapping, Sequence
-from dataclasses import replace
 from html import escape
-from io import BytesIO
 from itertools import islice
 from pathlib import Path
 from typing import Any
 
-from pydantic import ValidationError
-
 from surefoot.scenarios import palette
-from surefoot.scenarios.errors import LogError, Problem, ScenarioError, nearest, told_once
+from surefoot.scenarios.errors import nearest, told_once
 from surefoot.scenarios.file.criteria import Bound
-from surefoot.scenarios.file.dumped import dumped_values
-from surefoot.scenarios.file.names import unknown
 from surefoot.scenarios.file.schema import Scenario
-from surefoot.scenarios.file.source import decoded
-from surefoot.scenarios.file.translate import without
 from surefoot.scenarios.judge.acted import bent_commands, contradictions, idle_commands, not_there, unmet_ground
 from surefoot.scenarios.judge.digest import AbsentError, Digest, RunView, always
 from surefoot.scenarios.judge.metrics import OWN, digest, known, measure
 from surefoot.scenarios.judge.partial import is_measured, kept_note, unmeasured
 from surefoot.scenarios.judge.pushed import unacted_pushes
+from surefoot.scenarios.judge.scenario import known_part
 from surefoot.scenarios.judge.walking import steps_added
 from surefoot.scenarios.log import Log
 from surefoot.scenarios.output import write_whole
-from surefoot.scenarios.record.provenance import END_RECORD, SCENARIO_FILE, Agenda, Event
+from surefoot.scenarios.record.provenance import END_RECORD, Agenda, Event
 from surefoot.values import dataclass
 
 _SAME_TIME = 1e-8
@@ -212,7 +205,7 @@ def judge(log: Log, gathered: Digest | None = None, strict: bool = False) -> Ver
     Raises:
         LogError: the log does not describe a run.
     """
-    (scenario, absent), gathered = _known_part(log), gathered or digest(log)
+    (scenario, absent), gathered = known_part(log), gathered or digest(log)
     measured = measure(gathered)
     criteria = asked(scenario.criteria, scenario.fidelity)
     run = RunView(gathered)
@@ -240,34 +233,6 @@ def judge(log: Log, gathered: Digest | None = None, strict: bool = False) -> Ver
     beside = (*part, *(() if strict else unproven), *unasked, *idle_keys, *bent_commands(run))
     said = (*beside, *_degraded(measured.values, steps_added(run)), *measured.notes)
     return Verdict(not reasons, reasons, said, measured.values, criteria)
-
-
-def scenario_of(log: Log) -> Scenario:
-    """The scenario that a log carries, without the names that only packages know which are not installed here.
-
-    Raises:
-        LogError: it carries none that can be read.
-    """
-    return _known_part(log)[0]
-
-
-def _known_part(log: Log) -> tuple[Scenario, list[Problem]]:
-    """The scenario of a log, and which of its names nobody knows here."""
-    if SCENARIO_FILE not in log.attachments:
-        what = f"{log.path}: has no attachment {SCENARIO_FILE}, without which its criteria are unknown"
-        raise LogError(f"{what}; give the log as `surefoot run` has written it")
-    try:
-        text = decoded(BytesIO(log.attachments[SCENARIO_FILE]), SCENARIO_FILE)
-        keys = dumped_values(text, SCENARIO_FILE)
-        absent = unknown(keys)
-        # Without its kind the other keys of the ground mean nothing.
-        places = [replace(one, key=one.key[:1]) if one.key[0] == "terrain" else one for one in absent]
-        return Scenario.model_validate(without(keys, places)), absent
-    except ScenarioError as error:
-        why = f", {error.problems[0]}" if error.problems else ""
-        raise LogError(f"{log.path}: holds no readable scenario; its criteria are unknown{why}") from None
-    except (KeyError, TypeError, ValidationError, ValueError, RecursionError):
-        raise LogError(f"{log.path}: holds no readable scenario; its criteria are unknown") from None
 
 
 def _lacking(run: RunView, names: Sequence[str]) -> list[str]:

@@ -43,12 +43,13 @@ def _fall_time(run: RunView) -> float | None:
 
 @metric(unit="s", reads={**FALL_READS, "/plan": ("falling",)}, tolerance=(0.05, 0.0))
 def fall_warning(run: RunView) -> float | None:
-    """How long before a fall the planner knew of it, negative where it said so of none that came [s]."""
-    known = np.flatnonzero(run.log["/plan"].field("falling"))
-    if not len(known):
-        return None
-    told, fallen = float(run.log["/plan"].time[known[0]]), fall_time(run)
-    return told - float(run.time[-1]) if fallen is None else fallen - told
+    """How long before a fall the planner told it for good, negative where it told one that did not come [s]."""
+    plan, fallen = run.log["/plan"], fall_time(run)
+    spells = runs_of(plan.field("falling") != 0)
+    if fallen is None:
+        return float(plan.time[spells[0][0]]) - float(run.time[-1]) if spells else None
+    made = int(np.searchsorted(plan.time, fallen, side="right"))
+    return next((fallen - float(plan.time[begin]) for begin, end in spells if begin < made <= end), None)
 
 
 @metric(unit="s", reads={"/truth": ()}, least=0.0, tolerance=(0.001, 0.0))

@@ -128,13 +128,14 @@ def print_valueless(names: Collection[str]) -> None:
 
 
 def _health_lines(health: Sequence[Finding]) -> list[str]:
-    """Every warning with its evidence, and how many checks found nothing."""
+    """Every warning with its evidence and its relation to a fall, and how many checks found nothing."""
     lines = []
     for finding in health:
         if finding.status != "ok":
             when = "" if finding.time is None else f" from {finding.time:.3f} s on"
             value = "" if finding.value is None else f", value {finding.value:.4g}"
-            lines.append(f"{finding.check}{when}{value}: {finding.cause}")
+            relation = "" if finding.relation is None else f"{finding.relation}: "
+            lines.append(f"{relation}{finding.check}{when}{value}: {finding.cause}")
     return [*lines, f"{len(health) - len(lines)} of {len(health)} checks found nothing"]
 
 

@@ -7,7 +7,7 @@ import yaml
 from every_key import NOT_YET, SCENARIOS, given, keys
 
 from surefoot.scenarios.file.schema import Scenario
-from surefoot.scenarios.judge.verdict import scenario_of
+from surefoot.scenarios.judge.scenario import scenario_of
 from surefoot.scenarios.log import read
 from surefoot.scenarios.setup.load import load, written
 from surefoot.scenarios.study.campaigns.campaign import Base

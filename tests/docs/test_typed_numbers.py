@@ -14,7 +14,7 @@ from surefoot.planner.parameters import PlannerParameters
 from surefoot.planner.steps import adaptation
 from surefoot.scenarios.apps.bridge import command, door, remote, serve
 from surefoot.scenarios.apps.drive.page import LIMITS
-from surefoot.scenarios.judge import computing_checks, motion_checks
+from surefoot.scenarios.judge import causes, computing_checks, motion_checks
 from surefoot.scenarios.record.foxglove import drawing, views
 from surefoot.scenarios.show.figures import ground, motion
 from surefoot.scenarios.show.replay import content, video
@@ -78,6 +78,11 @@ CODED = {
         "1 | a run gave no result": (1, 100 * against.FALLEN),
         "timing": (PLANNER.recovery.longer,),
         "gait": _gaits(),
+    },
+    "docs/falling.md": {
+        "push": (causes.LEAST_PUSH,),
+        "ground": (1e3 * causes.LEAST_STEP,),
+        "sensors": (1e3 * computing_checks.DRIFT,),
     },
     "docs/glossary.md": {"sole margin": (100 * PLANNER.foot_margin,)},
     "docs/other-simulator.md": _rigid(),

@@ -153,6 +153,8 @@ class EventLog:
             self._say(time_ns, Log.WARNING, "fallback", words)
         if falling and not was_falling:
             self._say(time_ns, Log.ERROR, "falling", "no step will save the robot, a fall is coming")
+        if was_falling and not falling:
+            self._say(time_ns, Log.WARNING, "falling", "steps can save the robot again, no fall is coming")
         if fallen and not had_fallen:
             self._say(time_ns, Log.ERROR, "fall", "the robot falls")
 

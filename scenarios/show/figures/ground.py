@@ -17,7 +17,7 @@ from numpy.typing import NDArray
 from surefoot.planner.geometry import headings, level_corners, points_seen_from, rotations
 from surefoot.planner.types import GRAVITY
 from surefoot.scenarios.errors import LogError
-from surefoot.scenarios.judge.verdict import scenario_of
+from surefoot.scenarios.judge.scenario import scenario_of
 from surefoot.scenarios.palette import BLACK, COM, FEET, FOOTSTEP, GREY, SUPPORT, ZMP
 from surefoot.scenarios.record.channels import SUPPORT_VERTICES
 from surefoot.scenarios.show.kit.figures import Area, curve, heading, kept_of_path, legend, note, or_say

@@ -12,7 +12,8 @@ from surefoot.scenarios.columns import Reads
 from surefoot.scenarios.errors import LogError
 from surefoot.scenarios.judge.body import torso
 from surefoot.scenarios.judge.digest import RunView, Window
-from surefoot.scenarios.judge.verdict import agenda_of, scenario_of
+from surefoot.scenarios.judge.scenario import scenario_of
+from surefoot.scenarios.judge.verdict import agenda_of
 from surefoot.scenarios.log import Log
 from surefoot.scenarios.palette import FEET, Color
 from surefoot.scenarios.record.provenance import WORLD_FILE, RunConstants

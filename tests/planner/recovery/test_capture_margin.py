@@ -12,13 +12,14 @@ from surefoot.forces import Push
 from surefoot.planner.parameters import PlannerParameters, StepAdaptation
 from surefoot.planner.planner import WalkingPlanner
 from surefoot.planner.recovery.capture_margin import CaptureMargin, planned_margin
+from surefoot.planner.recovery.recovery import falling
 from surefoot.planner.recovery.step_adjustment import StepProblem
 from surefoot.planner.references.com_height import HeightPreview
 from surefoot.planner.references.window import Window
 from surefoot.planner.references.zmp_reference import ZmpReference
 from surefoot.planner.steps.gait import GaitParameters
 from surefoot.planner.swing.leg_reach import ANYWHERE
-from surefoot.planner.types import Foot, Footstep, PhaseKind
+from surefoot.planner.types import Balance, CentroidalState, Foot, Footstep, PhaseKind
 
 pytestmark = pytest.mark.unit
 
@@ -311,17 +312,62 @@ def test_who_falls_was_outside_before(stand):
     assert min(plan.balance.movable for plan in made if plan.time < fallen - 0.1) < -0.03
 
 
-def test_a_fall_is_told_by_a_plan_far_outside_and_stays_told(stand):
+def test_a_fall_is_told_by_plans_on_end_far_outside(stand):
     numbers = P.recovery
     _, made, fallen = plans(stand, aside=-1.4)
-    told = False
+    lost = 0
     for plan in made:
-        assert plan.balance.lost == (plan.balance.movable < -numbers.fall_margin)
-        told |= plan.balance.lost
-        assert plan.status.falling is told
-    assert next(plan.time for plan in made if plan.status.falling) < fallen
+        lost = lost + 1 if plan.balance.movable < -numbers.fall_margin else 0
+        assert plan.balance.lost == lost
+    first = next(plan for plan in made if plan.status.falling)
+    assert first.balance.lost == numbers.fall_plans
+    assert first.time < fallen
     _, made, _ = plans(stand, 0.4)
     assert not any(plan.status.falling for plan in made)
+
+
+def told(margins, **keys):
+    """What plans with such margins tell one after another."""
+    numbers, found, balance = replace(P.recovery, **keys), [], Balance()
+    for margin in margins:
+        lost = balance.lost + 1 if margin < -numbers.fall_margin else 0
+        safe = balance.safe + 1 if margin >= 0.0 else 0
+        balance = Balance(movable=margin, lost=lost, safe=safe)
+        found.append(falling(balance, bool(found) and found[-1], numbers))
+    return found
+
+
+OUT, NEAR, IN = -0.2, -0.05, 0.05
+"""Margins of a fall, of none yet, and of a robot that can be saved [m]."""
+
+
+def test_a_fall_is_told_after_so_many_plans_on_end_and_taken_back_after_so_many_with_margin():
+    count, back = P.recovery.fall_plans, P.recovery.regained_plans
+    assert told([OUT] * count) == [False] * (count - 1) + [True]
+    assert not any(told([*[OUT] * (count - 1), NEAR] * 5))
+    assert told([*[OUT] * count, *[NEAR] * 50])[-50:] == [True] * 50
+    assert told([*[OUT] * count, *[IN] * (back - 1), NEAR, *[IN] * (back - 1)])[count:] == [True] * (2 * back - 1)
+    assert told([*[OUT] * count, *[IN] * back, NEAR])[-3:] == [True, False, False]
+    assert told([*[OUT] * count, *[IN] * back, *[OUT] * count])[-2:] == [False, True]
+    assert told([OUT, IN, IN], fall_plans=1, regained_plans=2) == [True, True, False]
+
+
+def test_a_planner_tells_what_its_margins_say(stand):
+    """By the same counts, however the margins come about: here by a DCM that is lost and found again."""
+    parameters, begin = replace(P, step_adaptation=StepAdaptation.NONE), GAIT.lift_off(3) + 0.25
+    planner = WalkingPlanner(GAIT, stand(), 0.22, 0.11, parameters=parameters, legs=LEGS)
+    com, feet, said, margins = np.array([0.0, 0.0, GAIT.com_height]), stand(), [], []
+    for tick in range(60):
+        astray = 10 <= tick < 20 or 40 <= tick < 42
+        speed = np.array([0.0, 1.5 if astray else 0.0, 0.0])
+        plan = planner.update(CentroidalState(tick * T, com, speed), feet)
+        said.append(plan.status.falling)
+        margins.append(plan.balance.movable)
+    assert said == told(margins)
+    assert begin > 60 * T  # it stands all the while
+    assert np.flatnonzero(said).tolist() == list(
+        range(10 + P.recovery.fall_plans - 1, 20 + P.recovery.regained_plans - 1)
+    )
 
 
 def test_shift_and_delay_are_of_one_landing(stand):

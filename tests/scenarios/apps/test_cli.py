@@ -378,6 +378,17 @@ def test_events_are_printed_as_words(surefoot, tmp_path):
     assert surefoot("inspect", said, "--topic", "/event")[0] == 2
 
 
+def test_a_fall_that_is_taken_back_is_an_event(surefoot, tmp_path):
+    with LogWriter(tmp_path / "said.mcap", {}) as writer:
+        said = EventLog(writer)
+        for tick, falling in enumerate((False, True, True, False, False, True)):
+            said.update(tick * 10**8, (True, True), False, False, falling, False)
+    found = json.loads(surefoot("inspect", tmp_path / "said.mcap", "--topic", "/events", "--json")[1])
+    assert [(event["time"], event["kind"]) for event in found] == [(t, "falling") for t in (0.1, 0.3, 0.5)]
+    assert "no step will save the robot" in found[0]["text"] == found[2]["text"]
+    assert "steps can save the robot again" in found[1]["text"]
+
+
 def test_no_file_is_replaced_without_being_told(surefoot, scenario, tmp_path):
     surefoot("run", scenario, "--out", tmp_path)
     log = tmp_path / "two-steps-0" / "log.mcap"

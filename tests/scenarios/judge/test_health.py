@@ -138,7 +138,7 @@ def test_a_push_is_named_as_the_cause(health):
 def test_inspection_lists_the_file_first(tmp_path, motion, two_steps, robot):
     path = run_scenario(two_steps, tmp_path, simulate=motion(), robot=robot).log
     found = inspect(read(path)).to_json()["health"]
-    assert found[0] == {"check": "file", "status": "ok", "time": None, "value": None, "cause": ""}
+    assert found[0] == {"check": "file", "status": "ok", "time": None, "value": None, "relation": None, "cause": ""}
     path.write_bytes(path.read_bytes()[:-5000])
     found = inspect(read(path)).to_json()["health"]
     assert found[0]["status"] == "warning"

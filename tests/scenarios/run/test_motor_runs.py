@@ -5,7 +5,7 @@ import pytest
 import yaml
 
 import surefoot
-from surefoot.scenarios.judge.verdict import scenario_of
+from surefoot.scenarios.judge.scenario import scenario_of
 from surefoot.scenarios.log import read
 from surefoot.scenarios.record.provenance import SCENARIO_FILE, WORLD_FILE
 from surefoot.scenarios.setup.load import _UNSAID

@@ -6,7 +6,7 @@ import pytest
 import surefoot
 from surefoot.scenarios.errors import SetupError
 from surefoot.scenarios.file.registries import SOURCES
-from surefoot.scenarios.judge.verdict import scenario_of
+from surefoot.scenarios.judge.scenario import scenario_of
 from surefoot.scenarios.log import read
 from surefoot.scenarios.run.sensing import TrueState
 from surefoot.scenarios.study.campaigns.engine import processes

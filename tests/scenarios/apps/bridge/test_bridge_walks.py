@@ -9,6 +9,7 @@ import pytest
 import surefoot
 from surefoot.scenarios.apps.bridge.frames import Kind, packed
 from surefoot.scenarios.apps.bridge.messages import json_bytes
+from surefoot.scenarios.judge.inspection import inspect
 
 pytestmark = pytest.mark.physics
 
@@ -50,6 +51,17 @@ def test_two_processes_walk_as_one_to_the_bit(bridge, robot, kernels, same_conte
     _, alone, _ = bridge.result(again)
     assert same_content(tmp_path / verdict["log"], tmp_path / alone["log"]) == []
     assert surefoot.read(tmp_path / verdict["log"]).metadata["end"]["kind"] == "completed"
+
+
+def test_a_line_that_is_far_too_late_is_the_cause_of_the_fall(bridge, tmp_path):
+    plant = bridge.serve("walk", "--set", "sensing.source=truth", "--set", "gait.steps=6", "--delay", "0.06")
+    _, verdict, said = bridge.result(bridge.walk())
+    assert verdict["fell"], said
+    bridge.end(plant)
+    health = inspect(surefoot.read(tmp_path / verdict["log"])).health
+    causes = [one for one in health if one.relation == "cause"]
+    assert [one.check for one in causes] == ["late_commands"]
+    assert "/link.command_age" in causes[0].cause
 
 
 @pytest.mark.parametrize("number", [signal.SIGKILL, signal.SIGINT])

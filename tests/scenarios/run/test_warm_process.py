@@ -16,6 +16,7 @@ from surefoot.models.registry import describe
 from surefoot.models.types import RobotOptions
 from surefoot.planner.ground.terrain import flat
 from surefoot.scenarios import catalogue
+from surefoot.scenarios.errors import ScenarioError
 from surefoot.scenarios.file.dumped import dumped_values, parse_dumped, scenario_yaml
 from surefoot.scenarios.file.source import apply_overrides, parse
 from surefoot.scenarios.run.run import one_thread
@@ -155,8 +156,14 @@ def test_what_no_program_has_written_is_told_of_alike(text):
         except Exception as error:
             return str(error)
 
+    def sound(*given):
+        source = parse(*given)
+        if source.problems:  # such as a key twice, which no program has written
+            raise ScenarioError([source.describe(problem) for problem in source.problems])
+        return source.value
+
     assert said(parse_dumped) == said(parse)
-    assert said(dumped_values) == said(lambda *given: parse(*given).value)
+    assert said(dumped_values) == said(sound)
 
 
 def test_one_thread_is_taken_back():

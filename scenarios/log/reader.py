@@ -4,9 +4,8 @@ import json
 import math
 import mmap
 import stat
-import zlib
 from collections import Counter
-from collections.abc import Callable, Collection, Iterable, Iterator, Mapping, Sequence
+from collections.abc import Callable, Collection, Iterator, Mapping, Sequence
 from functools import cached_property, partial
 from itertools import zip_longest
 from pathlib import Path
@@ -18,14 +17,14 @@ from mcap.records import Attachment, Metadata
 from surefoot.pointers import IS_A_POINTER, POINTER_BYTES, is_pointer
 from surefoot.scenarios.columns import HELD_BYTES, Columns, KeptChannel, Reads, in_order, keep
 from surefoot.scenarios.errors import LogError, nearest, require
-from surefoot.scenarios.log.completeness import Completeness
-from surefoot.scenarios.log.encoding import GREATEST_CHUNK, MAGIC, decompress
+from surefoot.scenarios.log.chunk_reader import ChunkReader
+from surefoot.scenarios.log.encoding import GREATEST_CHUNK, MAGIC
 from surefoot.scenarios.log.long_channel import LongChannel
 from surefoot.scenarios.log.manifest import RECORD as MANIFEST
 from surefoot.scenarios.log.manifest import not_as_written
 from surefoot.scenarios.log.messages import MESSAGE_BYTES, ChannelData, block_of, content_at, gathered, sound_records
 from surefoot.scenarios.log.one_run import twice_named, twin
-from surefoot.scenarios.log.scan import INDEX_ENTRY, Buffer, ChunkPlace, index_chunk, release, scan
+from surefoot.scenarios.log.scan import INDEX_ENTRY, Buffer, ChunkPlace, scan
 from surefoot.scenarios.log.spec import FieldSpec, layout_of, record_dtype
 from surefoot.scenarios.log.stretches import FARTHEST, FIRST, LAST, START, between, grouped
 
@@ -40,9 +39,6 @@ GREATEST_RATIO = 100
 
 WINDOW = 4.0
 """Simulated time that is read at once where a whole log is gone through [s]."""
-
-_LET_GO = 1 << 22
-"""Of a file that is gone through, what may be in memory behind the chunk that is read [bytes]."""
 
 
 class Log:
@@ -73,9 +69,7 @@ class Log:
             raise LogError(f"{what}; give a log that `surefoot run` has written")
         self.truncated = contents.truncated
         self.damage = contents.damage
-        self._verified: set[int] = set()
-        self._completeness = Completeness(contents, data)
-        self._index_rest()
+        self._file = ChunkReader(contents, data)
         self.metadata = {record.name: record.metadata for record in contents.metadata if record.name != MANIFEST}
         self.attachments = {record.name: record.data for record in contents.attachments}
         self._ids = {channel.topic: number for number, channel in sorted(contents.channels.items())}
@@ -83,8 +77,8 @@ class Log:
         self.joints = _joints(self.metadata)
         self._loaded: dict[str, ChannelData] = {}
         # Definitions that differ are of two logs, unless the file is damaged.
-        apart = "" if not contents.conflicts or self._completeness.data_fault else contents.conflicts[0]
-        if twice := apart or twice_named(contents) or twin(contents, data, self._is_numeric, self._decompressed):
+        apart = "" if not contents.conflicts or self._file.completeness.data_fault else contents.conflicts[0]
+        if twice := apart or twice_named(contents) or twin(contents, data, self._is_numeric, self._file.decompressed):
             raise LogError(f"{path}: not the log of one run, {twice}; give the log of each run by itself")
 
     def __reduce__(self) -> tuple[Callable[[Path], "Log"], tuple[Path]]:
@@ -278,7 +272,7 @@ class Log:
         number = self._number(topic)
         for time, offset in self.contents.loose.get(number, ()):
             yield time, content_at(self.data, offset)
-        for chunk, data in self._unpacked(chunk for chunk in self.contents.chunks if chunk.count(number)):
+        for chunk, data in self._file.unpacked(chunk for chunk in self.contents.chunks if chunk.count(number)):
             for time, offset in chunk.entries(number, self.data).tolist():
                 if offset + MESSAGE_BYTES <= len(data):
                     yield time, content_at(data, offset)
@@ -308,9 +302,7 @@ class Log:
         `damage` tells what does not agree. Of data that agree with their checksum as a whole, chunks are not compared
         with theirs.
         """
-        left = (chunk for chunk in self.contents.chunks if chunk.position not in self._verified)
-        for _ in self._unpacked(left, verify=True):
-            pass
+        self._file.verify()
 
     def lacks(self) -> tuple[str, ...]:
         """What of the log is missing or cannot be read, in words, when everything was looked at.
@@ -322,13 +314,13 @@ class Log:
         end = f"its end is missing, it can be read up to {self.time_range()[1]:.3f} s"
         cut = end if self.contents.data_end is None else ""
         lost, _ = not_as_written(self._records)
-        return tuple(dict.fromkeys(filter(None, (before, cut, *lost, *self.damage, self._completeness.missing()))))
+        return tuple(dict.fromkeys(filter(None, (before, cut, *lost, *self.damage, self._file.completeness.missing()))))
 
     def faults(self) -> tuple[str, ...]:
         """What of the log contradicts the rest, in words, when everything was looked at."""
         self.verify()
         _, changed = not_as_written(self._records)
-        return tuple(dict.fromkeys(filter(None, (*changed, *self._completeness.contradictions()))))
+        return tuple(dict.fromkeys(filter(None, (*changed, *self._file.completeness.contradictions()))))
 
     @property
     def _records(self) -> list[Metadata | Attachment]:
@@ -345,24 +337,11 @@ class Log:
         """
         self.verify()
         before = self.metadata.get(RECOVERED, {}).get("unproven", "")
-        return tuple(dict.fromkeys(filter(None, (before, *self._completeness.unproven()))))
+        return tuple(dict.fromkeys(filter(None, (before, *self._file.completeness.unproven()))))
 
     def sound_chunks(self) -> Iterator[tuple[ChunkPlace, bytes]]:
         """Every chunk that agrees with its checksum, and its decompressed bytes; the others add to `damage`."""
-        return self._unpacked(self.contents.chunks, verify=True)
-
-    def _unpacked(self, chunks: Iterable[ChunkPlace], verify: bool = False) -> Iterator[tuple[ChunkPlace, bytes]]:
-        """Those chunks that can be unpacked, with their bytes; the memory of the file is let go behind them."""
-        begin = end = 0
-        for chunk in chunks:
-            data = self._sound(chunk) if verify else self._decompressed(chunk)
-            if data is not None:
-                yield chunk, data
-            if not begin <= chunk.position <= begin + _LET_GO:
-                release(self.data, begin, end)
-                begin = chunk.position
-            end = chunk.position + chunk.length
-        release(self.data, begin, end)
+        return self._file.unpacked(self.contents.chunks, verify=True)
 
     def _number(self, topic: str) -> int:
         if topic not in self._ids:
@@ -385,7 +364,7 @@ class Log:
         sizes = {self._ids[topic]: dtype.itemsize for topic, dtype in types.items()}
         blocks: dict[int, bytearray] = {number: bytearray() for number in sizes}
         expected, channels = dict.fromkeys(sizes, 0), self.contents.channels
-        for chunk, data in self._unpacked(
+        for chunk, data in self._file.unpacked(
             (chunk for chunk in chunks if verify or not chunk.channels.isdisjoint(sizes)), verify
         ):
             view = memoryview(data)
@@ -394,7 +373,7 @@ class Log:
                 expected[number] += count
                 if count * sizes[number] > len(view):
                     what = f"lists more of {channels[number].topic} than the chunk can hold"
-                    self._note(f"the index at byte {chunk.position} {what}")
+                    self._file.note(f"the index at byte {chunk.position} {what}")
                 elif count:
                     blocks[number] += block_of(view, chunk, number, sizes[number], self.data)
         for number in sizes.keys() & self.contents.loose.keys() if loose else ():
@@ -417,49 +396,8 @@ class Log:
         """The messages in a block of bytes, of which so many are expected."""
         records = sound_records(np.frombuffer(block, np.uint8), self._ids[topic], dtype)
         if len(records) < expected:
-            self._note(f"{expected - len(records)} messages of {topic} are damaged or not of its layout")
+            self._file.note(f"{expected - len(records)} messages of {topic} are damaged or not of its layout")
         return ChannelData(topic, fields, records, self.joints)
-
-    def _sound(self, chunk: ChunkPlace) -> bytes | None:
-        """Decompressed bytes of a chunk if they agree with its checksum, as all do of data that agree with theirs."""
-        data, known = self._decompressed(chunk), chunk.position in self._verified
-        self._verified.add(chunk.position)
-        if data is None:
-            return None
-        if self._completeness.proven or not chunk.crc or zlib.crc32(data) == chunk.crc:
-            if not known:
-                self._completeness.look(chunk, data)
-            return data
-        if not known:
-            self.damage.append(f"the chunk at byte {chunk.position} does not agree with its checksum")
-        return None
-
-    def _decompressed(self, chunk: ChunkPlace) -> bytes | None:
-        try:
-            return decompress(memoryview(self.data)[chunk.data], chunk.compression, chunk.size)
-        except LogError as error:
-            self._note(f"at byte {chunk.position} {error}")
-            return None
-
-    def _note(self, loss: str) -> None:
-        """Note what could not be read, once."""
-        if loss not in self.damage:
-            self.damage.append(loss)
-
-    def _index_rest(self) -> None:
-        """Index chunks that stand without an index, or whose channels are defined only inside them."""
-        for chunk in self.contents.chunks:
-            foreign = chunk.channels - self.contents.channels.keys()
-            doubled = len(chunk.channels) < len(chunk.places) // 3
-            if not chunk.places or chunk.index_damaged or foreign or doubled:
-                data = self._decompressed(chunk)
-                if data is not None:
-                    chunk.made = index_chunk(data, self.contents)
-        used = set().union(*(chunk.used for chunk in self.contents.chunks))
-        for chunk in self.contents.chunks:  # one may define what only later ones use
-            if not used - self.contents.channels.keys():
-                break
-            index_chunk(self._decompressed(chunk) or b"", self.contents)
 
 
 def _joints(metadata: Mapping[str, Mapping[str, str]]) -> tuple[str, ...]:

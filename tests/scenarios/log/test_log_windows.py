@@ -14,6 +14,7 @@ from surefoot.scenarios.errors import LogError
 from surefoot.scenarios.judge.digest import RunView
 from surefoot.scenarios.judge.metrics import compute, digest
 from surefoot.scenarios.log import ChannelSpec, FieldSpec, Log, LogWriter, read
+from surefoot.scenarios.log.chunk_reader import ChunkReader
 from surefoot.scenarios.log.spec import layout_of
 from surefoot.scenarios.record import channels
 from surefoot.scenarios.run.run import run_scenario
@@ -46,8 +47,8 @@ def test_a_window_is_the_part_of_the_whole_in_that_time(log, start, end):
 
 def test_a_window_decompresses_only_its_own_chunks(log, monkeypatch):
     opened, loaded = read(log.path), []
-    original = opened._decompressed
-    monkeypatch.setattr(opened, "_decompressed", lambda chunk: loaded.append(chunk) or original(chunk))
+    original = ChunkReader.decompressed
+    monkeypatch.setattr(ChunkReader, "decompressed", lambda self, chunk: loaded.append(chunk) or original(self, chunk))
     opened.window("/x", 1.0, 1.2)
     assert 0 < len(loaded) <= 4 < len(opened.contents.chunks)
 

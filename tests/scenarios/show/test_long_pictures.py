@@ -11,6 +11,7 @@ from benchmarks.lengthened import lengthened
 from benchmarks.memory import COMMANDS, MOST, measured
 from surefoot.scenarios.judge.digest import RunView, Window
 from surefoot.scenarios.log import Log, read
+from surefoot.scenarios.log.chunk_reader import ChunkReader
 from surefoot.scenarios.run.run import run_scenario
 from surefoot.scenarios.show.figures.page import page, plot, single
 from surefoot.scenarios.show.kit.shading import background
@@ -71,8 +72,10 @@ def test_a_page_reads_what_it_draws_in_one_pass(log, monkeypatch):
 @pytest.mark.unit
 def test_a_plot_of_a_window_reads_the_chunks_of_that_window(log, tmp_path, monkeypatch):
     unpacked = set()
-    original = Log._decompressed
-    monkeypatch.setattr(Log, "_decompressed", lambda self, chunk: unpacked.add(chunk.position) or original(self, chunk))
+    original = ChunkReader.decompressed
+    monkeypatch.setattr(
+        ChunkReader, "decompressed", lambda self, chunk: unpacked.add(chunk.position) or original(self, chunk)
+    )
     plot(log, tmp_path / "part.png", "feet", 1.0, 1.2)
     assert 0 < len(unpacked) <= 4
     plot(log, tmp_path / "whole.png", "feet")

@@ -7,7 +7,7 @@ from pydantic import GetCoreSchemaHandler, GetJsonSchemaHandler
 from pydantic_core import PydanticCustomError, core_schema
 
 from surefoot.models.names import is_file
-from surefoot.plugins import AFRESH, OWN_PACKAGE, Registry
+from surefoot.plugins import OWN_PACKAGE, Registry
 from surefoot.scenarios.errors import Key, Problem, dotted
 from surefoot.scenarios.file.registries import DEFAULTS, REGISTRIES
 
@@ -53,7 +53,11 @@ def unusable(keys: Any) -> list[Problem]:
 def unknown(keys: Any) -> list[Problem]:
     """List a scenario's names, among plain values, that no installed package brings; no package is loaded."""
     return [
-        Problem(key, f"{dotted(key)} '{name}' is not known here", f"install the package that brings it; {AFRESH}")
+        Problem(
+            key,
+            f"{dotted(key)} '{name}' is not known here",
+            "install the package that brings it, again where its entry points have changed",
+        )
         for key, name, registry in _named(keys)
         if name != DEFAULTS.get(str(key[0])) and name not in registry
     ]

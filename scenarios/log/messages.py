@@ -25,6 +25,12 @@ def content_at(data: Buffer, offset: int) -> bytes:
     return bytes(data[offset + MESSAGE_BYTES : offset + PREFIX_BYTES + length])
 
 
+def numbered_at(data: Buffer, offset: int) -> bytes:
+    """The same from its sequence number on, by which two messages of one content are told apart."""
+    number = offset + _HEAD.size
+    return bytes(data[number : number + 4]) + content_at(data, offset)
+
+
 def block_of(data: memoryview, chunk: ChunkPlace, channel_id: int, size: int, file: Buffer) -> memoryview | bytes:
     """Bytes of a channel's messages of `size` bytes, one after the other; those beyond the chunk are left out.
 

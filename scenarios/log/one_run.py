@@ -9,7 +9,7 @@ from collections.abc import Callable, Iterator, Sequence
 import numpy as np
 from numpy.typing import NDArray
 
-from surefoot.scenarios.log.messages import MESSAGE_BYTES, content_at
+from surefoot.scenarios.log.messages import MESSAGE_BYTES, numbered_at
 from surefoot.scenarios.log.scan import INDEX_ENTRY, Buffer, ChunkPlace, Contents, release
 
 _GROUP = 256
@@ -48,7 +48,7 @@ def twin(contents: Contents, data: Buffer, single: Callable[[str], bool], decomp
     Args:
         contents: of the file.
         data: its bytes.
-        single: tells the topics that have one message at a time; of others a message is known by its content, too.
+        single: tells the topics that have one message at a time; others have two of one number and content in no run.
         decompress: unpacks a chunk.
     """
     for number, times in _repeated(contents, data).items():
@@ -57,7 +57,7 @@ def twin(contents: Contents, data: Buffer, single: Callable[[str], bool], decomp
             continue
         if single(channel.topic):
             return f"its topic {channel.topic} has more than one message at {times[0] * 1e-9:.3f} s"
-        seen = set()
+        seen: set[tuple[int, bytes]] = set()
         for message in _messages_at(contents, data, number, times, decompress):
             if message in seen:
                 return f"its topic {channel.topic} has a message twice at {message[0] * 1e-9:.3f} s"
@@ -68,15 +68,15 @@ def twin(contents: Contents, data: Buffer, single: Callable[[str], bool], decomp
 def _messages_at(
     contents: Contents, data: Buffer, number: int, times: NDArray[np.uint64], decompress: Decompress
 ) -> Iterator[tuple[int, bytes]]:
-    """Times [ns] and contents of the messages of a channel at some times."""
+    """Times [ns] of the messages of a channel at some times, and their bytes from the sequence number on."""
     wanted, loose = set(times.tolist()), contents.loose.get(number, ())
-    yield from ((time, content_at(data, at)) for time, at in loose if time in wanted)
+    yield from ((time, numbered_at(data, at)) for time, at in loose if time in wanted)
     for chunk in contents.chunks:
         entries = chunk.entries(number, data) if chunk.count(number) else np.empty(0, INDEX_ENTRY)
         found = entries[np.isin(entries["time"], times)].tolist()
         whole = decompress(chunk) if found else None
         if whole is not None:
-            yield from ((time, content_at(whole, at)) for time, at in found if at + MESSAGE_BYTES <= len(whole))
+            yield from ((time, numbered_at(whole, at)) for time, at in found if at + MESSAGE_BYTES <= len(whole))
 
 
 def _repeated(contents: Contents, data: Buffer) -> dict[int, NDArray[np.uint64]]:

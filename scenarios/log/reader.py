@@ -78,7 +78,7 @@ class Log:
         self._loaded: dict[str, ChannelData] = {}
         # Definitions that differ are of two logs, unless the file is damaged.
         apart = "" if not contents.conflicts or self._file.completeness.data_fault else contents.conflicts[0]
-        if twice := apart or twice_named(contents) or twin(contents, data, self._is_numeric, self._file.decompressed):
+        if twice := apart or twice_named(contents) or twin(contents, data, self._is_of_ticks, self._file.decompressed):
             raise LogError(f"{path}: not the log of one run, {twice}; give the log of each run by itself")
 
     def __reduce__(self) -> tuple[Callable[[Path], "Log"], tuple[Path]]:
@@ -347,6 +347,10 @@ class Log:
         if topic not in self._ids:
             raise LogError(f"{self.path}: no topic '{topic}'; {nearest(topic, self.topics or ('none',))}")
         return self._ids[topic]
+
+    def _is_of_ticks(self, topic: str) -> bool:
+        """Whether a channel has a message each control tick; after states got lost, two plans may be made at one."""
+        return self._is_numeric(topic) and self.count(topic) == max(self._counts.values())
 
     def _is_numeric(self, topic: str) -> bool:
         try:

@@ -9,6 +9,7 @@ import pytest
 from surefoot.scenarios.log import read
 from surefoot.wbc.tasks import DEFAULT_LAYOUT
 
+RIGHT = "install the package that brings it, again where its entry points have changed"
 SHORT = ("--set", "duration=0.6", "--set", "criteria={fell: false, com_sway: {max: 0.1}}", "--json")
 
 
@@ -71,7 +72,7 @@ def test_the_package_of_the_documentation_brings_all_at_once(documented, site):
     assert (seen.returncode, seen.stderr) == (1, "")
     reasons = json.loads(seen.stdout)["reasons"]
     places = ("robot 'heavy'", "planner.profile 'spring'", "sensing.source 'low-base'", "wbc.tasks.0 'look-aside'")
-    assert reasons[:4] == [f"{place} is not known here; install the package that brings it" for place in places]
+    assert reasons[:4] == [f"{place} is not known here; {RIGHT}" for place in places]
     assert reasons[4].startswith("com_sway is not known here")
     assert len(reasons) == 5
     again = elsewhere.run("run", str(path))
@@ -95,5 +96,5 @@ def test_a_log_of_a_ditch_is_judged_where_nobody_knows_ditches(documented, site)
     assert done.returncode == 0, done.stderr
     log = str(documented.folder.parent / json.loads(done.stdout)["log"])
     seen = json.loads(site("elsewhere").run("inspect", log, "--json").stdout)
-    assert seen["reasons"] == ["terrain.kind 'ditch' is not known here; install the package that brings it"]
+    assert seen["reasons"] == [f"terrain.kind 'ditch' is not known here; {RIGHT}"]
     assert not [note for note in seen["notes"] if "terrain" in note]

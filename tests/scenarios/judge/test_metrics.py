@@ -96,9 +96,11 @@ def test_standing_between_steps(metrics, motion):
     assert metrics(motion(pause=0.3))["standing_time_between"] == pytest.approx(0.3)
 
 
-def test_knees_are_bent_from_where_they_are_straight(metrics, motion, robot):
+def test_knees_are_bent_from_where_they_are_straight(metrics, motion, robot, monkeypatch):
     knees = [robot.joint_names.index(name) for name in robot.roles.knees]
-    robot.straight_joint_positions[knees] = (0.15, -0.05)
+    straight = robot.straight_joint_positions.copy()
+    straight[knees] = (0.15, -0.05)
+    monkeypatch.setattr(robot, "straight_joint_positions", straight)
     assert metrics(motion(speed=0.4))["knee_angle_mean"] == pytest.approx(0.4 - (0.15 + 0.05) / 2)
 
 

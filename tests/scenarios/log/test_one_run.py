@@ -139,7 +139,7 @@ def test_words_may_stand_twice_at_one_time_but_not_the_same(file, tmp_path):
     other = File(tmp_path / "other.mcap")
     words = other.writer.register_channel("/events", "json", 0)
     for _ in range(2):
-        other.send(5, words, b"push")
+        other.writer.add_message(words, 5 * TICK, b"push", 5 * TICK, 0)
     refused(other, r"its topic /events has a message twice at 0.010 s")
 
 
@@ -241,3 +241,20 @@ def test_a_git_lfs_pointer_is_called_so(tmp_path):
     path.rename(tmp_path / "scenario.yaml")
     with pytest.raises(ScenarioError, match="a Git LFS pointer, not the file itself; run 'git lfs pull'"):
         load(tmp_path / "scenario.yaml")
+
+
+def test_a_plan_may_be_made_twice_at_a_tick(tmp_path):
+    """After states that got lost, also one of the same content; one of the same number is a message twice."""
+    for number, accepted in ((1, True), (0, False)):
+        file = File(tmp_path / f"{number}.mcap")
+        schema = file.writer.register_schema("surefoot.Y", "protobuf", SPEC.descriptors)
+        plans = file.writer.register_channel("/y", "protobuf", schema, SPEC.metadata)
+        for tick in range(10):
+            file.send(tick)
+        for sequence in (0, number):
+            file.writer.add_message(plans, 3 * TICK, content(3), 3 * TICK, sequence)
+        if accepted:
+            assert file.read().count("/y") == 2
+        else:
+            with pytest.raises(LogError, match="its topic /y has a message twice"):
+                file.read()

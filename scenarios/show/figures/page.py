@@ -199,8 +199,9 @@ def _verdict(log: Log) -> str:
 def _part(log: Log) -> str:
     """How the run of a log ended of which only a part is looked at, so that nothing of it is judged."""
     end = log.metadata.get(END_RECORD, {})
-    told = f", which ended at {end['time']} s: {end['kind']}" if {"time", "kind"} <= end.keys() else ""
-    return f"a part of the run{told}"
+    if not {"time", "kind"} <= end.keys():
+        return "a part of the run"
+    return f"a part of the run, which ended at {end['time'].rstrip('0').rstrip('.')} s: {end['kind']}"
 
 
 def _notes(log: Log) -> tuple[str, ...]:

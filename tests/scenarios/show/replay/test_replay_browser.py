@@ -135,8 +135,8 @@ def test_it_stands_still_when_paused_and_moves_when_played(page: Browser) -> Non
     page.run(PLAY)
     page.wait_for(f"return Math.abs(parseFloat(document.querySelector('input').value) - {paused_at}) > 0.2")
     page.run(PLAY)
-    time.sleep(0.5)
-    assert changed(still, picture(page)) > 200
+    # A machine that is busy draws the robot late.
+    assert any(changed(still, picture(page)) > 200 for _ in range(40) if not time.sleep(0.25))
 
 
 def test_the_robot_can_be_switched_off(page: Browser) -> None:

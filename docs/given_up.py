@@ -126,7 +126,8 @@ def spells(walk: Watched, numbers: RecoveryParameters) -> list[tuple[float, floa
 
 def told(walks: Sequence[Watched], kind: str, tell: int, back: int) -> Told:
     """What is told of walks of a kind by some counts."""
-    wrong, lost, leads, fell = 0, 0, [], 0
+    wrong, lost, fell = 0, 0, 0
+    leads = []
     of_kind = [walk for walk in walks if walk.kind == kind]
     for walk in of_kind:
         numbers = replace(walk.size.scaled(RecoveryParameters()), fall_plans=tell, regained_plans=back)

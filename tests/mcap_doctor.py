@@ -24,7 +24,8 @@ class _Doctor:
         self.indexes: dict[int, ChunkIndex] = {}
         self.summary: tuple[set[int], set[int]] = set(), set()
         self.statistics: Statistics | None = None
-        self.latest, self.times, self.ended, self.footer = -1, [], False, False
+        self.latest, self.times = -1, []
+        self.ended = self.footer = False
 
     def run(self) -> list[str]:
         if not (self.data.startswith(_MAGIC) and self.data.endswith(_MAGIC)):

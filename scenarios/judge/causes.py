@@ -1,8 +1,8 @@
 """Why a robot fell: what acted on it before it lost its balance, and what is not as planner and controller believe it.
 
 A cause acted in the half second before balance was lost, or before steps had to catch the body. Such events stand in
-the order of time. What is wrong all the time comes after them, the largest departure first. What is as it is believed,
-friction or sensors as specified, is no cause.
+the order of time. What is wrong all the time comes after them, the largest departure first. Friction as believed and
+sensors as specified are no cause.
 """
 
 from collections.abc import Iterator

@@ -71,7 +71,8 @@ class Window:
     """
 
     def __init__(self, log: "Log", channels: Mapping[str, Channel]) -> None:
-        self.path, self.size, self.metadata, self.attachments = log.path, log.size, log.metadata, log.attachments
+        self.path, self.size = log.path, log.size
+        self.metadata, self.attachments = log.metadata, log.attachments
         self._channels = channels
 
     def __contains__(self, topic: str) -> bool:

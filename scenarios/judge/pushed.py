@@ -137,7 +137,8 @@ class _Episode:
 
     def _off(self) -> Iterator[str]:
         """Say it where the impulse is not what was asked for."""
-        pushes, asked, acted, on = self._pushes, self._asked, self._acted, self._on
+        pushes, on = self._pushes, self._on
+        asked, acted = self._asked, self._acted
         if np.isnan(acted).any():
             yield f"{_named(pushes)} cannot be told to have acted: the plant does not measure the external force"
             return

@@ -19,7 +19,8 @@ class LongChannel(ChannelData):
 
     def __init__(self, log: "Log", topic: str, fields: tuple[FieldSpec, ...]) -> None:
         """Stand for a topic of a log, with some of its fields."""
-        self._log, self.topic, self.fields, self.joints = log, topic, fields, log.joints
+        self._log, self.joints = log, log.joints
+        self.topic, self.fields = topic, fields
 
     def __len__(self) -> int:
         return len(self.time_ns)

@@ -7,7 +7,7 @@ from pathlib import Path
 
 import pytest
 from mcap_doctor import complaints
-from test_log_writer import SPEC, full_disk_at
+from test_log_writer import ENDLESS, SPEC, full_disk_at
 
 from surefoot.scenarios.errors import LogError
 from surefoot.scenarios.log import AttachedFile, Kept, LogWriter, read
@@ -109,19 +109,7 @@ def test_at_no_moment_is_less_on_the_disk_and_never_more_than_three_times_as_muc
     assert len(read(tmp_path / "log.mcap").contents.chunks) < 2 * keep / 0.09 + 3
 
 
-_ENDLESS = """
-import sys
-from pathlib import Path
-from surefoot.scenarios.log import ChannelSpec, FieldSpec, LogWriter
-writer = LogWriter(Path(sys.argv[1]), {"run": {"seed": "3"}}, keep=1.0)
-channel = writer.channel(ChannelSpec("/x", "X", (FieldSpec("a"),)))
-tick = 0
-while True:
-    channel.append(tick * 2_000_000, tick)
-    sys.stdout.write(f"{tick}\\n")
-    sys.stdout.flush()
-    tick += 1
-"""
+_ENDLESS = ENDLESS.replace("keep=None", "keep=1.0")
 
 
 @pytest.mark.parametrize("ticks", [300, 1_013, 2_600])

@@ -244,11 +244,11 @@ def test_a_full_disk_on_the_way_keeps_what_was_written_under_another_name(tmp_pa
     assert len(kept["/x"]) > 300
 
 
-_ENDLESS = """
+ENDLESS = """
 import sys
 from pathlib import Path
 from surefoot.scenarios.log import ChannelSpec, FieldSpec, LogWriter
-writer = LogWriter(Path(sys.argv[1]), {"run": {"seed": "3"}})
+writer = LogWriter(Path(sys.argv[1]), {"run": {"seed": "3"}}, keep=None)
 channel = writer.channel(ChannelSpec("/x", "X", (FieldSpec("a"),)))
 tick = 0
 while True:
@@ -262,7 +262,7 @@ while True:
 def test_a_killed_run_loses_less_than_100_ms(tmp_path):
     path = tmp_path / "log.mcap"
     root = str(Path(__file__).parents[3])
-    child = subprocess.Popen([sys.executable, "-c", _ENDLESS, str(path)], stdout=subprocess.PIPE, text=True, cwd=root)
+    child = subprocess.Popen([sys.executable, "-c", ENDLESS, str(path)], stdout=subprocess.PIPE, text=True, cwd=root)
     written = [int(child.stdout.readline()) for _ in range(1000)]
     child.send_signal(signal.SIGKILL)
     written += [int(line) for line in child.stdout.read().split("\n")[:-1]]

@@ -16,6 +16,7 @@ used alone: `surefoot.planner`, `surefoot.wbc`, `surefoot.sim`, `surefoot.models
 from typing import TYPE_CHECKING
 
 from surefoot.lazy import face
+from surefoot.native import modules
 
 if TYPE_CHECKING:
     from surefoot.errors import ParameterError, PartError, PluginError
@@ -69,6 +70,9 @@ __all__ = [
     "read",
     "run",
 ]
+
+# A law that was edited in a checkout is compiled before anything is imported that it is a part of.
+modules.refresh()
 
 if not TYPE_CHECKING:  # a type checker shall still refuse names that are not there
     __getattr__, __dir__ = face(

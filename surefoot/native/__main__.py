@@ -1,14 +1,15 @@
-"""Make the compiled kernels of a checkout, and say whether there are any."""
+"""Compile the modules of a checkout, or let them run interpreted (``--interpreted``); says which they are."""
 
-import os
+import sys
 
-from surefoot.native.build import LIBRARY, build
-from surefoot.native.library import VARIABLE, library
+from surefoot.native.modules import BuildError, build, interpret, made, stale
 
 if __name__ == "__main__":
-    if library() is not None:
-        print(f"compiled kernels: {LIBRARY}")
-    elif os.environ.get(VARIABLE) == "0":
-        print(f"plain Python, since {VARIABLE} is 0")
+    if "--interpreted" in sys.argv[1:]:
+        interpret()
     else:
-        print(f"plain Python, slower, since there is {build() or 'no library that can be loaded'}")
+        try:
+            build(stale())
+        except BuildError as error:
+            sys.exit(f"interpreted, slower, since {error}")
+    print(f"compiled: {made()}" if made() else "interpreted")

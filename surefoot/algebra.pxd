@@ -1,0 +1,24 @@
+cimport libc.math as math
+cimport cython
+
+ctypedef (double, double, double) vector3
+
+cdef double INFINITY
+cpdef double between(double value, double low, double high) noexcept nogil
+cpdef double clamp(double value, double low, double high) noexcept nogil
+cpdef double square(double value) noexcept nogil
+cpdef vector3 cross(vector3 a, vector3 b) noexcept nogil
+cpdef double inner(vector3 a, vector3 b) noexcept nogil
+cpdef vector3 vector(const double[:] values) noexcept nogil
+cpdef void put(double[:] out, vector3 a) noexcept nogil
+cpdef vector3 rotate(const double[:, :] R, vector3 a) noexcept nogil
+cpdef vector3 rotate_back(const double[:, :] R, vector3 a) noexcept nogil
+@cython.locals(i=Py_ssize_t, j=Py_ssize_t)
+cpdef void compose(const double[:, :] A, const double[:, :] B, double[:, :] out) noexcept nogil
+@cython.locals(i=Py_ssize_t, j=Py_ssize_t)
+cpdef void compose_back(const double[:, :] A, const double[:, :] B, double[:, :] out) noexcept nogil
+@cython.locals(small=cython.bint)
+cpdef void rotation_of(vector3 a, double[:, :] R) noexcept nogil
+cpdef vector3 rotation_vector(const double[:, :] R) noexcept nogil
+@cython.locals(i=Py_ssize_t, j=Py_ssize_t, k=Py_ssize_t)
+cpdef void quaternion(const double[:, :] R, double[:] out) noexcept nogil

@@ -1,0 +1,9 @@
+cpdef double dot(const double[:] a, const double[:] b) noexcept nogil
+cpdef double row_dot(const double[:, :] A, Py_ssize_t i, const double[:] x) noexcept nogil
+cpdef double rows_dot(const double[:, :] A, Py_ssize_t i, const double[:, :] B, Py_ssize_t j) noexcept nogil
+cpdef bint factor(double[:, :] A) noexcept nogil
+cpdef void forward_solve(const double[:, :] U, double[:, :] B) noexcept nogil
+cpdef void forward_solve_one(const double[:, :] U, double[:] b) noexcept nogil
+cpdef void backward_solve(const double[:, :] U, double[:] x) noexcept nogil
+cpdef void subtract_products(double[:, :] S, const double[:, :] Y) noexcept nogil
+cpdef double fused_sum(double a, double x, double b, double y, double c, double z) noexcept nogil

@@ -1,0 +1,73 @@
+"""Linear algebra of the laws, by numpy and LAPACK; `linear.pyx` is what a compiled module calls in its place.
+
+These are the only functions that stand twice: a loop over matrices would take a hundred times as long interpreted.
+Arguments are arrays whose last axis is contiguous. Sizes are those of the arrays.
+"""
+
+import numpy as np
+from numpy.typing import NDArray
+from scipy.linalg import lapack, solve_triangular
+
+Array = NDArray[np.float64]
+
+
+def dot(a: Array, b: Array) -> float:
+    """Inner product a' b, shape (n,) each."""
+    return float(a @ b)
+
+
+def row_dot(A: Array, i: int, x: Array) -> float:
+    """A row of a matrix, of shape (m, n), times a vector, shape (n,)."""
+    return float(A[i] @ x)
+
+
+def rows_dot(A: Array, i: int, B: Array, j: int) -> float:
+    """A row of one matrix times a row of another one, of n numbers each."""
+    return float(A[i] @ B[j])
+
+
+def factor(A: Array) -> bool:
+    """U with A = U' U, in the upper triangle of A, shape (n, n); its diagonal holds the reciprocals.
+
+    Returns:
+        Whether A is not positive definite; it is of no use then.
+    """
+    U, info = lapack.dpotrf(A, lower=0, clean=1)
+    if info:
+        return True
+    upper = np.triu_indices(len(A))
+    A[upper] = U[upper]
+    np.fill_diagonal(A, 1.0 / np.diag(U))
+    return False
+
+
+def forward_solve(U: Array, B: Array) -> None:
+    """Solve U' Y = B in place, of a factor of `factor`, for right sides that are the columns of B, shape (n, k)."""
+    B[:] = solve_triangular(_whole(U), B, trans="T", check_finite=False)
+
+
+def forward_solve_one(U: Array, b: Array) -> None:
+    """The same for one right side, shape (n,)."""
+    b[:] = solve_triangular(_whole(U), b, trans="T", check_finite=False)
+
+
+def backward_solve(U: Array, x: Array) -> None:
+    """Solve U x = b in place, shape (n,)."""
+    x[:] = solve_triangular(_whole(U), x, check_finite=False)
+
+
+def subtract_products(S: Array, Y: Array) -> None:
+    """S -= Y' Y in the upper triangle of S and right of it, shape (m, k), for Y of shape (n, k), k at least m."""
+    S -= np.triu(Y[:, : len(S)].T @ Y)
+
+
+def fused_sum(a: float, x: float, b: float, y: float, c: float, z: float) -> float:
+    """Sum a x + b y + c z, rounded once a term, as numpy's library sums on processors that fuse."""
+    return float(np.array([a, b, c]) @ np.array([x, y, z]))
+
+
+def _whole(U: Array) -> Array:
+    """The factor with its diagonal itself."""
+    whole = np.triu(U)
+    np.fill_diagonal(whole, 1.0 / np.diag(U))
+    return whole

@@ -1,0 +1,122 @@
+"""The functions of `linear.py` for compiled modules, which see there what they do.
+
+Sums go in an order of their own, the same on every machine.
+"""
+
+from libc.math cimport fma, sqrt
+
+
+cdef inline double _dot(const double *a, const double *b, Py_ssize_t count) noexcept nogil:
+    """Four sums beside each other: one alone would wait for itself at each term."""
+    cdef double[4] sums
+    cdef Py_ssize_t i = 0, lane
+    for lane in range(4):
+        sums[lane] = 0.0
+    while i + 4 <= count:
+        for lane in range(4):
+            sums[lane] += a[i + lane] * b[i + lane]
+        i += 4
+    lane = 0
+    while i + lane < count:
+        sums[lane] += a[i + lane] * b[i + lane]
+        lane += 1
+    return (sums[0] + sums[1]) + (sums[2] + sums[3])
+
+
+cdef void _subtract_rows(
+    double *out, Py_ssize_t count, const double *factors, Py_ssize_t factor_stride,
+    const double *rows, Py_ssize_t row_stride, Py_ssize_t terms
+) noexcept nogil:
+    """out -= sum of factor times row; four at a time, since to load and store `out` costs more than the products."""
+    cdef Py_ssize_t k = 0, j
+    cdef const double *f
+    cdef const double *first
+    cdef const double *second
+    cdef const double *third
+    cdef const double *fourth
+    cdef double a, b, c, d
+    while k + 4 <= terms:
+        f = factors + factor_stride * k
+        first = rows + row_stride * k
+        second = first + row_stride
+        third = second + row_stride
+        fourth = third + row_stride
+        a, b, c, d = f[0], f[factor_stride], f[2 * factor_stride], f[3 * factor_stride]
+        k += 4
+        if a == 0.0 and b == 0.0 and c == 0.0 and d == 0.0:
+            continue
+        for j in range(count):
+            out[j] -= (a * first[j] + b * second[j]) + (c * third[j] + d * fourth[j])
+    while k < terms:
+        a = factors[factor_stride * k]
+        first = rows + row_stride * k
+        for j in range(count):
+            out[j] -= a * first[j]
+        k += 1
+
+
+cdef inline Py_ssize_t _stride(const double[:, :] A) noexcept nogil:
+    return A.strides[0] // <Py_ssize_t>sizeof(double)
+
+
+cpdef double dot(const double[:] a, const double[:] b) noexcept nogil:
+    return _dot(&a[0], &b[0], a.shape[0]) if a.shape[0] else 0.0
+
+
+cpdef double row_dot(const double[:, :] A, Py_ssize_t i, const double[:] x) noexcept nogil:
+    return _dot(&A[i, 0], &x[0], A.shape[1])
+
+
+cpdef double rows_dot(const double[:, :] A, Py_ssize_t i, const double[:, :] B, Py_ssize_t j) noexcept nogil:
+    return _dot(&A[i, 0], &B[j, 0], A.shape[1])
+
+
+cpdef bint factor(double[:, :] A) noexcept nogil:
+    cdef Py_ssize_t size = A.shape[0], stride = _stride(A), i, j
+    cdef double *start = &A[0, 0]
+    cdef double *row
+    for i in range(size):
+        row = start + stride * i + i
+        _subtract_rows(row, size - i, start + i, stride, start + i, stride, i)
+        if not row[0] > 0.0:
+            return True
+        row[0] = 1.0 / sqrt(row[0])
+        for j in range(1, size - i):
+            row[j] *= row[0]
+    return False
+
+
+cdef void _forward(const double *U, Py_ssize_t size, Py_ssize_t stride, double *B, Py_ssize_t width) noexcept nogil:
+    cdef Py_ssize_t i, c
+    cdef double *y
+    for i in range(size):
+        y = B + width * i
+        _subtract_rows(y, width, U + i, stride, B, width, i)
+        for c in range(width):
+            y[c] *= U[stride * i + i]
+
+
+cpdef void forward_solve(const double[:, :] U, double[:, :] B) noexcept nogil:
+    _forward(&U[0, 0], U.shape[0], _stride(U), &B[0, 0], _stride(B))
+
+
+cpdef void forward_solve_one(const double[:, :] U, double[:] b) noexcept nogil:
+    _forward(&U[0, 0], U.shape[0], _stride(U), &b[0], 1)
+
+
+cpdef void backward_solve(const double[:, :] U, double[:] x) noexcept nogil:
+    cdef Py_ssize_t size = U.shape[0], stride = _stride(U), i
+    cdef const double *row
+    for i in range(size - 1, -1, -1):
+        row = &U[0, 0] + stride * i
+        x[i] = (x[i] - _dot(row + i + 1, &x[0] + i + 1, size - i - 1)) * row[i]
+
+
+cpdef void subtract_products(double[:, :] S, const double[:, :] Y) noexcept nogil:
+    cdef Py_ssize_t e, width = S.shape[1]
+    for e in range(S.shape[0]):
+        _subtract_rows(&S[e, e], width - e, &Y[0, e], _stride(Y), &Y[0, e], _stride(Y), Y.shape[0])
+
+
+cpdef double fused_sum(double a, double x, double b, double y, double c, double z) noexcept nogil:
+    return fma(c, z, fma(b, y, a * x))

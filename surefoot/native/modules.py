@@ -1,0 +1,255 @@
+"""The modules that are compiled: each Python file with a ``.pxd`` beside it, which gives its types in C.
+
+The same file runs interpreted where it is not compiled, many times slower. Cython and a C compiler make an extension
+module beside each, which Python then imports in its place. The build of the package runs this file by its path, before
+anything is installed: it imports the standard library alone.
+
+The same sources, Cython and compiler give the same bits: no fused multiplication, no reordering of sums, and of the
+machine's instructions only those that every x86-64 processor since 2009 has.
+"""
+
+import hashlib
+import json
+import os
+import platform
+import sys
+from collections.abc import Iterable, Mapping
+from importlib.machinery import EXTENSION_SUFFIXES
+from pathlib import Path
+
+# What only a build needs is imported there: each process of a checkout asks here whether modules are stale.
+
+ROOT = Path(__file__).parents[2]
+"""Folder that holds the package: of a checkout, its root."""
+
+SUFFIX = EXTENSION_SUFFIXES[0]
+"""End of the name of an extension module, which tells the version of Python and the platform."""
+
+STAMP = Path(__file__).with_name(f"built{SUFFIX}.json")
+"""What the extension modules were made of, and how."""
+
+SHARED = "surefoot.native.shared"
+"""Module with what all compiled ones have in common, which Cython writes."""
+
+DIRECTIVES = {
+    "language_level": "3",
+    "annotation_typing": "False",
+    "infer_types": "True",
+    "boundscheck": "False",
+    "wraparound": "False",
+    "cdivision": "True",
+    "initializedcheck": "False",
+}
+"""How Cython reads the modules: types by the `.pxd` and by inference, indices and divisors unchecked."""
+
+FLAGS = ("-O3", "-ffp-contract=off", "-fno-math-errno", "-fPIC", "-w")
+BASELINE = {"x86_64": ("-march=x86-64-v2",), "AMD64": ("-march=x86-64-v2",)}
+"""Further flags by machine."""
+
+LINK = {"darwin": ("-bundle", "-undefined", "dynamic_lookup")}.get(sys.platform, ("-shared",))
+
+
+class BuildError(Exception):
+    """There is no compiling here; its text is the reason."""
+
+
+def sources() -> Mapping[str, Path]:
+    """Source of each compiled module by its name, relative to `ROOT`."""
+    found = {}
+    # The folders of the package are links in a checkout.
+    for folder, _, names in os.walk(ROOT / "surefoot", followlinks=True):
+        for name in names:
+            if name.endswith(".pxd"):
+                path = Path(folder, name).relative_to(ROOT)
+                # A form of its own for the compiler goes before the one for the interpreter.
+                own = path.with_suffix(".pyx")
+                found[".".join(path.with_suffix("").parts)] = own if (ROOT / own).exists() else path.with_suffix(".py")
+    return dict(sorted(found.items()))
+
+
+def target(path: Path) -> Path:
+    """Where the extension module of a source is, relative to `ROOT`."""
+    return path.with_name(path.stem + SUFFIX)
+
+
+def shared_path() -> Path:
+    """Where the module with what all have in common is, relative to `ROOT`."""
+    return target(Path(*SHARED.split(".")).with_suffix(".py"))
+
+
+def digests() -> Mapping[str, str]:
+    """Digest of each module's source, of all types in C, and of how they are compiled."""
+    found = sources()
+    types = hashlib.sha256(repr((DIRECTIVES, FLAGS, BASELINE, LINK)).encode())
+    for path in found.values():
+        types.update(str(path).encode() + b"\0" + (ROOT / path).with_suffix(".pxd").read_bytes() + b"\0")
+    made = {}
+    for name, path in found.items():
+        digest = types.copy()
+        digest.update((ROOT / path).read_bytes())
+        made[name] = digest.hexdigest()[:16]
+    return made
+
+
+def stamp() -> Mapping[str, str]:
+    """What was built: digest of each module, and under ``made`` how; empty where nothing was."""
+    try:
+        kept: dict[str, str] = json.loads(STAMP.read_text(encoding="utf-8"))
+    except (OSError, ValueError):
+        return {}
+    return kept
+
+
+def stale() -> list[str]:
+    """Modules without an extension module of their present source."""
+    built, found = stamp(), sources()
+    return [
+        name
+        for name, digest in digests().items()
+        if built.get(name) != digest or not (ROOT / target(found[name])).exists()
+    ]
+
+
+def made() -> str:
+    """How the extension modules were made: Cython, compiler and flags; empty where they are interpreted."""
+    return stamp().get("made", "")
+
+
+def refresh() -> str:
+    """Compile anew what is stale in a checkout; remove it where that cannot be done, since it is of other sources.
+
+    Returns:
+        Why modules are interpreted; empty where all are compiled, or where this was asked for.
+    """
+    if not (ROOT / "pyproject.toml").exists() or "interpreted" in stamp():
+        return ""
+    late = stale()
+    if not late:
+        return ""
+    try:
+        build(late)
+    except BuildError as error:
+        discard(late)
+        import logging
+
+        logging.getLogger(__name__).warning("%d modules run interpreted, which is slower: %s", len(late), error)
+        return str(error)
+    return ""
+
+
+def discard(names: Iterable[str]) -> None:
+    """Remove the extension modules of these."""
+    found = sources()
+    for name in names:
+        (ROOT / target(found[name])).unlink(missing_ok=True)
+    _write_stamp({key: digest for key, digest in stamp().items() if key not in set(names)})
+
+
+def interpret() -> None:
+    """Let all modules run interpreted until they are built again."""
+    discard(sources())
+    _write_stamp({"interpreted": "on request"})
+
+
+def build(names: Iterable[str] | None = None) -> None:
+    """Compile modules, each put in its place at once, so that others may do the same meanwhile.
+
+    The compiler is ``CC``, or ``cc``.
+
+    Args:
+        names: of the modules; all by default.
+
+    Raises:
+        BuildError: there is no Cython, no compiler, or no header of Python's, or a module cannot be compiled.
+    """
+    import tempfile
+    from concurrent.futures import ThreadPoolExecutor
+
+    compiler, found, fresh = _compiler(), sources(), digests()
+    wanted = list(found if names is None else names)
+    kept = stamp()
+    how = _how(compiler)
+    if kept.get("made") != how:
+        wanted = list(found)
+    with tempfile.TemporaryDirectory(prefix="surefoot-") as folder:
+        if kept.get("made") != how or not (ROOT / shared_path()).exists():
+            _compile_shared(compiler, Path(folder))
+        with ThreadPoolExecutor(os.cpu_count()) as pool:
+            list(pool.map(lambda name: _compile(compiler, name, found[name], Path(folder)), wanted))
+    before = {key: digest for key, digest in kept.items() if key in found}
+    _write_stamp({**before, **{name: fresh[name] for name in wanted}, "made": how})
+
+
+def _compiler() -> list[str]:
+    """Command of the C compiler."""
+    import shlex
+    import shutil
+    import sysconfig
+    from importlib.util import find_spec
+
+    command = shlex.split(os.environ.get("CC", "cc"))
+    if not command or shutil.which(command[0]) is None:
+        raise BuildError(f"there is no C compiler '{' '.join(command)}'")
+    header = Path(sysconfig.get_paths()["include"], "Python.h")
+    if not header.exists():
+        raise BuildError(f"there are no headers of Python {platform.python_version()}: no {header}")
+    if find_spec("Cython") is None:
+        raise BuildError("there is no Cython: run 'pip install cython', or install Surefoot again")
+    return command
+
+
+def _how(compiler: list[str]) -> str:
+    """Versions of Cython and compiler, and the flags."""
+    import shlex
+    import subprocess
+    from importlib.metadata import version
+
+    said = subprocess.run([*compiler, "--version"], capture_output=True, text=True).stdout.splitlines()
+    named = said[0].strip() if said else compiler[0]
+    return f"Cython {version('cython')}, {named} {shlex.join(_flags(compiler))}"
+
+
+def _flags(compiler: list[str]) -> list[str]:
+    return [*compiler[1:], *FLAGS, *BASELINE.get(platform.machine(), ())]
+
+
+def _compile_shared(compiler: list[str], folder: Path) -> None:
+    c_file = folder / "shared.c"
+    _run([sys.executable, "-m", "cython", f"--generate-shared={c_file}"])
+    _link(compiler, c_file, shared_path())
+
+
+def _compile(compiler: list[str], name: str, path: Path, folder: Path) -> None:
+    c_file = folder / f"{name}.c"
+    directives = [part for key, value in DIRECTIVES.items() for part in ("-X", f"{key}={value}")]
+    command = [sys.executable, "-m", "cython", f"--shared={SHARED}", "--module-name", name, *directives]
+    _run([*command, str(path), "-o", str(c_file)])
+    _link(compiler, c_file, target(path))
+
+
+def _link(compiler: list[str], c_file: Path, path: Path) -> None:
+    import shutil
+    import sysconfig
+
+    scratch = c_file.with_suffix(SUFFIX)
+    include = sysconfig.get_paths()["include"]
+    _run([compiler[0], *_flags(compiler), *LINK, "-I", include, "-o", str(scratch), str(c_file), "-lm"])
+    beside = (ROOT / path).with_name(f".{path.name}.{os.getpid()}")
+    shutil.copyfile(scratch, beside)
+    beside.replace(ROOT / path)
+
+
+def _run(command: list[str]) -> None:
+    import shlex
+    import subprocess
+
+    done = subprocess.run(command, cwd=ROOT, capture_output=True, text=True)
+    if done.returncode:
+        said = (done.stderr or done.stdout).strip()
+        raise BuildError(f"'{shlex.join(command)}' fails:\n{said}")
+
+
+def _write_stamp(content: Mapping[str, str]) -> None:
+    scratch = STAMP.with_name(f".{STAMP.name}.{os.getpid()}")
+    scratch.write_text(json.dumps(content, indent=1), encoding="utf-8")
+    scratch.replace(STAMP)

@@ -17,7 +17,7 @@ from surefoot.planner.model.jerk import WorldMotion
 from surefoot.planner.parameters import PlannerParameters
 from surefoot.planner.plan import WalkPlan
 from surefoot.planner.recovery.recovery import Recovery, Sight, falling
-from surefoot.planner.recovery.step_adjustment import StepBounds, StepProblem
+from surefoot.planner.recovery.step_problem import StepBounds, StepProblem
 from surefoot.planner.references.com_height import HeightProfile, SmoothHeight
 from surefoot.planner.references.window import ReferencePreview, Window
 from surefoot.planner.references.zmp_reference import Support

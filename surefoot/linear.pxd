@@ -7,3 +7,4 @@ cpdef void forward_solve_one(const double[:, :] U, double[:] b) noexcept nogil
 cpdef void backward_solve(const double[:, :] U, double[:] x) noexcept nogil
 cpdef void subtract_products(double[:, :] S, const double[:, :] Y) noexcept nogil
 cpdef double fused_sum(double a, double x, double b, double y, double c, double z) noexcept nogil
+cpdef double nearest(double value) noexcept nogil

@@ -61,6 +61,11 @@ def subtract_products(S: Array, Y: Array) -> None:
     S -= np.triu(Y[:, : len(S)].T @ Y)
 
 
+def nearest(value: float) -> float:
+    """The nearest whole number, of two the even one."""
+    return float(round(value))
+
+
 def fused_sum(a: float, x: float, b: float, y: float, c: float, z: float) -> float:
     """Sum a x + b y + c z, rounded once a term, as numpy's library sums on processors that fuse."""
     return float(np.array([a, b, c]) @ np.array([x, y, z]))

@@ -3,7 +3,7 @@
 Sums go in an order of their own, the same on every machine.
 """
 
-from libc.math cimport fma, sqrt
+from libc.math cimport fma, rint, sqrt
 
 
 cdef inline double _dot(const double *a, const double *b, Py_ssize_t count) noexcept nogil:
@@ -120,3 +120,7 @@ cpdef void subtract_products(double[:, :] S, const double[:, :] Y) noexcept nogi
 
 cpdef double fused_sum(double a, double x, double b, double y, double c, double z) noexcept nogil:
     return fma(c, z, fma(b, y, a * x))
+
+
+cpdef double nearest(double value) noexcept nogil:
+    return rint(value)

@@ -97,24 +97,6 @@ def nominal_dcm(stiffness: Array, omega: Array, zmp: Array, sample_time: float) 
     return np.asarray((ahead + decay[-1] * zmp[-1]) / decay)
 
 
-def moving_cop(start: Array, end: Array, omega: float, times: Array) -> Array:
-    """What a CoP that moves evenly from start to end takes off the DCM in times, shape (n, 2) [m].
-
-    ξ(T) = e^{ωT} ξ - p0 (e^{ωT} - 1) - (p1 - p0) ((e^{ωT} - 1) / (ωT) - 1) of ξ' = ω (ξ - p).
-    """
-    growth = np.exp(omega * times) - 1.0
-    return np.asarray(growth[:, None] * start + (growth / (omega * times) - 1.0)[:, None] * (end - start))
-
-
-def pendulum_com(com: Array, dcm: Array, cop: Array, growth: Array) -> Array:
-    """CoM once the DCM's distance from a constant CoP has grown by factors e^{ωt}, shape (n, 2) [m].
-
-    c' = ω (ξ - c) gives c(t) = c e^{-ωt} + p (1 - e^{-ωt}) + (ξ - p) sinh ωt.
-    """
-    grown = growth[:, None]
-    return np.asarray(com / grown + cop * (1.0 - 1.0 / grown) + 0.5 * (dcm - cop) * (grown - 1.0 / grown))
-
-
 @dataclass(frozen=True, slots=True)
 class NominalMotion:
     """A CoM motion with constant jerk between samples.

@@ -75,7 +75,7 @@ class Outlook:
                 point += weight * self.point[k, axis]
                 half += weight * self.half_size[k, axis]
             margin = min(margin, half / self._foot_margin - abs(dcm[axis] - point))
-        return margin
+        return float(margin)
 
     def nominal(self, window: Window) -> Array:
         """The DCM now that a window's ZMP keeps bounded, shape (2,) [m]."""

@@ -15,20 +15,14 @@ BRAKING, GAINING = 1.9, 3.9
 """What a speed takes off that at the end of a quintic to rest, and at its begin, over speed / T: its extremes [-]."""
 
 
-def farthest(acceleration: Array | float, speed: Array | float, time: Array | float) -> Array:
+def farthest(acceleration: float, speed: float, time: float) -> float:
     """How far a quintic gets that comes to rest after a time, without more than an acceleration [m].
 
     Args:
-        acceleration: of any shape, as all of them [m/s^2].
+        acceleration: of the hips, say [m/s^2].
         speed: at its begin, negative against its way [m/s].
         time: that it has [s].
     """
-    changed = np.where(np.asarray(speed) > 0.0, BRAKING, GAINING) * speed
-    return np.asarray((acceleration * np.square(time) + changed * time) / PEAK)
-
-
-def farthest_of_one(acceleration: float, speed: float, time: float) -> float:
-    """The same as `farthest` in plain numbers, which are fast [m]."""
     return (acceleration * (time * time) + (BRAKING if speed > 0.0 else GAINING) * speed * time) / PEAK
 
 
@@ -99,6 +93,6 @@ def up_and_down(
     room = lifting * down**2 / PEAK
     if up <= soon or height - low > room:
         return None, np.array(one_quintic(state, rest, touchdown - now))[:, None]
-    apex = min(apex, low + room, height + farthest_of_one(lifting, speed, up))
+    apex = min(apex, low + room, height + farthest(lifting, speed, up))
     top = apex, 0.0, -4.0 * min((apex - height) / up**2, (apex - low) / down**2)
     return np.array(one_quintic(state, top, up))[:, None], np.array(one_quintic(top, rest, down))[:, None]

@@ -49,6 +49,10 @@ BASELINE = {"x86_64": ("-march=x86-64-v2",), "AMD64": ("-march=x86-64-v2",)}
 LINK = {"darwin": ("-bundle", "-undefined", "dynamic_lookup")}.get(sys.platform, ("-shared",))
 
 
+MOST_LINES = 30
+"""Of what Cython or the compiler says."""
+
+
 class BuildError(Exception):
     """There is no compiling here; its text is the reason."""
 
@@ -78,17 +82,34 @@ def shared_path() -> Path:
 
 
 def digests() -> Mapping[str, str]:
-    """Digest of each module's source, of all types in C, and of how they are compiled."""
+    """Digest of each module's source, of the types in C that it knows, and of how it is compiled."""
     found = sources()
-    types = hashlib.sha256(repr((DIRECTIVES, FLAGS, BASELINE, LINK)).encode())
-    for path in found.values():
-        types.update(str(path).encode() + b"\0" + (ROOT / path).with_suffix(".pxd").read_bytes() + b"\0")
+    types = {name: (ROOT / path).with_suffix(".pxd").read_text(encoding="utf-8") for name, path in found.items()}
+    needs = {name: types.keys() & _cimported(text) for name, text in types.items()}
+    how = hashlib.sha256(repr((DIRECTIVES, FLAGS, BASELINE, LINK)).encode())
     made = {}
     for name, path in found.items():
-        digest = types.copy()
-        digest.update((ROOT / path).read_bytes())
+        known, left = {name}, [name]
+        while left:
+            fresh = needs[left.pop()] - known
+            known |= fresh
+            left += fresh
+        digest = how.copy()
+        for text in ((ROOT / path).read_text(encoding="utf-8"), *(types[other] for other in sorted(known))):
+            digest.update(text.encode() + b"\0")
         made[name] = digest.hexdigest()[:16]
     return made
+
+
+def _cimported(text: str) -> set[str]:
+    """Modules that a ``.pxd`` names, and names of them that may be modules."""
+    found = set()
+    for line in text.splitlines():
+        words = line.replace(",", " ").split()
+        if "cimport" in words:
+            names = words[words.index("cimport") + 1 :]
+            found |= {words[1], *(f"{words[1]}.{name}" for name in names)} if words[0] == "from" else set(names)
+    return found
 
 
 def stamp() -> Mapping[str, str]:
@@ -129,10 +150,11 @@ def refresh() -> str:
     try:
         build(late)
     except BuildError as error:
+        late = stale()
         discard(late)
         import logging
 
-        logging.getLogger(__name__).warning("%d modules run interpreted, which is slower: %s", len(late), error)
+        logging.getLogger(__name__).warning("%s run interpreted, which is slower: %s", ", ".join(late), error)
         return str(error)
     return ""
 
@@ -174,10 +196,14 @@ def build(names: Iterable[str] | None = None) -> None:
     with tempfile.TemporaryDirectory(prefix="surefoot-") as folder:
         if kept.get("made") != how or not (ROOT / shared_path()).exists():
             _compile_shared(compiler, Path(folder))
+        done = {key: digest for key, digest in kept.items() if key in found and key not in wanted}
         with ThreadPoolExecutor(os.cpu_count()) as pool:
-            list(pool.map(lambda name: _compile(compiler, name, found[name], Path(folder)), wanted))
-    before = {key: digest for key, digest in kept.items() if key in found}
-    _write_stamp({**before, **{name: fresh[name] for name in wanted}, "made": how})
+            running = {name: pool.submit(_compile, compiler, name, found[name], Path(folder)) for name in wanted}
+    failed = [error for error in (task.exception() for task in running.values()) if error is not None]
+    done |= {name: fresh[name] for name, task in running.items() if task.exception() is None}
+    _write_stamp({**done, "made": how})
+    if failed:
+        raise failed[0]
 
 
 def _compiler() -> list[str]:
@@ -245,8 +271,8 @@ def _run(command: list[str]) -> None:
 
     done = subprocess.run(command, cwd=ROOT, capture_output=True, text=True)
     if done.returncode:
-        said = (done.stderr or done.stdout).strip()
-        raise BuildError(f"'{shlex.join(command)}' fails:\n{said}")
+        said = (done.stderr or done.stdout).strip().splitlines()
+        raise BuildError("\n".join([f"'{shlex.join(command)}' fails:", *said[:MOST_LINES]]))
 
 
 def _write_stamp(content: Mapping[str, str]) -> None:

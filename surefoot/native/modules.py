@@ -305,7 +305,8 @@ def _link(compiler: list[str], c_file: Path, path: Path) -> None:
 
     scratch = c_file.with_suffix(SUFFIX)
     include = sysconfig.get_paths()["include"]
-    _run([compiler[0], *_flags(compiler), *LINK, "-I", include, "-o", str(scratch), str(c_file), "-lm"])
+    same = f"-ffile-prefix-map={c_file.parent}=."  # the same bytes wherever it is compiled
+    _run([compiler[0], *_flags(compiler), *LINK, same, "-I", include, "-o", str(scratch), str(c_file), "-lm"])
     beside = (ROOT / path).with_name(f".{path.name}.{os.getpid()}")
     shutil.copyfile(scratch, beside)
     beside.replace(ROOT / path)

@@ -188,7 +188,9 @@ def refresh() -> None:
     Raises:
         ImportError: a module cannot be compiled.
     """
-    if not (ROOT / "pyproject.toml").exists() or "interpreted" in stamp():
+    # The program that compiles them does so by itself, also where one of them cannot be.
+    asked = "surefoot.native" in sys.orig_argv
+    if asked or not (ROOT / "pyproject.toml").exists() or "interpreted" in stamp():
         return
     late = stale()
     if not late:
@@ -282,7 +284,10 @@ def _how(compiler: list[str]) -> str:
 
 
 def _flags(compiler: list[str]) -> list[str]:
-    return [*compiler[1:], *FLAGS, *BASELINE.get(platform.machine(), ())]
+    baseline = BASELINE.get(platform.machine(), ())
+    if "ziglang" in compiler:
+        baseline = tuple(flag.replace("86-64-", "86_64_") for flag in baseline)
+    return [*compiler[1:], *FLAGS, *baseline]
 
 
 def _compile_shared(compiler: list[str], folder: Path) -> None:

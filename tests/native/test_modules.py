@@ -67,6 +67,9 @@ def test_a_law_that_cannot_be_compiled_is_an_error_that_names_its_line(checkout)
     said = python(checkout, "-c", ASK, code=1)
     assert "surefoot/law.py:5" in said
     assert said.rstrip().endswith("Mend it, or run 'python -m surefoot.native --interpreted'")
+    assert "surefoot/law.py:5" in python(checkout, "-m", "surefoot.native", code=1)
+    assert python(checkout, "-m", "surefoot.native", "--interpreted").startswith("interpreted")
+    assert "law.py" in python(checkout, "-c", "import surefoot.law as it; print(it.__file__)")
 
 
 @pytest.mark.parametrize("compiler", ["false", "no-such-compiler", ""])

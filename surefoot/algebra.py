@@ -43,6 +43,21 @@ def inner(a: Vector, b: Vector) -> float:
     return a[0] * b[0] + a[1] * b[1] + a[2] * b[2]
 
 
+def plus(a: Vector, b: Vector) -> Vector:
+    """Sum a + b."""
+    return a[0] + b[0], a[1] + b[1], a[2] + b[2]
+
+
+def minus(a: Vector, b: Vector) -> Vector:
+    """Difference a - b."""
+    return a[0] - b[0], a[1] - b[1], a[2] - b[2]
+
+
+def scaled(factor: float, a: Vector) -> Vector:
+    """A vector times a number."""
+    return factor * a[0], factor * a[1], factor * a[2]
+
+
 def vector(values: Array) -> Vector:
     """An array of three numbers as a vector."""
     return values[0], values[1], values[2]
@@ -51,6 +66,23 @@ def vector(values: Array) -> Vector:
 def put(out: Array, a: Vector) -> None:
     """Write a vector into an array, shape (3,)."""
     out[0], out[1], out[2] = a[0], a[1], a[2]
+
+
+def row(A: Array, i: int) -> Vector:
+    """A row of a matrix, shape (m, 3), as a vector."""
+    return A[i, 0], A[i, 1], A[i, 2]
+
+
+def put_row(A: Array, i: int, a: Vector) -> None:
+    """Write a vector into a row of a matrix, shape (m, 3)."""
+    A[i, 0], A[i, 1], A[i, 2] = a[0], a[1], a[2]
+
+
+def put_cross(out: Array, a: Vector) -> None:
+    """Write hat(a) into an array, shape (3, 3): hat(a) b is a x b."""
+    out[0, 0], out[0, 1], out[0, 2] = 0.0, -a[2], a[1]
+    out[1, 0], out[1, 1], out[1, 2] = a[2], 0.0, -a[0]
+    out[2, 0], out[2, 1], out[2, 2] = -a[1], a[0], 0.0
 
 
 def rotate(R: Array, a: Vector) -> Vector:

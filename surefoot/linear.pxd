@@ -1,10 +1,19 @@
 cpdef double dot(const double[:] a, const double[:] b) noexcept nogil
 cpdef double row_dot(const double[:, :] A, Py_ssize_t i, const double[:] x) noexcept nogil
+cpdef void multiply(const double[:, :] A, const double[:] x, double[:] out) noexcept nogil
+cpdef double quadratic(const double[:, :] A, const double[:] x) noexcept nogil
 cpdef double rows_dot(const double[:, :] A, Py_ssize_t i, const double[:, :] B, Py_ssize_t j) noexcept nogil
 cpdef bint factor(double[:, :] A) noexcept nogil
 cpdef void forward_solve(const double[:, :] U, double[:, :] B) noexcept nogil
 cpdef void forward_solve_one(const double[:, :] U, double[:] b) noexcept nogil
 cpdef void backward_solve(const double[:, :] U, double[:] x) noexcept nogil
 cpdef void subtract_products(double[:, :] S, const double[:, :] Y) noexcept nogil
+cpdef void copy(const double[:, :] A, double[:, :] out) noexcept nogil
+cpdef void product(const double[:, :] A, const double[:, :] B, double[:, :] out) noexcept nogil
+cpdef void accumulate(double[:, :] S, const double[:, :] A, const double[:, :] B) noexcept nogil
+cpdef void add_multiple(double[:, :] S, double a, const double[:, :] A) noexcept nogil
+cpdef void row_products(const double[:, :] A, const double[:, :] B, double[:, :] out) noexcept nogil
+cpdef void downdate(double[:, :] P, const double[:, :] Y) noexcept nogil
+cpdef void inverse(const double[:, :] U, double[:, :] out) noexcept nogil
 cpdef double fused_sum(double a, double x, double b, double y, double c, double z) noexcept nogil
 cpdef double nearest(double value) noexcept nogil

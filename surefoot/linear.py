@@ -21,6 +21,16 @@ def row_dot(A: Array, i: int, x: Array) -> float:
     return float(A[i] @ x)
 
 
+def multiply(A: Array, x: Array, out: Array) -> None:
+    """A x into `out`, shape (m,), for A of shape (m, n)."""
+    np.matmul(A, x, out=out)
+
+
+def quadratic(A: Array, x: Array) -> float:
+    """Form x' A x, for A of shape (n, n) and x of shape (n,), much of which may be zeros."""
+    return float(x @ A @ x)
+
+
 def rows_dot(A: Array, i: int, B: Array, j: int) -> float:
     """A row of one matrix times a row of another one, of n numbers each."""
     return float(A[i] @ B[j])
@@ -64,6 +74,42 @@ def subtract_products(S: Array, Y: Array) -> None:
 def nearest(value: float) -> float:
     """The nearest whole number, of two the even one."""
     return float(round(value))
+
+
+def copy(A: Array, out: Array) -> None:
+    """A into `out`, of any shape."""
+    out[:] = A
+
+
+def product(A: Array, B: Array, out: Array) -> None:
+    """A B into `out`, shape (m, k), for A of shape (m, n) and B of shape (n, k); axes may lie in any order."""
+    out[:] = A @ B
+
+
+def accumulate(S: Array, A: Array, B: Array) -> None:
+    """S += A B, term by term, for A of shape (m, n) and B of shape (n, k); axes may lie in any order."""
+    S += A @ B
+
+
+def add_multiple(S: Array, a: float, A: Array) -> None:
+    """S += a A, of any shape; axes may lie in any order."""
+    S += a * A
+
+
+def row_products(A: Array, B: Array, out: Array) -> None:
+    """A B' into `out`, for A of shape (m, n) and B of shape (k, n)."""
+    np.matmul(A, B.T, out=out)
+
+
+def downdate(P: Array, Y: Array) -> None:
+    """P made symmetric, and P -= Y' Y, shape (n, n), for Y of shape (k, n)."""
+    P[:] = 0.5 * (P + P.T) - Y.T @ Y
+
+
+def inverse(U: Array, out: Array) -> None:
+    """A⁻¹ into `out`, shape (n, n), of a factor of `factor`."""
+    half = solve_triangular(_whole(U), np.eye(len(U)), trans="T", check_finite=False)
+    np.matmul(half.T, half, out=out)
 
 
 def fused_sum(a: float, x: float, b: float, y: float, c: float, z: float) -> float:

@@ -988,31 +988,12 @@ typedef struct {
 void motion_in_world(const MotionInWorld *motion);
 void state_in_frame(const MotionInWorld *motion, double x, double y, double v_x, double v_y, double a_x, double a_y);
 
-/* Counterpart of `wbc.estimation.invariant_filter.InvariantFilter` between two gains: state, readings, gain. */
+/* State of `wbc.estimation.invariant_filter.InvariantFilter`, as `Doubt` looks at it. */
 typedef struct {
     int64_t size;
-    int64_t feet_count;
-    const int64_t *feet;
-    double gravity;
-    double *R;
-    double *columns;
-    double *Z;
-    double *gyro_bias;
-    double *force_bias;
-    double *offsets;
-    const double *rate;
-    const double *force;
-    double *acceleration;
-    const double *position;
-    const double *rotation;
-    const double *gain;
-    const double *weights;
-    double *residual;
-    double *moved;
+    const double *R;
+    const double *columns;
 } Filter;
-
-void filter_propagate(const Filter *filter, double time);
-int64_t filter_correct(const Filter *filter, double gate);
 
 /* A sole as `SensedBody` sees it: the placement of its joint in Pinocchio's data, and its own in that. */
 typedef struct {
@@ -1089,40 +1070,11 @@ typedef struct {
 void sensed_body_update(const SensedBody *body);
 void sensed_body_jacobians(const SensedBody *body);
 
-/*
- * Counterpart of `InvariantFilter` at a new gain: P, noise by names of `wbc.estimation.parameters`, shares of the weight
- * on the soles, their ways on springs, which stand, their Jacobians, and memory for what lies between.
- */
+/* Its covariance likewise. */
 typedef struct {
     const Filter *filter;
-    double gyro_density;
-    double speed_density;
-    double gyro_walk;
-    double force_walk;
-    double creep;
-    double sinking;
-    double rocking;
-    double light;
-    double leaning;
-    double unsure;
-    double kinematics;
-    double turning;
-    double encoder;
-    int64_t on_springs;
-    const double *loads;
-    const double *sprung;
-    const int64_t *standing;
-    const double *jacobian;
-    double *P;
-    double *gain;
-    double *weights;
-    double *turned;
-    double *PH;
-    double *HP;
+    const double *P;
 } Covariance;
-
-void covariance_spread(const Covariance *covariance, double time);
-int64_t covariance_weigh(const Covariance *covariance, double ticks);
 
 /*
  * Counterpart of `wbc.estimation.doubt.Doubt`: lever of the CoM from the stance sole in axes of the IMU, and variances
@@ -1205,34 +1157,5 @@ typedef struct {
 } SoleContact;
 
 int64_t sole_contact_update(const SoleContact *contact, double share, int64_t still);
-
-/*
- * Counterpart of `wbc.estimation.estimator.SensedState._now`, and of `SensedBody.base` of an IMU that no joint moves.
- *
- * The arrays of the filter's state, mount and lever of the IMU in the base, its angular velocity with its bias, what
- * the base was planned to gain since, angles and velocities of the joints by their encoders, what has diverged, and
- * where configuration and velocity of the robot go.
- */
-typedef struct {
-    int64_t joints;
-    int64_t chain_count;
-    const int64_t *chain;
-    double farthest;
-    double fastest;
-    const double *R;
-    const double *columns;
-    const double *gyro_bias;
-    const double *offsets;
-    const double *mount;
-    const double *lever;
-    const double *rate;
-    const double *gained;
-    const double *position;
-    const double *velocity;
-    double *q;
-    double *v;
-} SensedBase;
-
-int64_t sensed_base_now(const SensedBase *sensed, double late);
 
 #endif

@@ -12,6 +12,12 @@ cpdef void copy(const double[:, :] A, double[:, :] out) noexcept nogil
 cpdef void product(const double[:, :] A, const double[:, :] B, double[:, :] out) noexcept nogil
 cpdef void accumulate(double[:, :] S, const double[:, :] A, const double[:, :] B) noexcept nogil
 cpdef void add_multiple(double[:, :] S, double a, const double[:, :] A) noexcept nogil
+cpdef void add_multiples(
+    double[:, :] S, double a, const double[:, :] A, double b, const double[:, :] B
+) noexcept nogil
+cpdef void differences(
+    const double[:, :] A, const Py_ssize_t[:] one, const Py_ssize_t[:] other, double[:, :] out
+) noexcept nogil
 cpdef void row_products(const double[:, :] A, const double[:, :] B, double[:, :] out) noexcept nogil
 cpdef void downdate(double[:, :] P, const double[:, :] Y) noexcept nogil
 cpdef void inverse(const double[:, :] U, double[:, :] out) noexcept nogil

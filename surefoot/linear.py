@@ -6,7 +6,7 @@ Arguments are arrays whose last axis is contiguous. Sizes are those of the array
 
 import numpy as np
 from numpy.typing import NDArray
-from scipy.linalg import lapack, solve_triangular
+from scipy.linalg import blas, lapack
 
 Array = NDArray[np.float64]
 
@@ -45,25 +45,24 @@ def factor(A: Array) -> bool:
     U, info = lapack.dpotrf(A, lower=0, clean=1)
     if info:
         return True
-    upper = np.triu_indices(len(A))
-    A[upper] = U[upper]
+    A[:] = np.tril(A, -1) + U
     np.fill_diagonal(A, 1.0 / np.diag(U))
     return False
 
 
 def forward_solve(U: Array, B: Array) -> None:
     """Solve U' Y = B in place, of a factor of `factor`, for right sides that are the columns of B, shape (n, k)."""
-    B[:] = solve_triangular(_whole(U), B, trans="T", check_finite=False)
+    B[:] = blas.dtrsm(1.0, _whole(U), B, trans_a=1)
 
 
 def forward_solve_one(U: Array, b: Array) -> None:
     """The same for one right side, shape (n,)."""
-    b[:] = solve_triangular(_whole(U), b, trans="T", check_finite=False)
+    b[:] = blas.dtrsv(_whole(U), b, trans=1)
 
 
 def backward_solve(U: Array, x: Array) -> None:
     """Solve U x = b in place, shape (n,)."""
-    x[:] = solve_triangular(_whole(U), x, check_finite=False)
+    x[:] = blas.dtrsv(_whole(U), x)
 
 
 def subtract_products(S: Array, Y: Array) -> None:
@@ -96,6 +95,16 @@ def add_multiple(S: Array, a: float, A: Array) -> None:
     S += a * A
 
 
+def add_multiples(S: Array, a: float, A: Array, b: float, B: Array) -> None:
+    """S += a A + b B, likewise."""
+    S += a * A + b * B
+
+
+def differences(A: Array, one: NDArray[np.intp], other: NDArray[np.intp], out: Array) -> None:
+    """Some columns of A, shape (m, n), less others, into `out`, shape (m, k); axes may lie in any order."""
+    np.subtract(A[:, one], A[:, other], out=out)
+
+
 def row_products(A: Array, B: Array, out: Array) -> None:
     """A B' into `out`, for A of shape (m, n) and B of shape (k, n)."""
     np.matmul(A, B.T, out=out)
@@ -108,7 +117,7 @@ def downdate(P: Array, Y: Array) -> None:
 
 def inverse(U: Array, out: Array) -> None:
     """A⁻¹ into `out`, shape (n, n), of a factor of `factor`."""
-    half = solve_triangular(_whole(U), np.eye(len(U)), trans="T", check_finite=False)
+    half = blas.dtrsm(1.0, _whole(U), np.eye(len(U)), trans_a=1)
     np.matmul(half.T, half, out=out)
 
 
@@ -118,7 +127,7 @@ def fused_sum(a: float, x: float, b: float, y: float, c: float, z: float) -> flo
 
 
 def _whole(U: Array) -> Array:
-    """The factor with its diagonal itself."""
-    whole = np.triu(U)
+    """The factor with its diagonal itself, in the upper triangle."""
+    whole = U.copy()
     np.fill_diagonal(whole, 1.0 / np.diag(U))
     return whole

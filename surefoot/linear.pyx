@@ -184,6 +184,24 @@ cpdef void add_multiple(double[:, :] S, double a, const double[:, :] A) noexcept
         _add_row(&S[i, 0], _step(S), a, &A[i, 0], _step(A), S.shape[1])
 
 
+cpdef void add_multiples(
+    double[:, :] S, double a, const double[:, :] A, double b, const double[:, :] B
+) noexcept nogil:
+    cdef Py_ssize_t i, c
+    for i in range(S.shape[0]):
+        for c in range(S.shape[1]):
+            S[i, c] += a * A[i, c] + b * B[i, c]
+
+
+cpdef void differences(
+    const double[:, :] A, const Py_ssize_t[:] one, const Py_ssize_t[:] other, double[:, :] out
+) noexcept nogil:
+    cdef Py_ssize_t i, c
+    for i in range(A.shape[0]):
+        for c in range(one.shape[0]):
+            out[i, c] = A[i, one[c]] - A[i, other[c]]
+
+
 cpdef void row_products(const double[:, :] A, const double[:, :] B, double[:, :] out) noexcept nogil:
     cdef Py_ssize_t i, j
     for i in range(A.shape[0]):

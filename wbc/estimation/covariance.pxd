@@ -13,11 +13,10 @@ cdef class Covariance:
     cdef double _gyro, _speed, _gyro_walk, _force_walk, _encoder, _place, _turning
     cdef double _creep, _sinking, _rocking, _light, _unsure, _leaning
     cdef double[:, ::1] _P, _gain, _weights
-    cdef double[:, ::1] _fall, _B, _BR, _BB, _before, _turned, _fallen, _pushed, _RJ, _PH, _HP, _S, _U
+    cdef double[:, ::1] _fall, _B, _BR, _BB, _before, _turned, _fallen, _pushed, _RJ, _PH, _HP, _apart, _S, _U
     cdef double[::1] _noise
     cdef Py_ssize_t[::1] _at, _from
 
-    @cython.locals(i=Py_ssize_t, c=Py_ssize_t)
     cpdef void advance(self, double t, double[:, :] x) noexcept nogil
     @cython.locals(i=Py_ssize_t)
     cdef void _see_turns(self) noexcept nogil
@@ -32,7 +31,7 @@ cdef class Covariance:
     cdef bint weigh(self, const Py_ssize_t[:] feet, const double[:, :, :] J, double ticks) noexcept nogil
     @cython.locals(i=Py_ssize_t, RJ=double[:, :])
     cdef void _look(self, Py_ssize_t first, Py_ssize_t k, const double[:, :] J) noexcept nogil
-    @cython.locals(i=Py_ssize_t, r=Py_ssize_t, s=Py_ssize_t, RJ=double[:, :])
+    @cython.locals(RJ=double[:, :], at=Py_ssize_t[::1], from_=Py_ssize_t[::1])
     cdef void _project(self, Py_ssize_t rows) noexcept nogil
     @cython.locals(r=Py_ssize_t)
     cdef bint _factor(self, Py_ssize_t rows, double ticks) noexcept nogil

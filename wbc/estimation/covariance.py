@@ -64,7 +64,7 @@ class Covariance:
         self._fallen, self._pushed = np.zeros((3, n)), np.zeros((3, n))
         self._at, self._from = np.zeros(MOST, dtype=np.intp), np.zeros(MOST, dtype=np.intp)
         self._noise, self._RJ = np.zeros(MOST), np.zeros((MOST, m))
-        self._PH, self._HP = np.zeros((n, MOST)), np.zeros((MOST, n))
+        self._PH, self._HP, self._apart = np.zeros((n, MOST)), np.zeros((MOST, n)), np.zeros((n, MOST))
         self._S, self._U = np.zeros((MOST, MOST)), np.zeros((MOST, MOST))
 
     def _keep(self, sensors: SensorNoise, ground: GroundNoise, leaning: bool) -> None:
@@ -96,11 +96,10 @@ class Covariance:
         linear.product(self._BR, x[stand.GYRO_AT : stand.FORCE_AT], turned)
         linear.product(self._fall, before[:3], fallen)
         linear.product(self._state._R, x[stand.FORCE_AT : stand.OFFSETS_AT], pushed)
+        linear.add_multiple(pushed, -1.0, fallen)
         linear.add_multiple(x[:COLUMNS], -t, turned)
-        for i in range(3):
-            for c in range(n):
-                x[stand.VELOCITY_AT + i, c] += t * (fallen[i, c] - pushed[i, c])
-                x[stand.POSITION_AT + i, c] += t * before[3 + i, c] + 0.5 * t * t * fallen[i, c]
+        linear.add_multiple(x[stand.VELOCITY_AT : stand.POSITION_AT], -t, pushed)
+        linear.add_multiples(x[stand.POSITION_AT : stand.FOOT_AT], t, before[3:], 0.5 * t * t, fallen)
 
     def _see_turns(self) -> None:
         """B and B R of the state now."""
@@ -188,13 +187,11 @@ class Covariance:
     def _project(self, rows: int) -> None:
         """P Hᵀ and H P Hᵀ, shapes (n, rows) and (rows, rows)."""
         P, PH, S, RJ = self._P, self._PH[:, :rows], self._S[:rows, :rows], self._RJ[:rows]
+        apart, at, from_ = self._apart[:, :rows], self._at[:rows], self._from[:rows]
         linear.row_products(P[:, stand.OFFSETS_AT :], RJ, PH)
-        for i in range(len(P)):
-            for r in range(rows):
-                PH[i, r] += P[i, self._at[r]] - P[i, self._from[r]]
-        for r in range(rows):
-            for s in range(rows):
-                S[r, s] = PH[self._at[r], s] - PH[self._from[r], s]
+        linear.differences(P, at, from_, apart)
+        linear.add_multiple(PH, 1.0, apart)
+        linear.differences(PH.T, at, from_, S.T)
         linear.accumulate(S, RJ, PH[stand.OFFSETS_AT :])
 
     def _factor(self, rows: int, ticks: float) -> bool:

@@ -33,6 +33,26 @@ def square(value: float) -> float:
     return value * value
 
 
+def add(a: Vector, b: Vector) -> Vector:
+    """Sum a + b."""
+    return a[0] + b[0], a[1] + b[1], a[2] + b[2]
+
+
+def subtract(a: Vector, b: Vector) -> Vector:
+    """Difference a - b."""
+    return a[0] - b[0], a[1] - b[1], a[2] - b[2]
+
+
+def scale(factor: float, a: Vector) -> Vector:
+    """A factor times a."""
+    return factor * a[0], factor * a[1], factor * a[2]
+
+
+def squares(a: Vector) -> Vector:
+    """The square of each number."""
+    return a[0] * a[0], a[1] * a[1], a[2] * a[2]
+
+
 def cross(a: Vector, b: Vector) -> Vector:
     """Cross product a x b."""
     return a[1] * b[2] - a[2] * b[1], a[2] * b[0] - a[0] * b[2], a[0] * b[1] - a[1] * b[0]
@@ -41,21 +61,6 @@ def cross(a: Vector, b: Vector) -> Vector:
 def inner(a: Vector, b: Vector) -> float:
     """Inner product a' b."""
     return a[0] * b[0] + a[1] * b[1] + a[2] * b[2]
-
-
-def plus(a: Vector, b: Vector) -> Vector:
-    """Sum a + b."""
-    return a[0] + b[0], a[1] + b[1], a[2] + b[2]
-
-
-def minus(a: Vector, b: Vector) -> Vector:
-    """Difference a - b."""
-    return a[0] - b[0], a[1] - b[1], a[2] - b[2]
-
-
-def scaled(factor: float, a: Vector) -> Vector:
-    """A vector times a number."""
-    return factor * a[0], factor * a[1], factor * a[2]
 
 
 def vector(values: Array) -> Vector:
@@ -68,14 +73,24 @@ def put(out: Array, a: Vector) -> None:
     out[0], out[1], out[2] = a[0], a[1], a[2]
 
 
-def row(A: Array, i: int) -> Vector:
-    """A row of a matrix, shape (m, 3), as a vector."""
-    return A[i, 0], A[i, 1], A[i, 2]
+def row(A: Array, i: int, first: int = 0) -> Vector:
+    """Three numbers of a row of a matrix, from a column on."""
+    return A[i, first], A[i, first + 1], A[i, first + 2]
 
 
-def put_row(A: Array, i: int, a: Vector) -> None:
-    """Write a vector into a row of a matrix, shape (m, 3)."""
-    A[i, 0], A[i, 1], A[i, 2] = a[0], a[1], a[2]
+def put_row(A: Array, i: int, a: Vector, first: int = 0) -> None:
+    """Write a vector into a row of a matrix, from a column on."""
+    A[i, first], A[i, first + 1], A[i, first + 2] = a[0], a[1], a[2]
+
+
+def column(A: Array, j: int, first: int = 0) -> Vector:
+    """Three numbers of a column of a matrix, from a row on."""
+    return A[first, j], A[first + 1, j], A[first + 2, j]
+
+
+def put_column(A: Array, j: int, a: Vector, first: int = 0) -> None:
+    """Write a vector into a column of a matrix, from a row on."""
+    A[first, j], A[first + 1, j], A[first + 2, j] = a[0], a[1], a[2]
 
 
 def put_cross(out: Array, a: Vector) -> None:

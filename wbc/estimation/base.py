@@ -63,10 +63,10 @@ class FloatingBase:
         algebra.rotation_of(algebra.vector(s._offsets[len(self._chain) :]), self._turn)
         algebra.compose(self._mount, self._turn, mounted)
         linear.row_products(s._R, mounted, R)
-        spin = algebra.rotate(mounted, algebra.minus(algebra.vector(self._rate), algebra.vector(s._gyro_bias)))
+        spin = algebra.rotate(mounted, algebra.subtract(algebra.vector(self._rate), algebra.vector(s._gyro_bias)))
         speed = algebra.rotate_back(R, algebra.row(s._columns, 0))
-        algebra.put(self._q, algebra.minus(algebra.row(s._columns, 1), algebra.rotate(R, lever)))
-        algebra.put(self._v, algebra.minus(speed, algebra.cross(spin, lever)))
+        algebra.put(self._q, algebra.subtract(algebra.row(s._columns, 1), algebra.rotate(R, lever)))
+        algebra.put(self._v, algebra.subtract(speed, algebra.cross(spin, lever)))
         algebra.put(self._v[3:], spin)
 
     def _go_on(self, gained: Array, late: float) -> None:
@@ -74,14 +74,14 @@ class FloatingBase:
         R, half = self._R, self._half
         speed, spin = algebra.vector(self._v), algebra.vector(self._v[3:])
         faster, turned = algebra.vector(gained), algebra.vector(gained[3:])
-        way = algebra.scaled(late, algebra.plus(speed, algebra.scaled(0.5, faster)))
-        turn = algebra.scaled(late, algebra.plus(spin, algebra.scaled(0.5, turned)))
-        algebra.rotation_of(algebra.scaled(0.5, turn), self._turn)
+        way = algebra.scale(late, algebra.add(speed, algebra.scale(0.5, faster)))
+        turn = algebra.scale(late, algebra.add(spin, algebra.scale(0.5, turned)))
+        algebra.rotation_of(algebra.scale(0.5, turn), self._turn)
         algebra.compose(R, self._turn, half)
         algebra.compose(half, self._turn, R)
-        algebra.put(self._q, algebra.plus(algebra.vector(self._q), algebra.rotate(half, way)))
-        algebra.put(self._v, algebra.plus(speed, faster))
-        algebra.put(self._v[3:], algebra.plus(spin, turned))
+        algebra.put(self._q, algebra.add(algebra.vector(self._q), algebra.rotate(half, way)))
+        algebra.put(self._v, algebra.add(speed, faster))
+        algebra.put(self._v[3:], algebra.add(spin, turned))
 
     def _join(self, position: Array, velocity: Array) -> None:
         """Add the base's quaternion, and the joints: encoders less what their zeros are known to be off."""

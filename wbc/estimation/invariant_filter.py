@@ -164,10 +164,10 @@ class InvariantFilter:
             time: that both are of [s].
         """
         s, half, middle = self.stand, self._half, self._middle
-        rate_now = algebra.minus(algebra.vector(rate), algebra.vector(s._gyro_bias))
-        force_now = algebra.minus(algebra.vector(force), algebra.vector(s._force_bias))
+        rate_now = algebra.subtract(algebra.vector(rate), algebra.vector(s._gyro_bias))
+        force_now = algebra.subtract(algebra.vector(force), algebra.vector(s._force_bias))
         # The mean force is of the frame half way through the turn.
-        algebra.rotation_of(algebra.scaled(0.5 * time, rate_now), half)
+        algebra.rotation_of(algebra.scale(0.5 * time, rate_now), half)
         algebra.compose(s._R, half, middle)
         algebra.compose(middle, half, s._R)
         x, y, z = algebra.rotate(middle, force_now)
@@ -256,10 +256,10 @@ class InvariantFilter:
         seen, apart = self._half, self._apart
         for i in range(self._count):
             k = self._feet[i]
-            way = algebra.minus(algebra.row(columns, 1), algebra.row(columns, 2 + k))
+            way = algebra.subtract(algebra.row(columns, 1), algebra.row(columns, 2 + k))
             algebra.compose(R, Y[k], seen)
             linear.row_products(seen, Z[k], apart)
-            algebra.put(self._residual[POSE * i :], algebra.plus(algebra.rotate(R, algebra.row(y, k)), way))
+            algebra.put(self._residual[POSE * i :], algebra.add(algebra.rotate(R, algebra.row(y, k)), way))
             algebra.put(self._residual[POSE * i + 3 :], algebra.rotation_vector(apart))
 
     def _square(self, first: int, end: int) -> float:

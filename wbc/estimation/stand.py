@@ -72,7 +72,7 @@ class Stand:
         self._turn(algebra.vector(x), self._R)
         for i in range(4):
             at = algebra.rotate(self._E, algebra.row(self._columns, i))
-            algebra.put_row(self._columns, i, algebra.plus(at, algebra.vector(x[VELOCITY_AT + 3 * i :])))
+            algebra.put_row(self._columns, i, algebra.add(at, algebra.vector(x[VELOCITY_AT + 3 * i :])))
         for k in range(2):
             self._turn(algebra.vector(x[SOLE_AT + 3 * k :]), self._Z[k])
         for i in range(3):

@@ -96,6 +96,7 @@ class Covariance:
         linear.product(self._BR, x[stand.GYRO_AT : stand.FORCE_AT], turned)
         linear.product(self._fall, before[:3], fallen)
         linear.product(self._state._R, x[stand.FORCE_AT : stand.OFFSETS_AT], pushed)
+        # What the accelerometer's bias and the tilt take from the velocity in a second.
         linear.add_multiple(pushed, -1.0, fallen)
         linear.add_multiple(x[:COLUMNS], -t, turned)
         linear.add_multiple(x[stand.VELOCITY_AT : stand.POSITION_AT], -t, pushed)

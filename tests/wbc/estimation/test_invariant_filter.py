@@ -46,6 +46,22 @@ def propagated(stand, rate, force):
     return filter_.stand
 
 
+def test_the_state_goes_on_by_what_the_imu_says_less_its_biases():
+    """As a body that falls and is pushed evenly, with the push as seen from half way through its turn."""
+    rng, time = np.random.default_rng(9), 0.3
+    before, rate, force = somewhere(rng), rng.normal(size=3), 10.0 * rng.normal(size=3)
+    filter_ = InvariantFilter(deepcopy(before), NOISE, GROUND)
+    filter_.propagate(rate, force, time)
+    turn, found = time * (rate - before.gyro_bias), filter_.stand
+    push = before.R @ pin.exp3(0.5 * turn) @ (force - before.force_bias) + [0.0, 0.0, -9.81]
+    np.testing.assert_allclose(found.R, before.R @ pin.exp3(turn), atol=1e-14)
+    np.testing.assert_allclose(found.v, before.v + time * push, atol=1e-14)
+    np.testing.assert_allclose(found.p, before.p + time * before.v + 0.5 * time**2 * push, atol=1e-14)
+    np.testing.assert_allclose(filter_.acceleration, push, atol=1e-14)
+    np.testing.assert_array_equal(found.d, before.d)
+    np.testing.assert_array_equal(found.Z, before.Z)
+
+
 def transition(stand):
     """What becomes of an error over a period."""
     F = np.eye(COUNT)

@@ -1,7 +1,7 @@
 cimport cython
 cimport libc.math as math
 from surefoot cimport algebra
-from surefoot.planner.swing.reach cimport StepReach
+from surefoot.planner.recovery.reach cimport StepReach
 
 cdef Py_ssize_t EDGES
 

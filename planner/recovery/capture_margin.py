@@ -18,10 +18,10 @@ import numpy as np
 
 from surefoot import algebra
 from surefoot.planner.parameters import PlannerParameters
+from surefoot.planner.recovery.reach import StepReach
 from surefoot.planner.recovery.step_problem import StepProblem
 from surefoot.planner.swing.leg_reach import ANYWHERE, LegReach
 from surefoot.planner.swing.quintics import PEAK
-from surefoot.planner.swing.reach import StepReach
 from surefoot.planner.types import Array
 
 EDGES = 4

@@ -3,7 +3,7 @@ cimport libc.math as math
 from surefoot cimport algebra, linear
 from surefoot.planner.model cimport pendulum
 from surefoot.planner.recovery.outlook cimport Outlook
-from surefoot.planner.swing.reach cimport StepReach
+from surefoot.planner.recovery.reach cimport StepReach
 
 cdef double NO_GAIN
 cdef Py_ssize_t NOW, LIFT_OFF, LANDED

@@ -37,10 +37,10 @@ from surefoot import algebra, linear
 from surefoot.planner.model import pendulum
 from surefoot.planner.parameters import PlannerParameters
 from surefoot.planner.recovery.outlook import Outlook
+from surefoot.planner.recovery.reach import StepReach
 from surefoot.planner.recovery.step_problem import StepBounds, StepProblem
 from surefoot.planner.references.window import Window
 from surefoot.planner.swing.leg_reach import LegReach
-from surefoot.planner.swing.reach import StepReach
 from surefoot.planner.types import Array
 
 NO_GAIN = 1e-9
@@ -228,7 +228,7 @@ class StepAdjustment:
         """Way from the hip to p* as far as the foot can be swung there and the box lets it [m]."""
         step = self._reach
         swung = algebra.between(self._wanted[axis], self._low[axis], self._high[axis])
-        return algebra.between(swung, step.low[box, axis], step.high[box, axis]) - self._hips[axis]
+        return float(algebra.between(swung, step.low[box, axis], step.high[box, axis]) - self._hips[axis])
 
     def _land(self, axis: int, double: float, spread: float, grown: float) -> float:
         """Set p* on an axis, which leaves nothing that no CoP holds of the DCM at the landing; the CoM then [m].

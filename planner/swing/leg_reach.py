@@ -7,7 +7,7 @@ import numpy as np
 
 from surefoot.planner.geometry import frame_rotation, wrap_angle
 from surefoot.planner.parameters import PlannerParameters
-from surefoot.planner.swing.reach import landing_boxes
+from surefoot.planner.swing.boxes import landing_boxes
 from surefoot.planner.swing.step_region import soles_apart
 from surefoot.planner.swing.trajectory import SwingTrajectory
 from surefoot.planner.types import Array, Footstep

@@ -284,7 +284,7 @@ def _how(compiler: list[str]) -> str:
 
 
 def _flags(compiler: list[str]) -> list[str]:
-    baseline = BASELINE.get(platform.machine(), ())
+    baseline: tuple[str, ...] = BASELINE.get(platform.machine(), ())
     if "ziglang" in compiler:
         baseline = tuple(flag.replace("86-64-", "86_64_") for flag in baseline)
     return [*compiler[1:], *FLAGS, *baseline]

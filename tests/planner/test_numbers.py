@@ -40,8 +40,8 @@ NOTICED = {
     "swing.quintics.PEAK": "tests/planner/swing/test_swing_limits.py",
     "swing.quintics.BRAKING": "tests/planner/swing/test_swing_limits.py",
     "swing.quintics.GAINING": "tests/planner/swing/test_swing_limits.py",
-    "swing.reach.BOXES": "tests/planner/recovery/test_step_adjustment.py",
-    "swing.reach.SHARES": "tests/planner/swing/test_swing_limits.py",
+    "recovery.reach.BOXES": "tests/planner/recovery/test_step_adjustment.py",
+    "recovery.reach.SHARES": "tests/planner/swing/test_swing_limits.py",
     "recovery.outlook.COLUMNS": "tests/planner/recovery/test_step_adjustment.py",
     "recovery.capture_margin.EDGES": "tests/planner/recovery/test_capture_margin.py",
 }
@@ -150,7 +150,7 @@ IN_BODIES = {
     "steps.gait": {1e-9},
     "steps.step": {1e-9},
     "swing.heel_off": {64.0, 192.0, 384.0},
-    "swing.reach": {3.0, 6.0, 8.0, 10.0, 15.0, 36.0, 60.0, 96.0},
+    "recovery.reach": {3.0, 6.0, 8.0, 10.0, 15.0, 36.0, 60.0, 96.0},
     "swing.quintics": {4.0, 9.0, 16.0, 20.0, 36.0, 60.0, 192.0, 360.0},
 }
 """Bare numbers in functions: coefficients of polynomials and of differences, roundings, and defaults of arguments."""

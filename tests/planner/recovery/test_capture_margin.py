@@ -13,6 +13,7 @@ from surefoot.planner.parameters import PlannerParameters, StepAdaptation
 from surefoot.planner.planner import WalkingPlanner
 from surefoot.planner.recovery.capture_margin import CaptureMargin
 from surefoot.planner.recovery.outlook import Outlook
+from surefoot.planner.recovery.reach import StepReach
 from surefoot.planner.recovery.recovery import falling
 from surefoot.planner.recovery.step_problem import StepProblem
 from surefoot.planner.references.com_height import HeightPreview
@@ -20,7 +21,6 @@ from surefoot.planner.references.window import Window
 from surefoot.planner.references.zmp_reference import ZmpReference
 from surefoot.planner.steps.gait import GaitParameters
 from surefoot.planner.swing.leg_reach import ANYWHERE
-from surefoot.planner.swing.reach import StepReach
 from surefoot.planner.types import Balance, CentroidalState, Foot, Footstep, PhaseKind
 
 pytestmark = pytest.mark.unit

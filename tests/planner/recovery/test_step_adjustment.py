@@ -11,13 +11,13 @@ from surefoot.planner.geometry import quintic
 from surefoot.planner.model.dcm import viability_weights
 from surefoot.planner.model.pendulum import com_after
 from surefoot.planner.parameters import PlannerParameters, RecoveryParameters, StepAdaptation
+from surefoot.planner.recovery.reach import StepReach
 from surefoot.planner.recovery.step_adjustment import StepAdjustment
 from surefoot.planner.recovery.step_problem import StepProblem
 from surefoot.planner.references.com_height import HeightPreview
 from surefoot.planner.references.window import Window
 from surefoot.planner.references.zmp_reference import ZmpReference
 from surefoot.planner.swing.leg_reach import ANYWHERE
-from surefoot.planner.swing.reach import StepReach
 from surefoot.planner.types import Foot, Footstep
 
 pytestmark = pytest.mark.unit

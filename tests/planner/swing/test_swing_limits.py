@@ -5,9 +5,9 @@ import pytest
 from pendulum_walk import LEGS
 
 from surefoot.planner.parameters import PlannerParameters
+from surefoot.planner.recovery.reach import StepReach
 from surefoot.planner.recovery.step_problem import StepProblem
 from surefoot.planner.swing.leg_reach import ANYWHERE
-from surefoot.planner.swing.reach import StepReach
 from surefoot.planner.swing.trajectory import SwingCourse, start_swing
 from surefoot.planner.types import Foot, Footstep
 

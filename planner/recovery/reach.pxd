@@ -1,15 +1,10 @@
 cimport cython
 cimport libc.math as math
 from surefoot cimport algebra
+from surefoot.planner.swing cimport boxes
 
 cdef double PEAK, BRAKING, GAINING
 cdef Py_ssize_t BOXES, SHARES
-
-@cython.locals(box=Py_ssize_t, near=double, far=double)
-cpdef landing_boxes(
-    double[:, :] low, double[:, :] high, (double, double, double, double) extents, double across, double side,
-    const double[:, :] face, Py_ssize_t count
-)
 
 @cython.final
 cdef class StepReach:

@@ -4,17 +4,14 @@ The frame is the stance foot's: x ahead, y to the left. See `planner.swing.leg_r
 """
 
 import math
-from typing import TYPE_CHECKING
 
 import numpy as np
 
 from surefoot import algebra
-from surefoot.planner.swing import quintics
+from surefoot.planner.recovery.step_problem import StepProblem
+from surefoot.planner.swing import boxes, quintics
+from surefoot.planner.swing.leg_reach import LegReach
 from surefoot.planner.types import Array
-
-if TYPE_CHECKING:
-    from surefoot.planner.recovery.step_problem import StepProblem
-    from surefoot.planner.swing.leg_reach import LegReach
 
 PEAK, BRAKING, GAINING = quintics.PEAK, quintics.BRAKING, quintics.GAINING
 
@@ -25,38 +22,6 @@ SHARES = 9
 """Shares of a swing's time at which its way is looked at, as close as a bent way needs [-]."""
 
 
-def landing_boxes(
-    low: Array,
-    high: Array,
-    extents: tuple[float, float, float, float],
-    across: float,
-    side: float,
-    face: Array,
-    count: int,
-) -> None:
-    """Write the boxes in one of which a foot may land; one that is empty has its corners crossed.
-
-    The first is beside the stance foot, those after it are beyond, ahead and behind.
-
-    Args:
-        low: lower corners, shape (boxes, 2) [m].
-        high: upper corners, shape (boxes, 2) [m].
-        extents: greatest stride, distance of the hips, least distance beside and ahead of the stance foot [m].
-        across: how far beyond its stance foot a foot may land [m].
-        side: +1 for a left foot, -1 for a right one.
-        face: lower and upper corner of where its sole stays on the ground that was chosen, shape (2, 2) [m].
-        count: of boxes, 1 or 3.
-    """
-    most, hip_width, beside, clear = extents
-    far = side * (most + hip_width)
-    for box in range(count):
-        near = side * (-across if box > 0 else beside)
-        low[box, 0] = max(clear if box == 1 else -most, face[0, 0])
-        high[box, 0] = min(-clear if box == 2 else most, face[1, 0])
-        low[box, 1] = max(min(near, far), face[0, 1])
-        high[box, 1] = min(max(near, far), face[1, 1])
-
-
 class StepReach:
     """Legs and the step that lands next, in numbers.
 
@@ -64,7 +29,7 @@ class StepReach:
         legs: what they can do.
     """
 
-    def __init__(self, legs: "LegReach") -> None:
+    def __init__(self, legs: LegReach) -> None:
         self._legs, self._crosses = legs, legs.across is not None
         self.radius, self.hip_width, self.stride = legs.radius, legs.hip_width, legs.stride
         self._across = 0.0 if legs.across is None else legs.across
@@ -74,7 +39,7 @@ class StepReach:
         (self._rest, self._rest_bend), (self._moving, self._moving_bend), self._around = unit_ways()
         self._dearer = (SWING_SHARES * (1.0 - SWING_SHARES)) ** 5
 
-    def see(self, step: "StepProblem") -> None:
+    def see(self, step: StepProblem) -> None:
         """Look at a step, with legs turned as its foot will be."""
         legs = self._legs.turned(step.place.yaw)
         self.place, self.at, self.speed = step.nominal, step.swing[0], step.swing[1]
@@ -83,11 +48,11 @@ class StepReach:
         self.last, self.adapted = step.last, step.adapted
         self.boxes = BOXES if step.crosses and self._crosses else 1
         extents = self.stride, self.hip_width, self.near, self.clear
-        landing_boxes(self.low, self.high, extents, self._across, self.side, step.face, self.boxes)
+        boxes.landing_boxes(self.low, self.high, extents, self._across, self.side, step.face, self.boxes)
 
     def is_empty(self, box: int) -> bool:
         """Whether nothing is left of a box."""
-        return self.low[box, 0] > self.high[box, 0] or self.low[box, 1] > self.high[box, 1]
+        return bool(self.low[box, 0] > self.high[box, 0] or self.low[box, 1] > self.high[box, 1])
 
     def swing_time(self, single: float) -> float:
         """Time in which the foot swings of a single support, at whose end it has arrived [s]."""
@@ -109,7 +74,7 @@ class StepReach:
         hardest = max(self._acceleration[axis], abs(nominal))
         onward = sign * speed
         gained = (BRAKING if onward > 0.0 else GAINING) * onward
-        return sign * at + (hardest * time * time + gained * time) / PEAK
+        return float(sign * at + (hardest * time * time + gained * time) / PEAK)
 
     def shortfall(self, single: float, x: float, y: float) -> float:
         """Way that the foot lacks of a place (x, y) since it has to pass around the stance leg [m].

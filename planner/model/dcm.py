@@ -56,19 +56,16 @@ def viability_weights(stiffness: Array, omega: Array, sample_time: float) -> Arr
     Returns:
         Weights that sum to 1, shape (n,).
     """
-    decay = decays(stiffness, omega, sample_time)
-    share = 0.5 * (decay[:-1] - decay[1:])
-    weights = np.zeros_like(stiffness)
-    weights[:-1] = share
-    weights[1:] += share
-    weights[len(weights) - 1] += decay[len(weights) - 1]
+    weights = np.empty(len(stiffness))
+    weigh(decays(stiffness, omega, sample_time), weights)
     return weights
 
 
 def decays(stiffness: Array, omega: Array, sample_time: float) -> Array:
     """Factors e^{-∫λ/ω} from the first sample to each, shape (n,); their inverse is how much a DCM error has grown."""
-    rate = stiffness / omega
-    return np.asarray(np.exp(-0.5 * sample_time * np.concatenate(([0.0], np.cumsum(rate[1:] + rate[:-1])))))
+    decay = np.empty(len(stiffness))
+    fade(stiffness, omega, sample_time, decay)
+    return decay
 
 
 def fade(stiffness: Array, omega: Array, sample_time: float, decay: Array) -> None:

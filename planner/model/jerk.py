@@ -41,11 +41,6 @@ def jerk_model(sample_time: float) -> tuple[Array, Array]:
     )
 
 
-def advanced(x: float, v: float, a: float, jerk: float, t: float) -> tuple[float, float, float]:
-    """The same of one axis in plain numbers, which are fast: position, velocity and acceleration a time t later."""
-    return x + t * v + 0.5 * t * t * a + jerk * t**3 / 6.0, v + t * a + jerk * t**2 / 2.0, a + jerk * t
-
-
 def block_moves(starts: tuple[int, ...], horizon: int) -> Array:
     """Basis of piecewise constant jerk.
 

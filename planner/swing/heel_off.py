@@ -87,7 +87,7 @@ class FootRoll:
         span, (clock, rate, change) = self.end - self.start, self._clock(time)
         value, slope, bend = bump((clock - self.start) / span)
         speed = self.angle * slope / span
-        return self.angle * value, speed * rate, self.angle * bend / span**2 * rate**2 + speed * change
+        return self.angle * value, speed * rate, self.angle * bend / (span * span) * (rate * rate) + speed * change
 
     def hardest(self, begin: float, end: float) -> float:
         """Greatest acceleration with which it lifts the sole's centre between two instants [m/s^2]."""
@@ -118,8 +118,8 @@ def bump(s: float) -> tuple[float, float, float]:
     """64 s³ (1 - s)³ within 0 to 1, else zero, and its first and second derivative."""
     if not 0.0 < s < 1.0:
         return 0.0, 0.0, 0.0
-    w = s * (1.0 - s)
-    return 64.0 * w**3, 192.0 * w**2 * (1.0 - 2.0 * s), 384.0 * w * ((1.0 - 2.0 * s) ** 2 - w)
+    w, tilt = s * (1.0 - s), 1.0 - 2.0 * s
+    return 64.0 * w**3, 192.0 * (w * w) * tilt, 384.0 * w * (tilt * tilt - w)
 
 
 def stretched(ahead: float, radius: float, length: float = 1.0) -> float:

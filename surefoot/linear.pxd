@@ -23,7 +23,8 @@ cpdef void row_products(const double[:, :] A, const double[:, :] B, double[:, :]
 cpdef void downdate(double[:, :] P, const double[:, :] Y) noexcept nogil
 cpdef void inverse(const double[:, :] U, double[:, :] out) noexcept nogil
 cpdef void add_products(double[:, ::1] P, const double[:, ::1] A, const double[:, ::1] B) noexcept nogil
-cpdef void add_product(double[::1] q, const double[:, ::1] A, const double[::1] x) noexcept nogil
+cpdef void add_transposed_product(double scale, const double[:, :] A, const double[:] y, double[:] out) noexcept nogil
+cpdef void evaluate_polynomials(const double[:, ::1] C, double t, double[::1] out) noexcept nogil
 cpdef double fused_pair(double a, double x, double b, double y) noexcept nogil
 cpdef double fused_sum(double a, double x, double b, double y, double c, double z) noexcept nogil
 cpdef double nearest(double value) noexcept nogil

@@ -136,9 +136,21 @@ def add_products(P: Array, A: Array, B: Array) -> None:
     P[:n, :n] += np.triu(A.T @ B)
 
 
-def add_product(q: Array, A: Array, x: Array) -> None:
-    """Add A' x to the first n numbers of q, for A of shape (m, n) and x of shape (m,)."""
-    q[: A.shape[1]] += x @ A
+def add_transposed_product(scale: float, A: Array, y: Array, out: Array) -> None:
+    """Add scale A' y to `out`, row by row, for A of shape (m, n)."""
+    out += scale * (y @ A)
+
+
+def evaluate_polynomials(C: Array, t: float, out: Array) -> None:
+    """Write values of polynomials at t into the first n numbers of `out`.
+
+    Coefficients of 1, t, ... are the rows of C, shape (m, n), a polynomial a column.
+    """
+    values = out[: C.shape[1]]
+    values[:] = C[-1]
+    for row in C[-2::-1]:
+        values *= t
+        values += row
 
 
 def fused_pair(a: float, x: float, b: float, y: float) -> float:

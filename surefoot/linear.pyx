@@ -265,13 +265,24 @@ cpdef void add_products(double[:, ::1] P, const double[:, ::1] A, const double[:
                 P[i, j] += a * B[k, j]
 
 
-cpdef void add_product(double[::1] q, const double[:, ::1] A, const double[::1] x) noexcept nogil:
-    cdef Py_ssize_t k, i
-    cdef double a
-    for k in range(A.shape[0]):
-        a = x[k]
-        for i in range(A.shape[1]):
-            q[i] += a * A[k, i]
+cpdef void add_transposed_product(double scale, const double[:, :] A, const double[:] y, double[:] out) noexcept nogil:
+    cdef Py_ssize_t i, j
+    cdef double factor
+    cdef double *sums = &out[0]
+    cdef const double *row
+    for i in range(A.shape[0]):
+        factor, row = scale * y[i], &A[i, 0]
+        for j in range(A.shape[1]):
+            sums[j] += factor * row[j]
+
+
+cpdef void evaluate_polynomials(const double[:, ::1] C, double t, double[::1] out) noexcept nogil:
+    cdef Py_ssize_t k, i, last = C.shape[0] - 1
+    for i in range(C.shape[1]):
+        out[i] = C[last, i]
+    for k in range(last - 1, -1, -1):
+        for i in range(C.shape[1]):
+            out[i] = out[i] * t + C[k, i]
 
 
 cpdef double fused_pair(double a, double x, double b, double y) noexcept nogil:

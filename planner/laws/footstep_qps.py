@@ -176,7 +176,7 @@ class FootstepQps:
         for axis in range(2):
             for k in range(n + 1):
                 self._Ws[k] = (2.0 if k < n else 2.0 * self._terminal_weight) * self._s[axis, k]
-            linear.add_product(q[axis], self._S, self._Ws)
+            linear.add_transposed_product(1.0, self._S, self._Ws, q[axis, : m + SHIFTS])
             q[axis, m + 2], q[axis, m + 3] = self._zmp_price, self._end_price
 
     def _inequalities(self, G: Array, h: Array) -> None:

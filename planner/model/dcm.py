@@ -64,7 +64,7 @@ def viability_weights(stiffness: Array, omega: Array, sample_time: float) -> Arr
 def decays(stiffness: Array, omega: Array, sample_time: float) -> Array:
     """Factors e^{-∫λ/ω} from the first sample to each, shape (n,); their inverse is how much a DCM error has grown."""
     decay = np.empty(len(stiffness))
-    fade(stiffness, omega, sample_time, decay)
+    fade(np.asarray(stiffness, dtype=np.float64), np.asarray(omega, dtype=np.float64), sample_time, decay)
     return decay
 
 

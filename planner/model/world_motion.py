@@ -70,6 +70,7 @@ class WorldMotion:
         (stiffness, height, offset, point, gain), (R, origin) = ahead, frame
         com, world_jerk = np.empty((3, self._count, 3)), np.empty((self._count - 1, 2))
         zmp, world_offset, reference = np.empty((3, self._count, 2))
+        jerk, shifts = np.asarray(jerk, dtype=np.float64), np.asarray(shifts, dtype=np.float64)  # those of any law
         self._integrate(state, jerk)
         self._lift(height, R, origin, com)
         turn_rows(R, jerk, world_jerk)

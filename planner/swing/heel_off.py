@@ -5,13 +5,13 @@ A rear foot that stays flat is what a long step runs out of: with the heel up th
 front foot can carry it.
 """
 
-import math
 from typing import NamedTuple
 
 import numpy as np
 
-from surefoot.planner.geometry import frame_rotation, sole_rates, sole_rotation
+from surefoot.planner.geometry import frame_rotation
 from surefoot.planner.model.time_scaling import TimeScaling
+from surefoot.planner.orientation import roll_sole
 from surefoot.planner.types import Array, Foot, Footstep
 from surefoot.values import dataclass
 
@@ -104,14 +104,10 @@ class FootRoll:
         Returns:
             Position, shape (3,) [m], and velocity, shape (3,) [m/s], in the world frame.
         """
-        pitch, rate, _ = self.evaluate(time)
-        sine, cosine = math.sin(pitch), math.cos(pitch)
-        rotation = sole_rotation(*level[3:].tolist())
-        back = self.toe * rotation @ (1.0 - cosine, 0.0, sine)
-        turning, _ = sole_rates(level[3:], rates[3:], np.zeros(3))
-        rolling = self.toe * rate * rotation @ (sine, 0.0, cosine)
-        (a, b, c), (x, y, z) = turning.tolist(), back.tolist()
-        return level[:3] + back, rates[:3] + rolling + np.array((b * z - c * y, c * x - a * z, a * y - b * x))
+        (pitch, rate, _), centre, velocity = self.evaluate(time), np.empty(3), np.empty(3)
+        pose, moving = np.asarray(level, dtype=np.float64), np.asarray(rates, dtype=np.float64)
+        roll_sole(pose, moving, self.toe, pitch, rate, centre, velocity)
+        return centre, velocity
 
 
 def bump(s: float) -> tuple[float, float, float]:

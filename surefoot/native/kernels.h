@@ -489,41 +489,6 @@ typedef struct {
 
 void feet_sample(const Feet *feet);
 
-/* Counterpart of `planner.plan.PlanSampler`: a plan, its interval that was entered last, and two points within that. */
-typedef struct {
-    double begin;
-    double length;
-    int64_t last;
-    double touchdown;
-    int64_t entered;
-    int64_t landed;
-    double start;
-    int64_t swing_foot;
-    const double *ends;
-    const double *swing;
-    double *table;
-    double *points;
-} PlanInterval;
-
-void plan_interval_enter(const PlanInterval *interval);
-int64_t plan_interval_sample(const PlanInterval *interval, double now, double middle);
-
-/* Counterpart of `scenarios.run.reference.whole_body_reference`: where the feet stand, one will land and one rolls. */
-typedef struct {
-    const PlanInterval *interval;
-    const double *yaw;
-    const double *normal;
-    const double *landing_normal;
-    int64_t rolling_foot;
-    double roll_start;
-    double roll_end;
-    double roll_angle;
-    int64_t catching;
-    Reference *reference;
-} PlanReference;
-
-int64_t plan_reference_fill(const PlanReference *plan, double now, double middle);
-
 /* Counterpart of `scenarios.log.rows.RowWriter`; places and records are addresses, strides and lengths bytes. */
 typedef struct {
     const double *vectors;
@@ -659,16 +624,6 @@ typedef struct {
 } FeetSeen;
 
 void feet_see(const FeetSeen *feet, double toe);
-
-/* Counterpart of `planner.swing.heel_off.FootRoll.centre`: pose and rates of a level sole, and its centre rolled. */
-typedef struct {
-    const double *level;
-    const double *rates;
-    double *position;
-    double *velocity;
-} RollCentre;
-
-void roll_centre(const RollCentre *roll, double toe, double pitch, double rate);
 
 /* Counterpart of `wbc.solvers.Daqp`, after `equality_qp_solve`; of inequalities no more than `most` are active. */
 typedef struct {

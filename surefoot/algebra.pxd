@@ -13,7 +13,6 @@ cpdef vector3 scale(double factor, vector3 a) noexcept nogil
 cpdef vector3 squares(vector3 a) noexcept nogil
 cpdef vector3 cross(vector3 a, vector3 b) noexcept nogil
 cpdef double inner(vector3 a, vector3 b) noexcept nogil
-cpdef vector3 add(vector3 a, vector3 b) noexcept nogil
 cpdef vector3 vector(const double[:] values) noexcept nogil
 cpdef void put(double[:] out, vector3 a) noexcept nogil
 cpdef vector3 row(const double[:, :] A, Py_ssize_t i, Py_ssize_t first=*) noexcept nogil

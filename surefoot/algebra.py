@@ -63,11 +63,6 @@ def inner(a: Vector, b: Vector) -> float:
     return a[0] * b[0] + a[1] * b[1] + a[2] * b[2]
 
 
-def add(a: Vector, b: Vector) -> Vector:
-    """A + b."""
-    return a[0] + b[0], a[1] + b[1], a[2] + b[2]
-
-
 def vector(values: Array) -> Vector:
     """An array of three numbers as a vector."""
     return values[0], values[1], values[2]

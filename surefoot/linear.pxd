@@ -7,6 +7,7 @@ cpdef bint factor(double[:, :] A) noexcept nogil
 cpdef void forward_solve(const double[:, :] U, double[:, :] B) noexcept nogil
 cpdef void forward_solve_one(const double[:, :] U, double[:] b) noexcept nogil
 cpdef void backward_solve(const double[:, :] U, double[:] x) noexcept nogil
+cpdef void solve_tridiagonal(double[::1] lower, double[::1] diagonal, double[::1] upper, double[:, ::1] X) noexcept nogil
 cpdef void subtract_products(double[:, :] S, const double[:, :] Y) noexcept nogil
 cpdef void copy(const double[:, :] A, double[:, :] out) noexcept nogil
 cpdef void product(const double[:, :] A, const double[:, :] B, double[:, :] out) noexcept nogil
@@ -21,5 +22,9 @@ cpdef void differences(
 cpdef void row_products(const double[:, :] A, const double[:, :] B, double[:, :] out) noexcept nogil
 cpdef void downdate(double[:, :] P, const double[:, :] Y) noexcept nogil
 cpdef void inverse(const double[:, :] U, double[:, :] out) noexcept nogil
+cpdef void add_products(double[:, ::1] P, const double[:, ::1] A, const double[:, ::1] B) noexcept nogil
+cpdef void add_transposed_product(double scale, const double[:, :] A, const double[:] y, double[:] out) noexcept nogil
+cpdef void evaluate_polynomials(const double[:, ::1] C, double t, double[::1] out) noexcept nogil
+cpdef double fused_pair(double a, double x, double b, double y) noexcept nogil
 cpdef double fused_sum(double a, double x, double b, double y, double c, double z) noexcept nogil
 cpdef double nearest(double value) noexcept nogil

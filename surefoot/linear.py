@@ -65,6 +65,15 @@ def backward_solve(U: Array, x: Array) -> None:
     x[:] = blas.dtrsv(_whole(U), x)
 
 
+def solve_tridiagonal(lower: Array, diagonal: Array, upper: Array, X: Array) -> None:
+    """Solve a tridiagonal system in place, for right sides that are the columns of X, shape (n, k).
+
+    Row i is lower_i x_{i-1} + diagonal_i x_i + upper_i x_{i+1}, and its diagonal the largest of the row: there are no
+    pivots. The three bands, shape (n,) each, are of no use afterwards.
+    """
+    X[:] = lapack.dgtsv(lower[1:], diagonal, upper[:-1], X)[3]
+
+
 def subtract_products(S: Array, Y: Array) -> None:
     """S -= Y' Y in the upper triangle of S and right of it, shape (m, k), for Y of shape (n, k), k at least m."""
     S -= np.triu(Y[:, : len(S)].T @ Y)
@@ -119,6 +128,34 @@ def inverse(U: Array, out: Array) -> None:
     """A⁻¹ into `out`, shape (n, n), of a factor of `factor`."""
     half = blas.dtrsm(1.0, _whole(U), np.eye(len(U)), trans_a=1)
     np.matmul(half.T, half, out=out)
+
+
+def add_products(P: Array, A: Array, B: Array) -> None:
+    """Add A' B to the upper triangle of the first n rows and columns of P, for A and B of shape (m, n) each."""
+    n = A.shape[1]
+    P[:n, :n] += np.triu(A.T @ B)
+
+
+def add_transposed_product(scale: float, A: Array, y: Array, out: Array) -> None:
+    """Add scale A' y to `out`, row by row, for A of shape (m, n)."""
+    out += scale * (y @ A)
+
+
+def evaluate_polynomials(C: Array, t: float, out: Array) -> None:
+    """Write values of polynomials at t into the first n numbers of `out`.
+
+    Coefficients of 1, t, ... are the rows of C, shape (m, n), a polynomial a column.
+    """
+    values = out[: C.shape[1]]
+    values[:] = C[-1]
+    for row in C[-2::-1]:
+        values *= t
+        values += row
+
+
+def fused_pair(a: float, x: float, b: float, y: float) -> float:
+    """Sum a x + b y, rounded once a term, as numpy's library sums on processors that fuse."""
+    return float(np.array([a, b]) @ np.array([x, y]))
 
 
 def fused_sum(a: float, x: float, b: float, y: float, c: float, z: float) -> float:

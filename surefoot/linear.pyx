@@ -131,6 +131,19 @@ cpdef void backward_solve(const double[:, :] U, double[:] x) noexcept nogil:
         x[i] = (x[i] - _dot(row + i + 1, &x[0] + i + 1, size - i - 1)) * row[i]
 
 
+cpdef void solve_tridiagonal(double[::1] lower, double[::1] diagonal, double[::1] upper, double[:, ::1] X) noexcept nogil:
+    cdef Py_ssize_t n = X.shape[0], width = X.shape[1], i, c
+    cdef double pivot
+    for i in range(n):
+        pivot = 1.0 / (diagonal[i] - lower[i] * upper[i - 1] if i else diagonal[i])
+        upper[i] *= pivot
+        for c in range(width):
+            X[i, c] = (X[i, c] - lower[i] * X[i - 1, c] if i else X[i, c]) * pivot
+    for i in range(n - 2, -1, -1):
+        for c in range(width):
+            X[i, c] -= upper[i] * X[i + 1, c]
+
+
 cpdef void subtract_products(double[:, :] S, const double[:, :] Y) noexcept nogil:
     cdef Py_ssize_t e, width = S.shape[1]
     for e in range(S.shape[0]):
@@ -240,6 +253,40 @@ cpdef void inverse(const double[:, :] U, double[:, :] out) noexcept nogil:
     for r in range(n):
         for s in range(r + 1, n):
             out[s, r] = out[r, s]
+
+
+cpdef void add_products(double[:, ::1] P, const double[:, ::1] A, const double[:, ::1] B) noexcept nogil:
+    cdef Py_ssize_t k, i, j, n = A.shape[1]
+    cdef double a
+    for k in range(A.shape[0]):
+        for i in range(n):
+            a = A[k, i]
+            for j in range(i, n):
+                P[i, j] += a * B[k, j]
+
+
+cpdef void add_transposed_product(double scale, const double[:, :] A, const double[:] y, double[:] out) noexcept nogil:
+    cdef Py_ssize_t i, j
+    cdef double factor
+    cdef double *sums = &out[0]
+    cdef const double *row
+    for i in range(A.shape[0]):
+        factor, row = scale * y[i], &A[i, 0]
+        for j in range(A.shape[1]):
+            sums[j] += factor * row[j]
+
+
+cpdef void evaluate_polynomials(const double[:, ::1] C, double t, double[::1] out) noexcept nogil:
+    cdef Py_ssize_t k, i, last = C.shape[0] - 1
+    for i in range(C.shape[1]):
+        out[i] = C[last, i]
+    for k in range(last - 1, -1, -1):
+        for i in range(C.shape[1]):
+            out[i] = out[i] * t + C[k, i]
+
+
+cpdef double fused_pair(double a, double x, double b, double y) noexcept nogil:
+    return fma(b, y, a * x)
 
 
 cpdef double fused_sum(double a, double x, double b, double y, double c, double z) noexcept nogil:

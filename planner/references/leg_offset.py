@@ -20,8 +20,8 @@ Takanishi et al., 1988; Sato, Sakaino and Tsuji, ICRA 2010.)
 import numpy as np
 
 from surefoot.native.library import Library, library
-from surefoot.planner.model.dcm import NominalMotion, bind_motion, nominal_motion
 from surefoot.planner.model.leg_chain import LegChain, bind_chain
+from surefoot.planner.model.nominal import NominalMotion, bind_motion, nominal_motion
 from surefoot.planner.parameters import LegInertia
 from surefoot.planner.references.com_height import HeightPreview
 from surefoot.planner.references.nominal_feet import CompiledFeet, Feet, Moving, nominal_feet

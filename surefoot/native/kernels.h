@@ -489,41 +489,6 @@ typedef struct {
 
 void feet_sample(const Feet *feet);
 
-/* Counterpart of `planner.plan.PlanSampler`: a plan, its interval that was entered last, and two points within that. */
-typedef struct {
-    double begin;
-    double length;
-    int64_t last;
-    double touchdown;
-    int64_t entered;
-    int64_t landed;
-    double start;
-    int64_t swing_foot;
-    const double *ends;
-    const double *swing;
-    double *table;
-    double *points;
-} PlanInterval;
-
-void plan_interval_enter(const PlanInterval *interval);
-int64_t plan_interval_sample(const PlanInterval *interval, double now, double middle);
-
-/* Counterpart of `scenarios.run.reference.whole_body_reference`: where the feet stand, one will land and one rolls. */
-typedef struct {
-    const PlanInterval *interval;
-    const double *yaw;
-    const double *normal;
-    const double *landing_normal;
-    int64_t rolling_foot;
-    double roll_start;
-    double roll_end;
-    double roll_angle;
-    int64_t catching;
-    Reference *reference;
-} PlanReference;
-
-int64_t plan_reference_fill(const PlanReference *plan, double now, double middle);
-
 /* Counterpart of `scenarios.log.rows.RowWriter`; places and records are addresses, strides and lengths bytes. */
 typedef struct {
     const double *vectors;
@@ -660,16 +625,6 @@ typedef struct {
 
 void feet_see(const FeetSeen *feet, double toe);
 
-/* Counterpart of `planner.swing.heel_off.FootRoll.centre`: pose and rates of a level sole, and its centre rolled. */
-typedef struct {
-    const double *level;
-    const double *rates;
-    double *position;
-    double *velocity;
-} RollCentre;
-
-void roll_centre(const RollCentre *roll, double toe, double pitch, double rate);
-
 /* Counterpart of `wbc.solvers.Daqp`, after `equality_qp_solve`; of inequalities no more than `most` are active. */
 typedef struct {
     const EqualityQp *qp;
@@ -696,7 +651,7 @@ typedef struct {
 
 void support_rebuild(const Support *support, int64_t left, int64_t right, int64_t rolling);
 
-/* Counterpart of `planner.model.dcm.nominal_motion`; `upper` is scratch. */
+/* Counterpart of `planner.model.nominal.NominalMotion`, for `leg_offset_make`; `upper` is scratch. */
 typedef struct {
     double sample_time;
     const double *position;
@@ -915,78 +870,6 @@ typedef struct {
 
 int64_t bounded_qp_solve(const BoundedQp *qp, int64_t same);
 
-/*
- * Counterpart of `planner.laws.footstep_tvmpc.FootstepTvmpc.build` without a limit on the jerk's rate.
- *
- * `motion` has the ZMP of the reference, the stiffness and the place now. Responses to the moves are those of
- * `planner.model.jerk.Prediction`; `weights` is scratch of the length of the preview.
- */
-typedef struct {
-    const NominalMotion *motion;
-    int64_t horizon;
-    int64_t moves;
-    const int64_t *starts;
-    const double *response;
-    double jerk_limit;
-    double jerk_weight;
-    double step_weight;
-    double terminal_weight;
-    double terminal_margin;
-    double zmp_slack[2];
-    double terminal_slack[2];
-    const double *state;
-    const double *omega;
-    const double *gain;
-    const double *half_size;
-    const double *step_lower;
-    const double *step_upper;
-    double *weights;
-    double *P;
-    double *q;
-    double *G;
-    double *h;
-    double *lower;
-    double *upper;
-} FootstepQps;
-
-void footstep_qps_make(const FootstepQps *qps, int64_t samples);
-
-/* Counterpart of `planner.laws.footstep_tvmpc.FootstepTvmpc.plan`: QPs of both axes, which share what of them depends on
- * P and G alone, and what their solutions mean. */
-typedef struct {
-    const FootstepQps *qps;
-    const BoundedQp *x;
-    const BoundedQp *y;
-    double *jerk;
-    double *shifts;
-    double *slack;
-} FootstepMotion;
-
-int64_t footstep_motion_make(const FootstepMotion *motion, int64_t samples);
-
-/* Counterpart of `planner.model.jerk.WorldMotion`, whose names these are, over `samples` and the one now. */
-typedef struct {
-    double sample_time;
-    int64_t samples;
-    double *state;
-    const double *jerk;
-    const double *stiffness;
-    const double *height;
-    const double *offset;
-    const double *point;
-    const double *gain;
-    const double *shifts;
-    const double *rotation;
-    const double *origin;
-    double *com;
-    double *world_jerk;
-    double *zmp;
-    double *world_offset;
-    double *reference;
-} MotionInWorld;
-
-void motion_in_world(const MotionInWorld *motion);
-void state_in_frame(const MotionInWorld *motion, double x, double y, double v_x, double v_y, double a_x, double a_y);
 
 /* State of `wbc.estimation.invariant_filter.InvariantFilter`, as `Doubt` looks at it. */
 typedef struct {

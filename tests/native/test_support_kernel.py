@@ -4,7 +4,7 @@ import numpy as np
 import pytest
 
 from surefoot.native.library import VARIABLE
-from surefoot.planner.geometry import sole_rotation
+from surefoot.planner.orientation import sole_rotation
 from surefoot.planner.references.compiled import CompiledHulls
 from surefoot.planner.references.zmp_reference import Sole, hulls_of
 from surefoot.planner.types import Foot, Footstep

@@ -2,15 +2,15 @@ import numpy as np
 import pytest
 from scipy.spatial.transform import Rotation
 
-from surefoot.planner.geometry import sole_rotation
 from surefoot.planner.ground.terrain import flat
 from surefoot.planner.model.leg_chain import LegChain, Link
 from surefoot.planner.model.vectors import headings
+from surefoot.planner.orientation import sole_rotation
 from surefoot.planner.parameters import PlannerParameters
-from surefoot.planner.plan import PlanSampler
 from surefoot.planner.planner import WalkingPlanner
 from surefoot.planner.plants import IdealFeet
 from surefoot.planner.references.nominal_feet import nominal_feet
+from surefoot.planner.sampling import PlanSampler
 from surefoot.planner.steps.execution import Execution
 from surefoot.planner.steps.gait import GaitParameters
 from surefoot.planner.steps.schedule import Schedule

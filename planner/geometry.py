@@ -4,10 +4,10 @@ Angles of soles are those of `planner.orientation`.
 """
 
 import math
-from collections.abc import Sequence
 
 import numpy as np
 
+from surefoot.planner.model.quintic import between
 from surefoot.planner.orientation import sole_rotation as sole_rotation
 from surefoot.planner.types import Array, Footstep
 
@@ -170,19 +170,9 @@ def quintic(start: Array, end: Array, duration: float) -> Array:
     Returns:
         Coefficients of 1, t, ..., t^5, shape (6, k).
     """
-    if start.shape[1] == 1:
-        return np.array(one_quintic(start[:, 0].tolist(), end[:, 0].tolist(), duration))[:, None]
-    columns = zip(start.T.tolist(), end.T.tolist(), strict=True)
-    return np.array([*zip(*(one_quintic(*ends, duration) for ends in columns), strict=True)])
-
-
-def one_quintic(start: Sequence[float], end: Sequence[float], t: float) -> tuple[float, ...]:
-    """The coefficients of a single quintic as `quintic` tells them, in plain numbers, which are fast."""
-    (x, v, a), (y, w, b) = start, end
-    gap = y - x - t * v - 0.5 * t * t * a
-    speed, bend = t * (w - v - t * a), t * t * (b - a)
-    third, fourth = (10.0 * gap - 4.0 * speed + 0.5 * bend) / t**3, (-15.0 * gap + 7.0 * speed - bend) / t**4
-    return x, v, 0.5 * a, third, fourth, (6.0 * gap - 3.0 * speed + 0.5 * bend) / t**5
+    ends = zip(start.T.tolist(), end.T.tolist(), strict=True)
+    ways = (between(tuple(one), tuple(other), duration) for one, other in ends)
+    return np.array([*zip(*ways, strict=True)])
 
 
 greatest = np.maximum.reduce

@@ -24,17 +24,21 @@ def natural_frequency(stiffness: Array, sample_time: float) -> Array:
     Returns:
         ω, shape (n,) [1/s].
     """
-    mean = 0.5 * (stiffness[1:] + stiffness[:-1])
-    root = np.sqrt(mean)
-    stretched = np.tanh(root * sample_time) / root
-    pull = (mean * stretched).tolist()
-    w = math.sqrt(stiffness.item(-1))
-    values = [w]
-    for t, b in zip(stretched[::-1].tolist(), reversed(pull), strict=True):
-        w = (w + b) / (1.0 + w * t)
-        values.append(w)
-    values.reverse()
-    return np.array(values)
+    omega = np.empty(len(stiffness))
+    integrate_riccati(stiffness, sample_time, omega)
+    return omega
+
+
+def integrate_riccati(stiffness: Array, sample_time: float, omega: Array) -> None:
+    """Write ω into an array, shape (n,); see `natural_frequency`."""
+    last = stiffness.shape[0] - 1
+    w = omega[last] = math.sqrt(stiffness[last])
+    for k in range(last - 1, -1, -1):
+        mean = 0.5 * (stiffness[k + 1] + stiffness[k])
+        root = math.sqrt(mean)
+        stretched = math.tanh(root * sample_time) / root
+        w = (w + mean * stretched) / (1.0 + w * stretched)
+        omega[k] = w
 
 
 def dcm(position: Array, velocity: Array, omega: Array | float) -> Array:

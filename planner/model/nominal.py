@@ -5,12 +5,9 @@ nor a leg that swings in a third of a second; planned with them alone, fast step
 So the optimiser plans only what differs from this motion.
 """
 
-from typing import Any
-
 import numpy as np
 
 from surefoot import linear
-from surefoot.native.library import Bound, Library
 from surefoot.planner.types import Array
 
 
@@ -87,11 +84,3 @@ def nominal_motion(position: Array, zmp: Array, stiffness: Array, sample_time: f
     motion = NominalMotion(sample_time, len(zmp))
     motion.follow(position, zmp, stiffness)
     return motion
-
-
-def bind_motion(kernels: Library, sample_time: float, count: int, **given: Array) -> tuple[Bound, dict[str, Array]]:
-    """The struct of the C form for up to so many samples, and its arrays, as far as they are not given."""
-    shapes: dict[str, tuple[int, ...]] = dict.fromkeys(("zmp", "com", "velocity", "acceleration", "jerk"), (count, 2))
-    shapes |= {"position": (2,), "stiffness": (count,), "upper": (count,)}
-    arrays: dict[str, Any] = {name: np.empty(shape) for name, shape in shapes.items()} | given
-    return kernels.fill("NominalMotion", sample_time=sample_time, **arrays), arrays

@@ -1,11 +1,12 @@
 """What a quintic between two states asks for: its acceleration, its way, and a way round."""
 
 import math
-from collections.abc import Sequence
 
 import numpy as np
 
-from surefoot.planner.geometry import one_quintic, quintic
+from surefoot.algebra import Vector
+from surefoot.planner.geometry import quintic
+from surefoot.planner.model.quintic import between
 from surefoot.planner.types import Array
 
 PEAK = 5.77
@@ -65,7 +66,7 @@ def to_rest(state: Array, target: Array, duration: float) -> Array:
 
 
 def up_and_down(
-    state: Sequence[float],
+    state: Vector,
     apex: float,
     end: tuple[float, float],
     times: tuple[float, float, float],
@@ -92,7 +93,7 @@ def up_and_down(
     up, down, rest = highest - now, touchdown - highest, (low, -sinking, 0.0)
     room = lifting * down**2 / PEAK
     if up <= soon or height - low > room:
-        return None, np.array(one_quintic(state, rest, touchdown - now))[:, None]
+        return None, np.array(between(state, rest, touchdown - now))[:, None]
     apex = min(apex, low + room, height + farthest(lifting, speed, up))
     top = apex, 0.0, -4.0 * min((apex - height) / up**2, (apex - low) / down**2)
-    return np.array(one_quintic(state, top, up))[:, None], np.array(one_quintic(top, rest, down))[:, None]
+    return np.array(between(state, top, up))[:, None], np.array(between(top, rest, down))[:, None]

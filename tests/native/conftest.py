@@ -1,4 +1,4 @@
-"""Real walks whose controller or planner has a twin: one walks, the other is given the same, and both are compared."""
+"""Real walks whose controller has a twin: one walks, the other is given the same, and both are compared."""
 
 from collections.abc import Callable
 from typing import Any
@@ -23,9 +23,6 @@ _TERMS = (
 )  # fmt: skip
 _QP = ("H", "g", "A", "bounds_lower", "bounds_upper")
 _ANSWERS = ("torque", "acceleration", "wrench", "task_error")
-_PLAN = ("zmp_offset", "zmp_reference", "stiffness", "omega", "load_left")
-_PLANNED = ("com", "com_velocity", "com_acceleration", "zmp")
-_PLAN_QP = ("P", "q", "G", "h", "lower", "upper")
 
 
 def far(one: Any, other: Any) -> float:
@@ -99,36 +96,6 @@ class Twins:
         self.seen[name] = self.seen.get(name, 0) + there
 
 
-class PlannerTwins:
-    """A planner that drives with its kernels, and a plain one that is told the same.
-
-    Attributes:
-        unlike: quantities that differ by more than they may, and by how much.
-    """
-
-    def __init__(self, compiled: Any, plain: Any) -> None:
-        self._twins, self._update = (compiled, plain), compiled.update
-        self.unlike: dict[str, float] = {}
-        compiled.update = self.update
-
-    def update(self, *measured: Any) -> Any:
-        compiled, plain = self._twins
-        plan, other = self._update(*measured), plain.update(*measured)
-        self._hold(_PLAN, NEAR, other, plan)
-        self._hold(_PLANNED, NEARLY, other, plan)
-        self._hold(("jerk", "shifts"), NEARLY, plain.motion, compiled.motion)
-        for one, another in zip(plain.motion.qps, compiled.motion.qps, strict=True):
-            self._hold(_PLAN_QP, NEAR, one, another)
-        assert (plan.phase.kind, plan.status.solver) == (other.phase.kind, other.status.solver)
-        return plan
-
-    def _hold(self, names: tuple[str, ...], most: float, one: Any, other: Any) -> None:
-        for name in names:
-            found = far(getattr(one, name), getattr(other, name))
-            if not found <= most:
-                self.unlike[name] = max(self.unlike.get(name, 0.0), found)
-
-
 @pytest.fixture(scope="session")
 def kernels() -> Library:
     """The compiled kernels."""
@@ -153,23 +120,5 @@ def twins(kernels: Library, monkeypatch: pytest.MonkeyPatch) -> Callable[..., Tw
             while simulation.time < seconds:
                 simulation.advance()
         return made[0]
-
-    return walk
-
-
-@pytest.fixture
-def planner_twins(kernels: Library, monkeypatch: pytest.MonkeyPatch) -> Callable[..., PlannerTwins]:
-    """Walk a scenario for a while with planner twins."""
-
-    def walk(name: str, seconds: float, **overrides: Any) -> PlannerTwins:
-        scenario = surefoot.load(name, overrides)
-        monkeypatch.setenv(VARIABLE, "0")
-        with surefoot.Simulation(scenario) as plain:
-            monkeypatch.delenv(VARIABLE)
-            with surefoot.Simulation(scenario) as simulation:
-                twins = PlannerTwins(simulation.planner, plain.planner)
-                while simulation.time < seconds and not simulation.done:
-                    simulation.advance()
-        return twins
 
     return walk

@@ -12,6 +12,7 @@ from surefoot.planner.model.leg_chain import LegChain, Link
 from surefoot.planner.model.time_scaling import TimeScaling
 from surefoot.planner.parameters import LegInertia, PlannerParameters, RecoveryParameters
 from surefoot.planner.planner import WalkingPlanner
+from surefoot.planner.references import window
 from surefoot.planner.references.leg_offset import LegOffset
 from surefoot.planner.references.window import OffsetTable
 from surefoot.planner.references.zmp_reference import SupportKey
@@ -87,12 +88,17 @@ def test_an_offset_that_serves_is_about_what_it_would_be_anew(stand, monkeypatch
         parameters = PlannerParameters(leg=LEG, recovery=RecoveryParameters(**numbers))
         return Recorded(WalkingPlanner(gait, stand(), 0.22, 0.11, parameters=parameters, legs=legs))
 
-    def counted(offset, moving, *given):
-        made.append(moving[-1] is not None)
-        return anew_made(offset, moving, *given)
+    class Counted:
+        """An offset of which it is counted how often it is made."""
 
-    anew_made = LegOffset.made
-    monkeypatch.setattr(LegOffset, "made", counted)
+        def __init__(self, *given):
+            self.offset = LegOffset(*given)
+
+        def made(self, moving, *given):
+            made.append(moving[-1] is not None)
+            return self.offset.made(moving, *given)
+
+    monkeypatch.setattr(window, "LegOffset", Counted)
     usual, push = planner(), Push(gait.lift_off(2) + 0.06, 0.1, np.array([250.0, 0.0, 0.0]))
     end, com = gait.lift_off(2) + 0.48, np.array([0.0, 0.0, 0.95])
     plans = walk_pendulum(usual, stand(), end, com=com, pushes=(push,)).plans

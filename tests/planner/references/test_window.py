@@ -135,3 +135,19 @@ def test_plans_depend_on_values_and_not_on_objects(stand, copied):
     same = np.array_equal(plans[0].zmp_offset, plans[1].zmp_offset)
     assert same is copied
     assert np.abs(plans[0].zmp_offset).max() > 1e-3
+
+
+def test_a_window_stays_as_it_was_when_the_next_one_is_looked_at(stand):
+    planner = WalkingPlanner(GaitParameters(steps=3), stand(), 0.2, 0.1, parameters=PlannerParameters(leg=LEG))
+    execution, preview = planner._execution, planner._preview
+    windows, kept = [], []
+    for tick in range(2):
+        execution.clock = replace(execution.clock, now=60.0 + tick, ticks=tick)
+        support = preview.support(execution)
+        windows.append(preview.window(execution, support, np.zeros(2), 0.02 * tick))
+        names = ("offset", "stiffness", "omega", "load_left", "contacts")
+        kept.append({name: getattr(windows[0], name).copy() for name in names})
+        kept[tick]["height"], kept[tick]["point"] = windows[0].height.height.copy(), windows[0].driving.point.copy()
+    assert not np.array_equal(windows[0].height.height, windows[1].height.height)
+    for name, value in kept[0].items():
+        np.testing.assert_array_equal(kept[1][name], value)

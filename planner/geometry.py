@@ -7,8 +7,8 @@ import math
 
 import numpy as np
 
-from surefoot.planner.model.quintic import between
 from surefoot.planner.orientation import sole_rotation as sole_rotation
+from surefoot.planner.quintic import between
 from surefoot.planner.types import Array, Footstep
 
 

@@ -10,9 +10,8 @@ from itertools import product
 import numpy as np
 
 from surefoot import algebra
-from surefoot.planner import geometry
-from surefoot.planner.model import quintic
-from surefoot.planner.model.quintic import Quintic
+from surefoot.planner import geometry, quintic
+from surefoot.planner.quintic import Quintic
 from surefoot.planner.types import Array
 from surefoot.values import dataclass, maker
 

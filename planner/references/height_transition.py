@@ -6,7 +6,7 @@ import numpy as np
 
 from surefoot import algebra
 from surefoot.algebra import Vector
-from surefoot.planner.model import quintic
+from surefoot.planner import quintic
 from surefoot.planner.model.time_scaling import CLOCK_ROUNDING
 from surefoot.planner.types import Array
 from surefoot.values import dataclass

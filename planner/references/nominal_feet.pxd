@@ -1,8 +1,8 @@
 cimport cython
 cimport libc.math as math
 from surefoot cimport algebra
-from surefoot.planner.model cimport quintic
-from surefoot.planner.model.quintic cimport quintic6
+from surefoot.planner cimport quintic
+from surefoot.planner.quintic cimport quintic6
 
 @cython.final
 cdef class UnitSwing:

@@ -6,7 +6,7 @@ from functools import lru_cache
 import numpy as np
 
 from surefoot import algebra
-from surefoot.planner.model import quintic
+from surefoot.planner import quintic
 from surefoot.planner.model.time_scaling import CLOCK_ROUNDING
 from surefoot.planner.steps.phases import Phase, PhaseSamples
 from surefoot.planner.steps.schedule import Schedule

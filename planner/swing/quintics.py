@@ -6,7 +6,7 @@ import numpy as np
 
 from surefoot.algebra import Vector
 from surefoot.planner.geometry import quintic
-from surefoot.planner.model.quintic import between
+from surefoot.planner.quintic import between
 from surefoot.planner.types import Array
 
 PEAK = 5.77

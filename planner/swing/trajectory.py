@@ -7,8 +7,8 @@ from functools import lru_cache
 import numpy as np
 
 from surefoot.planner.geometry import shifted
-from surefoot.planner.model.quintic import between
 from surefoot.planner.parameters import GroundSearch, PlannerParameters
+from surefoot.planner.quintic import between
 from surefoot.planner.swing.quintics import detour, straight_time, to_rest, up_and_down
 from surefoot.planner.types import Array, Foot
 from surefoot.values import dataclass, maker

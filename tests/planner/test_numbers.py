@@ -151,7 +151,7 @@ IN_BODIES = {
     "model.jerk": {6.0},
     "model.leg_chain": {1e-6, 12.0},
     "model.nominal": {4.0, 6.0},
-    "model.quintic": {3.0, 4.0, 5.0, 6.0, 7.0, 10.0, 12.0, 15.0, 20.0},
+    "quintic": {3.0, 4.0, 5.0, 6.0, 7.0, 10.0, 12.0, 15.0, 20.0},
     "model.time_scaling": {6.0},
     "model.world_motion": {6.0},
     "recovery.capturability": {0.25},

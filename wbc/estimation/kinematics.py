@@ -81,8 +81,7 @@ class SensedBody:
         self._supporting = supporting(model, (*(model.frames[sole].parentJoint for sole in self._soles), parent))
         self.leaning, self._beside = leaning, np.zeros((2, 3))
         self.mass = float(sum(inertia.mass for inertia in model.inertias))
-        # Which of its edges a leaning sole is on, only Python knows.
-        kernels = library() if leaning is None else None
+        kernels = library()
         self.compiled = self._bound(kernels) if kernels else None
         if kernels and self.compiled:
             self._place = kernels.bind("sensed_body_update", self.compiled)
@@ -138,7 +137,14 @@ class SensedBody:
         pin.forwardKinematics(self.model, self._data, self._q)
         if self.compiled is not None:
             self._place()
-            return
+        else:
+            self._place_soles()
+        if self.leaning is not None:
+            for k in (0, 1):
+                self._beside[k] = line_centre(k, np.zeros(3), attitude @ self.rotation[k], self.leaning) @ attitude
+                self.position[k] += self._beside[k]
+
+    def _place_soles(self) -> None:
         imu = self._mounted(self._mounting)
         if self._behind:
             imu = self._data.oMi[self._parent] * imu
@@ -146,9 +152,6 @@ class SensedBody:
         for k, frame in enumerate(self._soles):
             placed = imu.actInv(pin.updateFramePlacement(self.model, self._data, frame))
             self.position[k], self.rotation[k] = placed.translation, placed.rotation
-            if self.leaning is not None:
-                self._beside[k] = line_centre(k, np.zeros(3), attitude @ placed.rotation, self.leaning) @ attitude
-                self.position[k] += self._beside[k]
 
     def _mounted(self, turn: Array) -> pin.SE3:
         """The IMU in what carries it, turned by that about its own axes, shape (3,) [rad]."""

@@ -69,6 +69,14 @@ cpdef double row_dot(const double[:, :] A, Py_ssize_t i, const double[:] x) noex
     return _dot(&A[i, 0], &x[0], A.shape[1])
 
 
+cpdef void add_scaled(double[:] y, double a, const double[:] x) noexcept nogil:
+    cdef double *out = &y[0]
+    cdef const double *added = &x[0]
+    cdef Py_ssize_t i
+    for i in range(y.shape[0]):
+        out[i] += a * added[i]
+
+
 cpdef void multiply(const double[:, :] A, const double[:] x, double[:] out) noexcept nogil:
     cdef Py_ssize_t i
     for i in range(A.shape[0]):
@@ -129,6 +137,34 @@ cpdef void backward_solve(const double[:, :] U, double[:] x) noexcept nogil:
     for i in range(size - 1, -1, -1):
         row = &U[0, 0] + stride * i
         x[i] = (x[i] - _dot(row + i + 1, &x[0] + i + 1, size - i - 1)) * row[i]
+
+
+cpdef void add_gram(double[:, :] S, const double[:, :] Y) noexcept nogil:
+    cdef Py_ssize_t e, r, j, width = S.shape[1]
+    cdef double *out
+    cdef const double *row
+    cdef double factor
+    for r in range(Y.shape[0]):
+        row = &Y[r, 0]
+        for e in range(S.shape[0]):
+            out = &S[e, 0]
+            factor = row[e]
+            for j in range(e, width):
+                out[j] += factor * row[j]
+
+
+cpdef void upper_product(const double[:, :] A, const double[:, :] B, double[:, :] out) noexcept nogil:
+    cdef Py_ssize_t i, j
+    for i in range(A.shape[0]):
+        for j in range(i, A.shape[0]):
+            out[i, j] = _dot(&A[i, 0], &B[j, 0], A.shape[1])
+
+
+cpdef void mirror(double[:, :] A) noexcept nogil:
+    cdef Py_ssize_t i, j
+    for i in range(A.shape[0]):
+        for j in range(i):
+            A[i, j] = A[j, i]
 
 
 cpdef void subtract_products(double[:, :] S, const double[:, :] Y) noexcept nogil:

@@ -10,9 +10,10 @@ from surefoot.wbc.estimation.base import FARTHEST, FASTEST, FloatingBase
 from surefoot.wbc.estimation.contact import SoleContact, sprung
 from surefoot.wbc.estimation.doubt import Doubt
 from surefoot.wbc.estimation.estimate import Deviation, Estimate, Planned
+from surefoot.wbc.estimation.footing import Footing, ImuMount
 from surefoot.wbc.estimation.invariant_filter import InvariantFilter
 from surefoot.wbc.estimation.joints import KEPT, JointObserver
-from surefoot.wbc.estimation.kinematics import Footing, ImuMount, SensedBody
+from surefoot.wbc.estimation.kinematics import SensedBody
 from surefoot.wbc.estimation.parameters import EstimatorParameters
 from surefoot.wbc.estimation.rates import RateFilter
 from surefoot.wbc.estimation.stand import AXES, Stand
@@ -61,7 +62,7 @@ class SensedState:
         self._still, self._lost = [True, True], False
         self._state: RobotState | None = None
         self._deviation: Deviation | None = None
-        self._doubt = Doubt(self._body, sensors, self._joints.rate_noise)
+        self._doubt: Doubt
         self._rate: RateFilter
         self._above = np.zeros(2)
         self._load = np.zeros((2, 6))
@@ -88,7 +89,9 @@ class SensedState:
         self._tick = round((readings.time - self._from) / self._period)
         q, qd = self._joints.update(readings)
         if self._filter is None:
-            self._filter = self._start(readings.joint_position.values)
+            self._filter = filter_ = self._start(readings.joint_position.values)
+            noise, sensors = self._joints.rate_noise, parameters.sensors
+            self._doubt = Doubt(self._body, sensors, noise, filter_.stand, filter_.P)
             gyro = readings.angular_velocity.values
             self._rate = RateFilter(gyro, self._period, parameters.sensors.gyro_density, parameters.ground.turning_plan)
             self._contact = self._feeling(readings)
@@ -98,7 +101,8 @@ class SensedState:
             # First readings that are not finite make a state that is not, which the controller tells.
             nowhere = RobotState(np.full(7 + len(q), np.nan), np.full(6 + len(q), np.nan))
             self._state = self._now(q, qd) or nowhere
-            self._deviation = self._unsure(self._body.offset_jacobians())
+            self._body.offset_jacobians()
+            self._deviation = self._unsure()
         elif not self._lost:
             with np.errstate(all="ignore"):
                 self._step(readings)
@@ -216,7 +220,7 @@ class SensedState:
                 filter_.weigh(J)
                 filter_.correct(body.position, body.rotation)
         if due:
-            self._deviation = self._unsure(J)
+            self._deviation = self._unsure()
             self._above = self._over_ground()
 
     def _sprung(self) -> Array | None:
@@ -240,8 +244,8 @@ class SensedState:
             gained = gained + told[back][3:]
         return self._body.turned_to_imu(self._period * gained)
 
-    def _unsure(self, J: Array) -> Deviation:
-        return self._doubt.deviation(self.filter, self._contact, self._rate.deviation, J)
+    def _unsure(self) -> Deviation:
+        return self._doubt.deviation(self._contact, self._rate.deviation)
 
     def _change(self, J: Array) -> None:
         filter_, firm = self.filter, self._contact.firm

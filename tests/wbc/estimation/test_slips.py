@@ -6,8 +6,8 @@ import pytest
 from surefoot.native.library import VARIABLE
 from surefoot.readings import Reading, Readings
 from surefoot.wbc.estimation.estimator import SensedState
+from surefoot.wbc.estimation.footing import Footing, ImuMount
 from surefoot.wbc.estimation.invariant_filter import InvariantFilter
-from surefoot.wbc.estimation.kinematics import Footing, ImuMount
 from surefoot.wbc.estimation.parameters import EstimatorParameters, GroundNoise, SensorNoise
 from surefoot.wbc.estimation.stand import Stand
 from surefoot.wbc.types import GRAVITY

@@ -16,7 +16,7 @@ cdef class Sole:
 cdef class SensedBody:
     cdef readonly object model, chain, position, rotation, jacobian, leaning
     cdef readonly double mass
-    cdef object _data, _placement, _to_imu, _q, _v
+    cdef object _data, _placement, _q, _v
     cdef Sole _left, _right
     cdef Py_ssize_t _parent
     cdef bint _behind
@@ -45,6 +45,7 @@ cdef class SensedBody:
     cpdef vector3 in_base(self, Py_ssize_t k) noexcept
     cpdef vector3 moved_by(self, Py_ssize_t joint, vector3 at) noexcept
     cdef vector3 _axis(self, Py_ssize_t joint) noexcept
+    cpdef vector3 turned_to_imu(self, vector3 turn) noexcept
     cpdef place_com(self)
     cpdef vector3 com_from(self, vector3 at) noexcept
     cpdef vector3 com_by(self, Py_ssize_t joint) noexcept

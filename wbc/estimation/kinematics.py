@@ -89,8 +89,6 @@ class SensedBody:
             frame = model.frames[model.getFrameId(mount.body)]
             placed, parent = frame.placement * placed, frame.parentJoint
         self._placement, self._parent, self._behind = placed, parent, parent != 1
-        turned = not np.allclose(placed.rotation, np.eye(3), rtol=0.0, atol=1e-12)
-        self._to_imu = np.ascontiguousarray(placed.rotation.T) if turned else None
         joint = self._data.oMi[parent]
         self._joint_rotation, self._joint_position = joint.rotation, joint.translation
         self._mount_rotation = np.ascontiguousarray(placed.rotation)
@@ -235,11 +233,9 @@ class SensedBody:
         A = pin.computeCentroidalMap(self.model, self._data, self._q)[3:5]
         return float(np.linalg.norm(A[:, 3:6], axis=1).max()), float(np.linalg.norm(A[:, 6:], axis=1).max())
 
-    def turned_to_imu(self, turn: Array) -> Array | None:
-        """A turn of the base in the axes of the IMU, shape (3,); None where joints are between them [rad/s]."""
-        if self._behind:
-            return None
-        return turn if self._to_imu is None else np.asarray(self._to_imu @ turn)
+    def turned_to_imu(self, turn: Vector) -> Vector:
+        """A turn of the base in the axes of an IMU that no joint parts from it [rad/s]."""
+        return algebra.rotate_back(self._mount_rotation, turn)
 
     def base(
         self, R: Array, p: Array, v: Array, rate: Array, q: Array, qd: Array, mounting: Array

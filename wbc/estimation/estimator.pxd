@@ -11,7 +11,8 @@ from surefoot.wbc.estimation.rates cimport RateFilter
 from surefoot.wbc.estimation.stand cimport Stand
 
 cdef class SensedState:
-    cdef object _parameters, _footing, _model, _sole_names, _torques, _encoders, _load, _state, _deviation
+    cdef readonly object parameters
+    cdef object _footing, _model, _sole_names, _torques, _encoders, _load, _state, _deviation
     cdef double _period, _weight, _from
     cdef Py_ssize_t _count, _every, _tick, _imu_at, _torques_at, _told_count
     cdef bint _begun, _lost
@@ -31,6 +32,8 @@ cdef class SensedState:
     cdef void _remember(self, const double[:] acceleration)
     @cython.locals(contact=SoleContact)
     cpdef sense(self, readings)
+    @cython.locals(at=Py_ssize_t, time=double, v=vector3)
+    cdef _measured(self, readings)
     @cython.locals(filter_=InvariantFilter, contact=SoleContact, body=SensedBody, changed=cython.bint, due=cython.bint)
     cdef _step(self, readings)
     @cython.locals(at=Py_ssize_t, gained=double[::1])

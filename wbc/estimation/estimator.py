@@ -6,7 +6,7 @@ import pinocchio as pin
 from surefoot import algebra
 from surefoot.algebra import Vector
 from surefoot.readings import Reading, Readings
-from surefoot.wbc.estimation.base import FARTHEST, FASTEST, FloatingBase
+from surefoot.wbc.estimation.base import FloatingBase
 from surefoot.wbc.estimation.contact import SoleContact, sprung
 from surefoot.wbc.estimation.doubt import Doubt
 from surefoot.wbc.estimation.estimate import Estimate, Planned
@@ -34,6 +34,9 @@ class SensedState:
         footing: how it stands, on level soles, at the first tick.
         period: control period [s].
         parameters: noise and thresholds.
+
+    Attributes:
+        parameters: as given.
     """
 
     def __init__(
@@ -45,7 +48,7 @@ class SensedState:
         period: float,
         parameters: EstimatorParameters,
     ) -> None:
-        self._parameters, self._footing, self._period = parameters, footing, period
+        self.parameters, self._footing, self._period = parameters, footing, period
         self._model, self._sole_names, self._count = model, soles, model.nv - 6
         sensors = parameters.sensors
         self._body = SensedBody(model, soles, mount, footing.leaning)
@@ -112,18 +115,17 @@ class SensedState:
 
     def _begin(self, readings: Readings) -> None:
         """Make of the first readings what cannot be made before."""
-        parameters, body = self._parameters, self._body
+        parameters, body = self.parameters, self._body
         self._filter = filter_ = self._start(readings.joint_position.values)
         self._stand = state = filter_.stand
         self._doubt = Doubt(body, parameters.sensors, self._joints.rate_noise, state, filter_.P)
         gyro, density = readings.angular_velocity.values, parameters.sensors.gyro_density
         self._rate = RateFilter(gyro, self._period, density, parameters.ground.turning_plan)
+        self._base = FloatingBase(state, body, self._rate.rate)
         self._contact = self._feeling(readings)
         self._begun = True
         self._contact.update(self._wrench(readings), self._still, self._above)
         self._load = self._contact.wrench
-        # Of an IMU that no joint moves against the base.
-        self._base = FloatingBase(state, body.mount, body.chain, self._rate.rate, self._count) if body.mount else None
         body.offset_jacobians()
         self._deviation = self._doubt.deviation(self._contact, self._rate.deviation)
 
@@ -134,7 +136,7 @@ class SensedState:
         m = len(body.chain) + AXES
         columns = np.vstack((np.zeros(3), p, footing.position))
         state = Stand(R, columns, np.zeros((2, 3, 3)), np.zeros(3), np.zeros(3), np.zeros(m))
-        parameters, leaning = self._parameters, footing.leaning is not None
+        parameters, leaning = self.parameters, footing.leaning is not None
         filter_ = InvariantFilter(state, parameters.sensors, parameters.ground, leaning)
         J = body.offset_jacobians()
         filter_.begin(body.position, body.rotation, J, normals, ATTITUDE)
@@ -144,7 +146,7 @@ class SensedState:
 
     def _feeling(self, readings: Readings) -> SoleContact:
         """Contact by sensors in the feet, or by the torques of the joints."""
-        parameters, deviation = self._parameters, None
+        parameters, deviation = self.parameters, None
         if readings.wrench is None:
             at_ends = readings.joint_velocity is not None
             self._torques = TorqueWrench(self._model, self._sole_names, self._period, parameters.sensors, at_ends)
@@ -171,20 +173,17 @@ class SensedState:
 
         What observes the joints follows an impact later than the IMU does, which would be a force that is none.
         """
-        s, reading = self._stand, readings.joint_position
-        joints, at = self._body.known(reading.values, s.offsets), self._tick - round(reading.age / self._period)
-        rate, v = readings.angular_velocity.values - s.gyro_bias, s.v
-        if readings.joint_velocity is not None:
-            speed = readings.joint_velocity.values
+        reading, velocity = readings.joint_position, readings.joint_velocity
+        at = self._tick - round(reading.age / self._period)
+        v, speed = algebra.row(self._stand._columns, 0), np.zeros(self._count)
+        if velocity is not None:
+            speed = velocity.values
         elif at > self._torques_at:
             time = (at - self._torques_at) * self._period
             speed = (reading.values - self._encoders) / time
-            v = v - (0.5 * time) * self._filter.acceleration
-        else:
-            speed = np.zeros(len(joints))
+            v = algebra.subtract(v, algebra.scale(0.5 * time, algebra.vector(self._filter._acceleration)))
         self._encoders = reading.values
-        base, p, velocity = self._body.base(s.R, s.p, v, rate, joints, speed, s.mounting)
-        return RobotState(np.concatenate((p, pin.Quaternion(base).coeffs(), joints)), np.concatenate((velocity, speed)))
+        return self._base.seen(reading.values, speed, v, algebra.vector(readings.angular_velocity.values))
 
     def _step(self, readings: Readings) -> None:
         """Take the readings of a tick: the IMU, then the feet, then the encoders."""
@@ -219,7 +218,7 @@ class SensedState:
     def _hears(self, at: int) -> bool:
         """Find by what the IMU was planned to turn faster from its last reading to that of a tick, if somebody said."""
         back = self._tick - self._imu_at
-        if back > min(self._told_count, len(self._told)) or self._body.mount is None:
+        if back > min(self._told_count, len(self._told)) or self._body.behind:
             return False
         self._add_told(back, self._tick - at + 1)
         algebra.put(self._turned, self._body.turned_to_imu(algebra.vector(self._gained[3:])))
@@ -257,7 +256,7 @@ class SensedState:
             return None
         changed = self._contact.wrench - self._load
         self._load = self._contact.wrench
-        return sprung(changed, self._footing.half_size, self._parameters.ground.depth / self._weight)
+        return sprung(changed, self._footing.half_size, self.parameters.ground.depth / self._weight)
 
     def _change(self, J: Array) -> None:
         """Let feet lift and land as their contact says."""
@@ -271,7 +270,7 @@ class SensedState:
 
     def _height(self, k: int) -> tuple[float, float] | None:
         """Of the ground under a sole, and its deviation; None where nothing is known of it [m]."""
-        deviation = self._parameters.ground.height
+        deviation = self.parameters.ground.height
         if deviation <= 0.0:
             return None
         x, y, _ = self._sole(k)
@@ -279,7 +278,7 @@ class SensedState:
 
     def _land(self, k: int, J: Array, height: tuple[float, float] | None) -> None:
         """A foot stands anew, on ground of that height; one that slipped is on ground that has told its own before."""
-        body, noise = self._body, self._parameters.ground
+        body, noise = self._body, self.parameters.ground
         self._filter.land(k, body.position[k], body.rotation[k], J[k], height, noise.landing, noise.landing_turn)
 
     def _land_anew(self, slipped: tuple[int, ...]) -> None:
@@ -312,24 +311,7 @@ class SensedState:
             # What the controller has planned since; its velocity is that of the base in its own axes.
             self._add_told(1, max(1, min(late, self._told_count, len(self._told))))
             gained = self._gained
-        if self._base is None:
-            return self._behind(gained, late * self._period)
         return self._base.state(self._joints._q_now, self._joints._v_now, gained, late * self._period)
-
-    def _behind(self, gained: Array | None, time: float) -> RobotState | None:
-        """The same of an IMU that joints move against the base."""
-        s, q, qd = self._stand, self._body.known(self._joints.position, self._stand.offsets), self._joints.velocity
-        base, p, velocity = self._body.base(s.R, s.p, s.v, self._rate.rate - s.gyro_bias, q, qd, s.mounting)
-        if gained is not None:
-            more = np.asarray(gained)
-            way = time * (velocity + 0.5 * more)
-            turn = pin.exp3(0.5 * way[3:])
-            half = base @ turn
-            p, base, velocity = p + half @ way[:3], half @ turn, velocity + more
-        place = np.concatenate((p, pin.Quaternion(base).coeffs()))
-        state = RobotState(np.concatenate((place, q)), np.concatenate((velocity, qd)))
-        # Nothing that is not finite is less than a number.
-        return state if place @ place < FARTHEST**2 and state.v @ state.v < FASTEST**2 else None
 
     def _channels(self) -> dict[str, Array]:
         s = self._stand

@@ -16,10 +16,10 @@ cdef class Sole:
 cdef class SensedBody:
     cdef readonly object model, chain, position, rotation, jacobian, leaning
     cdef readonly double mass
-    cdef object _data, _placement, _q, _v
+    cdef readonly bint behind
+    cdef object _data, _q, _v
     cdef Sole _left, _right
     cdef Py_ssize_t _parent
-    cdef bint _behind
     cdef const Py_ssize_t[::1] _chain
     cdef double[:, ::1] _supporting
     cdef const double[:, :] _joint_rotation
@@ -28,7 +28,9 @@ cdef class SensedBody:
     cdef const double[:] _com
     cdef double[:, ::1] _mount_rotation, _turn, _mounted, _imu_rotation
     cdef vector3 _mount_position, _imu_position
-    cdef double[::1] _angles
+    cdef double[::1] _angles, _speeds
+    cdef double[:, ::1] carried
+    cdef vector3 lever, turning, moving
     cdef double[:, ::1] _position
     cdef double[:, :, ::1] _rotation, _jacobian
 
@@ -47,6 +49,8 @@ cdef class SensedBody:
     cdef vector3 _axis(self, Py_ssize_t joint) noexcept
     cpdef vector3 turned_to_imu(self, vector3 turn) noexcept
     cpdef place_com(self)
+    @cython.locals(arm=vector3, spin=vector3)
+    cdef carry(self, const double[:] q, const double[:] v, vector3 turn)
     cpdef vector3 com_from(self, vector3 at) noexcept
     cpdef vector3 com_by(self, Py_ssize_t joint) noexcept
     cpdef double carries(self, Py_ssize_t joint, Py_ssize_t k) noexcept

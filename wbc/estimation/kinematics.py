@@ -12,7 +12,6 @@ from surefoot.algebra import Vector
 from surefoot.wbc.estimation.footing import ImuMount
 from surefoot.wbc.estimation.stand import AXES
 from surefoot.wbc.leaning import line_centre
-from surefoot.wbc.model import cross
 from surefoot.wbc.types import Array
 
 
@@ -59,6 +58,11 @@ class SensedBody:
         position: of the soles in the frame of the IMU, shape (2, 3) [m].
         rotation: of the soles to the frame of the IMU, shape (2, 3, 3).
         jacobian: as last asked for, see `offset_jacobians`.
+        behind: whether joints are between the base and the IMU.
+        carried: orientation of the IMU in the base, as of `carry`, shape (3, 3).
+        lever: its place there [m].
+        turning: its angular velocity against the base likewise, in axes of the base [rad/s].
+        moving: its velocity [m/s].
 
     Raises:
         ValueError: there is no such frame.
@@ -75,7 +79,7 @@ class SensedBody:
         self._mount_imu(model, mount)
         self._find_chain(model, [model.frames[frame].parentJoint for frame in frames])
         self._q, self._v = pin.neutral(model), np.zeros(model.nv)
-        self._angles = self._q[7:]
+        self._angles, self._speeds = self._q[7:], self._v[6:]
         self.position, self.rotation = np.zeros((2, 3)), np.zeros((2, 3, 3))
         self._position, self._rotation = self.position, self.rotation
         self.jacobian = self._jacobian = np.zeros((2, 6, len(self.chain) + AXES))
@@ -88,28 +92,18 @@ class SensedBody:
         if mount.body:
             frame = model.frames[model.getFrameId(mount.body)]
             placed, parent = frame.placement * placed, frame.parentJoint
-        self._placement, self._parent, self._behind = placed, parent, parent != 1
+        self._parent, self.behind = parent, parent != 1
         joint = self._data.oMi[parent]
         self._joint_rotation, self._joint_position = joint.rotation, joint.translation
         self._mount_rotation = np.ascontiguousarray(placed.rotation)
         self._mount_position = algebra.vector(np.array(placed.translation))
         self._imu_rotation, self._imu_position = self._mount_rotation.copy(), self._mount_position
-        self._turn, self._mounted = np.zeros((3, 3)), np.zeros((3, 3))
+        self._turn, self._mounted, self.carried = np.zeros((3, 3)), np.zeros((3, 3)), np.zeros((3, 3))
+        self.lever, self.turning, self.moving = self._mount_position, (0.0, 0.0, 0.0), (0.0, 0.0, 0.0)
 
     def _find_chain(self, model: pin.Model, carriers: list[int]) -> None:
         self.chain = self._chain = _between(model, self._parent, carriers)
         self._supporting = supporting(model, (*carriers, self._parent))
-
-    @property
-    def mount(self) -> tuple[Array, Array] | None:
-        """Orientation, shape (3, 3), and place, shape (3,) [m], of the IMU in the base; None where joints move it."""
-        return None if self._behind else (self._placement.rotation, self._placement.translation)
-
-    def known(self, joints: Array, offsets: Array) -> Array:
-        """Angles that encoders say, shape (nj,), less what their zeros are known to be off [rad]."""
-        known = joints.copy()
-        known[self.chain] -= offsets[:-AXES]
-        return known
 
     def update(self, joints: Array, attitude: Array, offsets: Array | None = None) -> None:
         """Take joint angles.
@@ -237,33 +231,28 @@ class SensedBody:
         """A turn of the base in the axes of an IMU that no joint parts from it [rad/s]."""
         return algebra.rotate_back(self._mount_rotation, turn)
 
-    def base(
-        self, R: Array, p: Array, v: Array, rate: Array, q: Array, qd: Array, mounting: Array
-    ) -> tuple[Array, Array, Array]:
-        """The base from the IMU: orientation (3, 3), position (3,) [m], velocity in its axes (6,) [m/s, rad/s].
+    def carry(self, q: Array, v: Array, turn: Vector) -> None:
+        """Find where the IMU is in the base, and how joints move it there: `carried`, `lever`, `turning`, `moving`.
 
         Args:
-            R: orientation of the IMU in the world, shape (3, 3).
-            p: its position in the world, shape (3,) [m].
-            v: its velocity in world axes, shape (3,) [m/s].
-            rate: its angular velocity in its own axes, shape (3,) [rad/s].
             q: joint angles, shape (nj,) [rad].
-            qd: joint velocities, shape (nj,) [rad/s].
-            mounting: offsets of the mount, shape (3,) [rad].
+            v: joint velocities, shape (nj,) [rad/s].
+            turn: offsets of the mount [rad].
         """
-        imu = pin.SE3(self._placement.rotation @ pin.exp3(mounting), self._placement.translation)
-        turning, moving = np.zeros(3), np.zeros(3)
-        if self._behind:
-            self._q[7:], self._v[6:] = q, qd
-            pin.forwardKinematics(self.model, self._data, self._q, self._v)
-            imu = self._data.oMi[self._parent] * imu
-            motion, turned = self._data.v[self._parent], self._data.oMi[self._parent].rotation
-            turning = turned @ motion.angular
-            moving = turned @ (motion.linear + cross(motion.angular, self._placement.translation))
-        base, lever = R @ imu.rotation.T, imu.translation
-        spin = imu.rotation @ rate - turning
-        velocity = base.T @ v - cross(spin, lever) - moving
-        return base, p - base @ lever, np.concatenate((velocity, spin))
+        algebra.rotation_of(turn, self._turn)
+        if not self.behind:
+            algebra.compose(self._mount_rotation, self._turn, self.carried)
+            return
+        self._angles[:] = q
+        self._speeds[:] = v
+        pin.forwardKinematics(self.model, self._data, self._q, self._v)
+        motion, R, arm = self._data.v[self._parent], self._joint_rotation, self._mount_position
+        algebra.compose(self._mount_rotation, self._turn, self._mounted)
+        algebra.compose(R, self._mounted, self.carried)
+        self.lever = algebra.add(algebra.rotate(R, arm), algebra.vector(self._joint_position))
+        spin = algebra.vector(motion.angular)
+        self.turning = algebra.rotate(R, spin)
+        self.moving = algebra.rotate(R, algebra.add(algebra.vector(motion.linear), algebra.cross(spin, arm)))
 
 
 def _between(model: pin.Model, carrier: int, carriers: list[int]) -> Array:

@@ -79,7 +79,7 @@ def test_what_is_no_estimate_is_its_own_fault(tmp_path):
 def test_an_option_that_is_unknown_or_out_of_range_is_refused():
     walk = resolve(surefoot.load("stand", GOOD_SENSORS))
     made = sensed_state(walk, covariance_rate=50.0, ground={"height": 0.0})
-    assert made._parameters.covariance_rate == 50.0 and made._parameters.ground.height == 0.0
+    assert made.parameters.covariance_rate == 50.0 and made.parameters.ground.height == 0.0
     for options, words in (
         ({"speed": 1.0}, "unknown option 'speed'"),
         ({"ground": {"width": 1.0}}, "unknown option 'width'"),

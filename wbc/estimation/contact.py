@@ -133,7 +133,8 @@ class SoleContact:
 
     def _force(self, k: int) -> float:
         """Normal force on a sole [N]."""
-        return self._wrench[k, 2]
+        force: float = self._wrench[k, 2]
+        return force
 
     def _feel(self, k: int) -> None:
         # A sensor that was not tared yet says the force of its bias, too.
@@ -156,7 +157,8 @@ class SoleContact:
             return False
         reach = FIRM_EDGE if self.firm[k] else self._edge
         pitch, roll = abs(self._wrench[k, 4]), abs(self._wrench[k, 3])
-        return pitch < reach * self._half_length * load and roll < reach * self._half_width * load
+        inside: bool = pitch < reach * self._half_length * load and roll < reach * self._half_width * load
+        return inside
 
     def _tare_foot(self, k: int, above: float) -> None:
         swings = above > self._tare_height and not self.felt[k] and self._force(1 - k) > CARRIES * self.weight

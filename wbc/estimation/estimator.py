@@ -245,7 +245,8 @@ class SensedState:
 
     def _share(self, k: int) -> float:
         """Share of the weight on a sole [-]."""
-        return max(self._contact._wrench[k, 2] / self._weight, 0.0)
+        share: float = max(self._contact._wrench[k, 2] / self._weight, 0.0)
+        return share
 
     def _sprung(self) -> Array | None:
         """How each sole moved on the springs of the ground since this was asked last, as of `sprung`.

@@ -125,7 +125,7 @@ class SensedBody:
         self._place_sole(0, self._left)
         self._place_sole(1, self._right)
         if self.leaning is not None:
-            self._lean(attitude)
+            self._lean(attitude, self.leaning)
 
     def _place_imu(self, turn: Vector) -> None:
         """The IMU in the base, turned by that about its own axes [rad]."""
@@ -142,10 +142,10 @@ class SensedBody:
         algebra.put_row(self._position, k, algebra.rotate_back(self._imu_rotation, apart))
         algebra.compose_back(self._imu_rotation, sole.rotation, self._rotation[k])
 
-    def _lean(self, attitude: Array) -> None:
+    def _lean(self, attitude: Array, half_width: float) -> None:
         """Take the lines of the soles for their centres."""
         for k in (0, 1):
-            beside = line_centre(k, np.zeros(3), attitude @ self.rotation[k], self.leaning)
+            beside = line_centre(k, np.zeros(3), attitude @ self.rotation[k], half_width)
             self.position[k] += beside @ attitude
 
     def offset_jacobians(self) -> Array:
@@ -210,7 +210,8 @@ class SensedBody:
 
     def carries(self, joint: int, k: int) -> float:
         """1 where a joint carries a sole, 0 else."""
-        return self._supporting[k, joint]
+        carries: float = self._supporting[k, joint]
+        return carries
 
     def to_world(self, R: Array, out: Array) -> None:
         """Write the orientation of the base in the world, by that of the IMU, R, into an array, shape (3, 3) each."""

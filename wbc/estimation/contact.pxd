@@ -3,6 +3,7 @@ from surefoot cimport algebra
 
 cdef double CARRIES, UNLIKELY, FIRM_EDGE
 
+@cython.final
 cdef class SoleContact:
     cdef readonly object wrench, tare, tared
     cdef readonly list felt, firm

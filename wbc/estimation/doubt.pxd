@@ -4,6 +4,7 @@ from surefoot.algebra cimport vector3
 from surefoot.wbc.estimation cimport stand
 from surefoot.wbc.estimation.kinematics cimport SensedBody
 
+@cython.final
 cdef class Doubt:
     cdef readonly vector3 lever
     cdef SensedBody _body

@@ -17,6 +17,7 @@ cdef class SensedState:
     cdef Py_ssize_t _count, _every, _tick, _imu_at, _torques_at, _told_count
     cdef bint _begun, _lost
     cdef list _still
+    cdef tuple _always, _maybe
     cdef SensedBody _body
     cdef JointObserver _joints
     cdef RateFilter _rate
@@ -30,6 +31,7 @@ cdef class SensedState:
 
     @cython.locals(slot=Py_ssize_t, i=Py_ssize_t)
     cdef void _remember(self, const double[:] acceleration)
+    cdef _fitting(self, readings)
     @cython.locals(contact=SoleContact)
     cpdef sense(self, readings)
     @cython.locals(at=Py_ssize_t, time=double, v=vector3)
@@ -51,3 +53,5 @@ cdef class SensedState:
     cdef _look_down(self)
     @cython.locals(late=Py_ssize_t, gained=double[::1])
     cdef _now(self)
+
+cdef bint _fits(reading, tuple shape)

@@ -1,5 +1,7 @@
 """The state of a robot from its sensors: joint observer, contacts, invariant filter, and how sure all of that is."""
 
+from dataclasses import replace
+
 import numpy as np
 import pinocchio as pin
 
@@ -63,6 +65,10 @@ class SensedState:
         self._gained, self._turned, self._unmoved = np.zeros(6), np.zeros(3), np.zeros(self._count)
         self._above = np.zeros(2)
         self._load = np.zeros((2, 6))
+        joints, axes = (self._count,), (3,)
+        self._always = (("joint_position", joints), ("joint_torque", joints), ("angular_velocity", axes))
+        self._always += (("mean_angular_velocity", axes), ("specific_force", axes))
+        self._maybe = (("joint_velocity", joints), ("wrench", (2, 6)))
 
     @property
     def filter(self) -> InvariantFilter:
@@ -88,7 +94,12 @@ class SensedState:
         self._told_count += 1
 
     def sense(self, readings: Readings) -> Estimate:
-        """The estimate of a tick, by the time of its readings, which may come at any."""
+        """The estimate of a tick, by the time of its readings, which may come at any.
+
+        Raises:
+            ValueError: values of a reading have another shape, or are no numbers.
+        """
+        readings = self._fitting(readings)
         if self._tick < 0:
             self._from = readings.time
         self._tick = round((readings.time - self._from) / self._period)
@@ -112,6 +123,17 @@ class SensedState:
         contact = self._contact
         felt = contact.felt[0], contact.felt[1]
         return Estimate(self._state, contact.wrench, felt, self._deviation, self._channels(), contact.age)
+
+    def _fitting(self, readings: Readings) -> Readings:
+        """Readings of arrays of doubles in their shapes, which are the same where they are that already."""
+        for name, shape in self._always:
+            if not _fits(getattr(readings, name), shape):
+                readings = replace(readings, **{name: _fitted(getattr(readings, name), shape, name)})
+        for name, shape in self._maybe:
+            reading = getattr(readings, name)
+            if reading is not None and not _fits(reading, shape):
+                readings = replace(readings, **{name: _fitted(reading, shape, name)})
+        return readings
 
     def _begin(self, readings: Readings) -> None:
         """Make of the first readings what cannot be made before."""
@@ -318,3 +340,17 @@ class SensedState:
         s = self._stand
         biases = {"gyro_bias": s.gyro_bias.copy(), "force_bias": s.force_bias.copy()}
         return {**biases, "offsets": s.offsets[:-AXES].copy(), "mounting": s.mounting.copy()}
+
+
+def _fits(reading: Reading, shape: tuple[int, ...]) -> bool:
+    """Whether the values of a reading are an array of doubles of a shape."""
+    values = reading.values
+    return isinstance(values, np.ndarray) and values.dtype == np.float64 and values.shape == shape
+
+
+def _fitted(reading: Reading, shape: tuple[int, ...], name: str) -> Reading:
+    """A reading with its values as an array of doubles."""
+    values = np.asarray(reading.values, dtype=np.float64)
+    if values.shape != shape:
+        raise ValueError(f"the reading '{name}' has values of shape {values.shape}, which should be {shape}")
+    return replace(reading, values=values)

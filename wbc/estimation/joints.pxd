@@ -1,6 +1,7 @@
 cimport cython
 from surefoot cimport linear
 
+@cython.final
 cdef class JointObserver:
     cdef readonly object position, velocity
     cdef readonly double bandwidth, rate_noise

@@ -2,6 +2,7 @@ cimport cython
 from surefoot cimport algebra, linear
 from surefoot.algebra cimport vector3
 
+@cython.final
 cdef class Sole:
     cdef object _data
     cdef const double[:, :] _joint_rotation
@@ -13,6 +14,7 @@ cdef class Sole:
 
     cdef void place(self) noexcept
 
+@cython.final
 cdef class SensedBody:
     cdef readonly object model, chain, position, rotation, jacobian, leaning
     cdef readonly double mass
@@ -40,12 +42,15 @@ cdef class SensedBody:
     cdef void _place_sole(self, Py_ssize_t k, Sole sole) noexcept
     @cython.locals(k=Py_ssize_t)
     cpdef offset_jacobians(self)
-    @cython.locals(J=double[:, ::1], R=double[:, ::1], at=vector3, c=Py_ssize_t, j=Py_ssize_t, carries=double)
+    @cython.locals(at=vector3, c=Py_ssize_t, j=Py_ssize_t, carries=double, moved=vector3, turned=vector3)
     cdef void _by_joints(self, Py_ssize_t k) noexcept
     @cython.locals(J=double[:, ::1], m=Py_ssize_t, x=double, y=double, z=double)
     cdef void _by_mount(self, Py_ssize_t k) noexcept
     cpdef vector3 in_base(self, Py_ssize_t k) noexcept
+    cdef vector3 _to_imu(self, vector3 a) noexcept
+    @cython.locals(c=Py_ssize_t, along=vector3)
     cpdef vector3 moved_by(self, Py_ssize_t joint, vector3 at) noexcept
+    @cython.locals(c=Py_ssize_t)
     cdef vector3 _axis(self, Py_ssize_t joint) noexcept
     cpdef vector3 turned_to_imu(self, vector3 turn) noexcept
     cpdef place_com(self)

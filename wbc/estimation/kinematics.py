@@ -165,15 +165,15 @@ class SensedBody:
 
     def _by_joints(self, k: int) -> None:
         """Columns of the chain's joints in the Jacobian of a sole."""
-        J, R, at = self._jacobian[k], self._imu_rotation, self.in_base(k)
+        at = self.in_base(k)
         for c in range(len(self._chain)):
             j = self._chain[c]
             # What carries both moves neither against the other, and what carries the IMU turns the sole the other way.
             carries = self._supporting[k, j] - self._supporting[2, j]
-            moved = algebra.rotate_back(R, self.moved_by(j, at))
-            turned = algebra.rotate_back(R, self._axis(j))
-            algebra.put_column(J, c, algebra.scale(carries, moved))
-            algebra.put_column(J, c, algebra.scale(carries, turned), 3)
+            moved = algebra.scale(carries, self._to_imu(self.moved_by(j, at)))
+            turned = algebra.scale(carries, self._to_imu(self._axis(j)))
+            self._jacobian[k, 0, c], self._jacobian[k, 1, c], self._jacobian[k, 2, c] = moved
+            self._jacobian[k, 3, c], self._jacobian[k, 4, c], self._jacobian[k, 5, c] = turned
 
     def _by_mount(self, k: int) -> None:
         """Columns of the mount's offsets: less the cross product with the sole's place; turns are turns."""
@@ -189,11 +189,18 @@ class SensedBody:
 
     def moved_by(self, joint: int, at: Vector) -> Vector:
         """How a joint moves a point of the base's frame [m] that is fixed to what it carries [m/rad]."""
-        return algebra.add(algebra.cross(self._axis(joint), at), algebra.column(self._joint_jacobian, 6 + joint))
+        c = 6 + joint
+        along = self._joint_jacobian[0, c], self._joint_jacobian[1, c], self._joint_jacobian[2, c]
+        return algebra.add(algebra.cross(self._axis(joint), at), along)
 
     def _axis(self, joint: int) -> Vector:
         """How a joint turns what it carries."""
-        return algebra.column(self._joint_jacobian, 6 + joint, 3)
+        c = 6 + joint
+        return self._joint_jacobian[3, c], self._joint_jacobian[4, c], self._joint_jacobian[5, c]
+
+    def _to_imu(self, a: Vector) -> Vector:
+        """A vector of the base's frame in the axes of the IMU."""
+        return algebra.rotate_back(self._imu_rotation, a)
 
     def place_com(self) -> None:
         """Let Pinocchio compute the CoM and its Jacobian, after `offset_jacobians`."""

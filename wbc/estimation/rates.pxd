@@ -3,6 +3,7 @@ from surefoot cimport algebra
 
 cdef double IMPACT
 
+@cython.final
 cdef class RateFilter:
     cdef readonly object rate
     cdef double _noise, _more

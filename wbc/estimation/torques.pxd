@@ -21,8 +21,8 @@ cdef class TorqueWrench:
     cdef const Py_ssize_t[::1] _rows
     cdef double[::1] _velocity_noise, _residual, _momentum, _driven, _torque, _M_v, _C_v, _spread
 
-    @cython.locals(span=double, v=object)
-    cpdef update(self, state, const double[:] torque, passed=*)
+    @cython.locals(span=double)
+    cpdef update(self, state, torque, passed=*)
     @cython.locals(share=double, i=Py_ssize_t, momentum=double, driven=double, now=double, acted=double, lacking=double)
     cdef void _observe(self, const double[:] v, const double[:] torque, double span)
     @cython.locals(r=Py_ssize_t, j=Py_ssize_t, row=Py_ssize_t, a=Py_ssize_t)

@@ -100,8 +100,16 @@ class TorqueWrench:
             state: of the robot at the instant of the torque.
             torque: of the joints over the tick that ended, shape (nj,) [N·m].
             passed: since the call before; None for a control period [s].
+
+        Raises:
+            ValueError: velocities or torques are of another robot.
         """
-        model, data, q, v = self._model, self._data, state.q, state.v
+        model, data, q = self._model, self._data, state.q
+        v, torque = np.asarray(state.v, dtype=np.float64), np.asarray(torque, dtype=np.float64)
+        if v.shape != (model.nv,) or torque.shape != (model.nv - 6,):
+            raise ValueError(
+                f"velocities of shape {v.shape} and torques of shape {torque.shape} of {model.nv - 6} joints"
+            )
         pin.computeCoriolisMatrix(model, data, q, v)
         pin.crba(model, data, q)
         pin.computeGeneralizedGravity(model, data, q)
@@ -168,7 +176,8 @@ class TorqueWrench:
         sole.place()
         for r in range(len(self._rows)):
             row = self._rows[r]
-            along, angular = algebra.row(self._J, row), algebra.row(self._J, row, 3)
+            along = self._J[row, 0], self._J[row, 1], self._J[row, 2]
+            angular = self._J[row, 3], self._J[row, 4], self._J[row, 5]
             at_sole = algebra.subtract(along, algebra.cross(sole.position, angular))
             carries = self._supporting[k, row]
             force, moment = algebra.rotate_back(sole.rotation, at_sole), algebra.rotate_back(sole.rotation, angular)

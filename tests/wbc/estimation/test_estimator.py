@@ -24,7 +24,8 @@ class Standing:
         footing = Footing(feet, np.zeros(2), (0.1, 0.05), lambda x, y: 0.0, lambda x, y: up)
         names, parameters = robot.frames.soles, parameters or EstimatorParameters()
         self.inner = SensedState(robot.model, names, ImuMount(), footing, PERIOD, parameters)
-        self.joints, self.rate, self.force, self.tick = robot.standing[7:].copy(), np.zeros(3), GRAVITY * up, -1
+        self.count, self.joints, self.tick = robot.nv - 6, robot.standing[7:].copy(), -1
+        self.rate, self.force = np.zeros(3), GRAVITY * up
 
     def sense(self, share=0.5, fresh=True):
         """The estimate of the next tick, with a share of the weight on the left foot, encoders fresh or not."""
@@ -34,7 +35,7 @@ class Standing:
         self.tick += 1
         encoders = Reading(self.joints, 0.0, fresh)
         torque, rate, force, wrench = (
-            Reading(values, 0.0, True) for values in (np.zeros_like(self.joints), self.rate, self.force, load)
+            Reading(values, 0.0, True) for values in (np.zeros(self.count), self.rate, self.force, load)
         )
         return self.inner.sense(Readings(PERIOD * self.tick, encoders, None, torque, rate, rate, force, wrench))
 
@@ -55,6 +56,25 @@ def test_standing_soles_sink_by_all_that_their_loads_change(robot):
     for k in (0, 1):
         rolled = pin.log3(state.Z[k] @ turn[k].T)
         assert rolled[0] == pytest.approx(-give * changed[k, 3] / 0.05**2, rel=1e-6)
+
+
+@pytest.mark.parametrize("made", [list, np.float32])
+def test_values_of_any_kind_of_number_are_taken(robot, made):
+    """As those of other plants are."""
+    plain, other = Standing(robot), Standing(robot)
+    plain.joints = plain.joints.astype(np.float32).astype(float)
+    other.joints = made(plain.joints)
+    np.testing.assert_array_equal(other.sense().state.q, plain.sense().state.q)
+
+
+@pytest.mark.parametrize("name", ["joint_position", "angular_velocity", "specific_force"])
+def test_values_of_another_shape_are_refused_with_the_name_of_the_reading(robot, name):
+    standing = Standing(robot)
+    standing.sense()
+    own = {"joint_position": "joints", "angular_velocity": "rate", "specific_force": "force"}[name]
+    setattr(standing, own, getattr(standing, own)[:-1])
+    with pytest.raises(ValueError, match=f"reading '{name}' has values of shape"):
+        standing.sense()
 
 
 @pytest.mark.parametrize("lost", ["joints", "rate"])

@@ -16,18 +16,18 @@ from surefoot.scenarios.record.foxglove.views import BodyView
 from surefoot.scenarios.record.walk import WalkRecorder
 from surefoot.scenarios.run import controller
 from surefoot.scenarios.run.run import closed_loop, one_thread
+from surefoot.scenarios.run.sensed import Senses
 from surefoot.scenarios.run.skeleton import ClosedLoop
 from surefoot.scenarios.setup.load import load
 from surefoot.scenarios.setup.walk import resolve
 from surefoot.sim.readings import SensorSuite
 from surefoot.sim.world import World
 from surefoot.wbc.controller import WholeBodyController
-from surefoot.wbc.estimation.estimator import SensedState
 
 PARTS: dict[str, tuple[tuple[type | ModuleType, str], ...]] = {
     "measure": ((World, "measure"),),
     "sensors": ((SensorSuite, "read"),),
-    "estimator": ((SensedState, "sense"),),
+    "estimator": ((Senses, "__call__"),),
     "Pinocchio terms": ((WholeBodyController, "observe"),),
     "planner": ((WalkingPlanner, "update"),),
     "logging of plans": ((WalkRecorder, "plan"),),

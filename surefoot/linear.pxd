@@ -1,5 +1,6 @@
 cpdef double dot(const double[:] a, const double[:] b) noexcept nogil
 cpdef double row_dot(const double[:, :] A, Py_ssize_t i, const double[:] x) noexcept nogil
+cpdef void add_scaled(double[:] y, double a, const double[:] x) noexcept nogil
 cpdef void multiply(const double[:, :] A, const double[:] x, double[:] out) noexcept nogil
 cpdef double quadratic(const double[:, :] A, const double[:] x) noexcept nogil
 cpdef double rows_dot(const double[:, :] A, Py_ssize_t i, const double[:, :] B, Py_ssize_t j) noexcept nogil
@@ -8,6 +9,9 @@ cpdef void forward_solve(const double[:, :] U, double[:, :] B) noexcept nogil
 cpdef void forward_solve_one(const double[:, :] U, double[:] b) noexcept nogil
 cpdef void backward_solve(const double[:, :] U, double[:] x) noexcept nogil
 cpdef void solve_tridiagonal(double[::1] lower, double[::1] diagonal, double[::1] upper, double[:, ::1] X) noexcept nogil
+cpdef void add_gram(double[:, :] S, const double[:, :] Y) noexcept nogil
+cpdef void upper_product(const double[:, :] A, const double[:, :] B, double[:, :] out) noexcept nogil
+cpdef void mirror(double[:, :] A) noexcept nogil
 cpdef void subtract_products(double[:, :] S, const double[:, :] Y) noexcept nogil
 cpdef void copy(const double[:, :] A, double[:, :] out) noexcept nogil
 cpdef void product(const double[:, :] A, const double[:, :] B, double[:, :] out) noexcept nogil

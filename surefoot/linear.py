@@ -21,13 +21,18 @@ def row_dot(A: Array, i: int, x: Array) -> float:
     return float(A[i] @ x)
 
 
+def add_scaled(y: Array, a: float, x: Array) -> None:
+    """Add a x to y, shape (n,) each."""
+    y += a * x
+
+
 def multiply(A: Array, x: Array, out: Array) -> None:
     """A x into `out`, shape (m,), for A of shape (m, n)."""
     np.matmul(A, x, out=out)
 
 
 def quadratic(A: Array, x: Array) -> float:
-    """Form x' A x, for A of shape (n, n) and x of shape (n,), much of which may be zeros."""
+    """Quadratic form x' A x, for A of shape (n, n) and x of shape (n,), much of which may be zeros."""
     return float(x @ A @ x)
 
 
@@ -72,6 +77,22 @@ def solve_tridiagonal(lower: Array, diagonal: Array, upper: Array, X: Array) -> 
     pivots. The three bands, shape (n,) each, are of no use afterwards.
     """
     X[:] = lapack.dgtsv(lower[1:], diagonal, upper[:-1], X)[3]
+
+
+def add_gram(S: Array, Y: Array) -> None:
+    """S += Y' Y in the upper triangle of S and right of it, shape (m, k), row by row of Y, shape (n, k)."""
+    S += np.triu(Y[:, : len(S)].T @ Y)
+
+
+def upper_product(A: Array, B: Array, out: Array) -> None:
+    """A B' into `out`, shape (m, m), on and right of its diagonal, for A and B of shape (m, n)."""
+    np.matmul(A, B.T, out=out)
+
+
+def mirror(A: Array) -> None:
+    """Make A symmetric, shape (n, n), by what is on and right of its diagonal."""
+    lower = np.tril_indices(len(A), -1)
+    A[lower] = A.T[lower]
 
 
 def subtract_products(S: Array, Y: Array) -> None:

@@ -69,6 +69,14 @@ cpdef double row_dot(const double[:, :] A, Py_ssize_t i, const double[:] x) noex
     return _dot(&A[i, 0], &x[0], A.shape[1])
 
 
+cpdef void add_scaled(double[:] y, double a, const double[:] x) noexcept nogil:
+    cdef double *out = &y[0]
+    cdef const double *added = &x[0]
+    cdef Py_ssize_t i
+    for i in range(y.shape[0]):
+        out[i] += a * added[i]
+
+
 cpdef void multiply(const double[:, :] A, const double[:] x, double[:] out) noexcept nogil:
     cdef Py_ssize_t i
     for i in range(A.shape[0]):
@@ -142,6 +150,34 @@ cpdef void solve_tridiagonal(double[::1] lower, double[::1] diagonal, double[::1
     for i in range(n - 2, -1, -1):
         for c in range(width):
             X[i, c] -= upper[i] * X[i + 1, c]
+
+
+cpdef void add_gram(double[:, :] S, const double[:, :] Y) noexcept nogil:
+    cdef Py_ssize_t e, r, j, width = S.shape[1]
+    cdef double *out
+    cdef const double *row
+    cdef double factor
+    for r in range(Y.shape[0]):
+        row = &Y[r, 0]
+        for e in range(S.shape[0]):
+            out = &S[e, 0]
+            factor = row[e]
+            for j in range(e, width):
+                out[j] += factor * row[j]
+
+
+cpdef void upper_product(const double[:, :] A, const double[:, :] B, double[:, :] out) noexcept nogil:
+    cdef Py_ssize_t i, j
+    for i in range(A.shape[0]):
+        for j in range(i, A.shape[0]):
+            out[i, j] = _dot(&A[i, 0], &B[j, 0], A.shape[1])
+
+
+cpdef void mirror(double[:, :] A) noexcept nogil:
+    cdef Py_ssize_t i, j
+    for i in range(A.shape[0]):
+        for j in range(i):
+            A[i, j] = A[j, i]
 
 
 cpdef void subtract_products(double[:, :] S, const double[:, :] Y) noexcept nogil:

@@ -21,7 +21,7 @@ from surefoot.sim.sensor_errors import SensorErrors
 from surefoot.values import opened
 from surefoot.wbc.estimation.estimate import Deviation, Estimate, Planned
 from surefoot.wbc.estimation.estimator import SensedState
-from surefoot.wbc.estimation.kinematics import Footing, ImuMount
+from surefoot.wbc.estimation.footing import Footing, ImuMount
 from surefoot.wbc.estimation.parameters import ContactDetection, EstimatorParameters, GroundNoise, SensorNoise
 from surefoot.wbc.estimation.torques import TorqueWrench
 from surefoot.wbc.types import NONE_TOUCHES, Array, FootSensing, WbcReference, WbcReport

@@ -1,9 +1,9 @@
-"""The floating base, and with it the robot's whole state now, by the IMU that is fixed to it.
+"""The floating base, and with it the robot's whole state, by the IMU.
 
 An IMU with the orientation R_b and the place r in the base, whose own orientation, place, velocity and angular velocity
-are R, p, v and ω, has the base at
+are R, p, v and ω, and which joints turn by ω_b and move by v_b against the base, has the base at
 
-    R R_bᵀ,   p - R R_bᵀ r,   with the velocity   R_b Rᵀ v - (R_b ω) x r,   R_b ω   in its own axes.
+    R R_bᵀ,   p - R R_bᵀ r,   with the velocity   R_b Rᵀ v - (R_b ω - ω_b) x r - v_b,   R_b ω - ω_b   in its own axes.
 
 Readings are late. What the base was planned to gain since, Δ, it has gained evenly: its way is T (velocity + Δ/2), with
 its translation in the axes half way through the turn.
@@ -12,6 +12,8 @@ its translation in the axes half way through the turn.
 import numpy as np
 
 from surefoot import algebra, linear
+from surefoot.algebra import Vector
+from surefoot.wbc.estimation.kinematics import SensedBody
 from surefoot.wbc.estimation.stand import Stand
 from surefoot.wbc.types import Array, RobotState
 
@@ -20,24 +22,22 @@ FASTEST, FARTHEST = 300.0, 1e5
 
 
 class FloatingBase:
-    """The base of a robot whose IMU no joint moves against it.
+    """The base of a robot, by the IMU and the joints.
 
     Args:
         stand: state of the filter, whose arrays stay where they are.
-        mount: orientation of the IMU in the base, shape (3, 3), and its place there, shape (3,) [m].
-        chain: joints of which the filter finds the zeros, shape (m,); the offsets after these are of the mount.
+        body: kinematics of the robot.
         rate: angular velocity of the IMU with its bias, in an array that stays likewise, shape (3,) [rad/s].
-        joints: how many there are.
 
     Attributes:
         q: configuration, shape (7 + nj,) [m, -, rad].
         v: velocity, shape (6 + nj,) [m/s, rad/s].
     """
 
-    def __init__(self, stand: Stand, mount: tuple[Array, Array], chain: Array, rate: Array, joints: int) -> None:
-        self._stand, self._chain, self._rate = stand, chain, rate
-        self._mount, self._lever = np.ascontiguousarray(mount[0]), np.array(mount[1])
-        self._R, self._mounted, self._turn, self._half = (np.zeros((3, 3)) for _ in range(4))
+    def __init__(self, stand: Stand, body: SensedBody, rate: Array) -> None:
+        self._stand, self._body, self._chain, self._rate = stand, body, body.chain, rate
+        self._R, self._turn, self._half = np.zeros((3, 3)), np.zeros((3, 3)), np.zeros((3, 3))
+        joints = body.model.nv - 6
         self.q, self.v = np.zeros(7 + joints), np.zeros(6 + joints)
         self._q, self._v = self.q, self.v
         self._farthest, self._fastest = FARTHEST * FARTHEST, FASTEST * FASTEST
@@ -51,22 +51,39 @@ class FloatingBase:
             gained: what the base was planned to gain since the readings, shape (6,) [m/s, rad/s]; None of new ones.
             late: how old they are [s].
         """
-        self._place()
+        self._place(position, velocity, algebra.row(self._stand._columns, 0), algebra.vector(self._rate))
         if gained is not None and late > 0.0:
             self._go_on(gained, late)
-        self._join(position, velocity)
+        algebra.quaternion(self._R, self._q[3:])
         return RobotState(self.q.copy(), self.v.copy()) if self._is_near() else None
 
-    def _place(self) -> None:
-        """The base at the time of the readings, its orientation in `_R`."""
-        s, R, mounted, lever = self._stand, self._R, self._mounted, algebra.vector(self._lever)
-        algebra.rotation_of(algebra.vector(s._offsets[len(self._chain) :]), self._turn)
-        algebra.compose(self._mount, self._turn, mounted)
-        linear.row_products(s._R, mounted, R)
-        spin = algebra.rotate(mounted, algebra.subtract(algebra.vector(self._rate), algebra.vector(s._gyro_bias)))
-        speed = algebra.rotate_back(R, algebra.row(s._columns, 0))
-        algebra.put(self._q, algebra.subtract(algebra.row(s._columns, 1), algebra.rotate(R, lever)))
-        algebra.put(self._v, algebra.subtract(speed, algebra.cross(spin, lever)))
+    def seen(self, position: Array, velocity: Array, v: Vector, rate: Vector) -> RobotState:
+        """State of the robot at another time, with what the filter knows of places.
+
+        Args:
+            position: as of `state`.
+            velocity: likewise.
+            v: velocity of the IMU in the world [m/s].
+            rate: its angular velocity with its bias, in its own axes [rad/s].
+        """
+        self._place(position, velocity, v, rate)
+        algebra.quaternion(self._R, self._q[3:])
+        return RobotState(self.q.copy(), self.v.copy())
+
+    def _place(self, position: Array, velocity: Array, v: Vector, rate: Vector) -> None:
+        """The joints, whose encoders' zeros are known to be off, and the base, its orientation in `_R`."""
+        s, body, m = self._stand, self._body, len(self._chain)
+        self._q[7:] = position
+        self._v[6:] = velocity
+        for i in range(m):
+            self._q[7 + self._chain[i]] -= s._offsets[i]
+        body.carry(self._q[7:], self._v[6:], algebra.vector(s._offsets[m:]))
+        linear.row_products(s._R, body.carried, self._R)
+        own = algebra.rotate(body.carried, algebra.subtract(rate, algebra.vector(s._gyro_bias)))
+        spin = algebra.subtract(own, body.turning)
+        speed = algebra.subtract(algebra.rotate_back(self._R, v), algebra.cross(spin, body.lever))
+        algebra.put(self._q, algebra.subtract(algebra.row(s._columns, 1), algebra.rotate(self._R, body.lever)))
+        algebra.put(self._v, algebra.subtract(speed, body.moving))
         algebra.put(self._v[3:], spin)
 
     def _go_on(self, gained: Array, late: float) -> None:
@@ -82,15 +99,6 @@ class FloatingBase:
         algebra.put(self._q, algebra.add(algebra.vector(self._q), algebra.rotate(half, way)))
         algebra.put(self._v, algebra.add(speed, faster))
         algebra.put(self._v[3:], algebra.add(spin, turned))
-
-    def _join(self, position: Array, velocity: Array) -> None:
-        """Add the base's quaternion, and the joints: encoders less what their zeros are known to be off."""
-        algebra.quaternion(self._R, self._q[3:])
-        for i in range(len(position)):
-            self._q[7 + i] = position[i]
-            self._v[6 + i] = velocity[i]
-        for i in range(len(self._chain)):
-            self._q[7 + self._chain[i]] -= self._stand._offsets[i]
 
     def _is_near(self) -> bool:
         """Whether place and speed are those of a robot; nothing that is not finite is less than a number."""

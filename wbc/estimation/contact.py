@@ -1,11 +1,11 @@
 """Which soles the ground carries, by their wrenches, and the wrenches freed of what the sensors add."""
 
 import math
-from collections.abc import Callable, Sequence
+from collections.abc import Sequence
 
 import numpy as np
 
-from surefoot.native.library import Library, library
+from surefoot import algebra
 from surefoot.readings import Reading
 from surefoot.wbc.estimation.parameters import ContactDetection, SensorNoise
 from surefoot.wbc.external import SPAN
@@ -29,9 +29,6 @@ FIRM_EDGE = 1.05
 _SPRUNG = (3, 4, 2)
 """Components of a wrench by which a sole on springs rolls, pitches and rises."""
 
-_FEET = tuple(tuple([bool(bits >> (k + more) & 1) for k in (0, 1)] for more in (0, 2)) for bits in range(16))
-"""Which feet are felt, and which are firm, by the bits that the kernel returns; nobody writes to these lists."""
-
 
 class SoleContact:
     """Contact of both soles, decided once for filter, controller and planner.
@@ -49,8 +46,9 @@ class SoleContact:
 
     Attributes:
         wrench: filtered and tared, shape (2, 6) [N, N·m].
-        felt: which soles the ground carries.
+        felt: which soles the ground carries, left first.
         firm: which of these stand still: loaded, with the CoP well inside the sole.
+        tare: by how much the sensors are taken to be off, shape (2, 6) [N, N·m].
         tared: how long each sensor was tared [s].
         deviation: of a force and of a moment, both soles together, in the mean of a span of the load observer [N, N·m].
         threshold: normal force from which on a contact is felt [N].
@@ -66,72 +64,40 @@ class SoleContact:
         period: float,
         deviation: tuple[float, float] | None = None,
     ) -> None:
-        self._parameters, self._period, self.weight, self._half = parameters, period, weight, half_size
+        self._parameters, self._period, self.weight = parameters, period, weight
+        self._half_length, self._half_width = half_size
         noise, turning = deviation or (sensors.wrench_force, sensors.wrench_moment)
         # Twice the noise takes a filter of about a third of the bandwidth to feel as soon and as surely.
         cut = CUT * min(QUIET / noise, 1.0) ** (2.0 / 3.0) if noise > 0.0 else math.inf
-        cut = math.inf if deviation else cut
-        self._share, left = _low_pass(cut, period)
+        self._share, left = _low_pass(math.inf if deviation else cut, period)
         self.age = self._late = period * (1.0 - self._share) / self._share
-        slow_share, slowly = _low_pass(SLOW_CUT, period)
+        self._slow_share, slowly = _low_pass(SLOW_CUT, period)
         self._tare_share = 1.0 - math.exp(-period / parameters.tare_time)
         # What is filtered already is no white noise, of which a mean has less.
         mean = math.sqrt(2.0) if deviation else math.sqrt(2.0 * min(period / SPAN, 1.0))
         self.deviation = noise * mean, turning * mean
         self._settled = noise * math.sqrt(0.5 * period / parameters.tare_time)
-        self.threshold, self._lasting = (parameters.force + parameters.certain * noise * x for x in (left, slowly))
-        self._slow, self._slow_share = np.full(2, 0.5 * weight), slow_share
-        self._bias, self._begun = sensors.wrench_bias, False
-        self._filtered, self._tare, self.wrench = (np.zeros((2, 6)) for _ in range(3))
-        self._count, self.tared = np.zeros(2, dtype=np.int64), np.zeros(2)
+        self.threshold = parameters.force + parameters.certain * noise * left
+        self._lasting = parameters.force + parameters.certain * noise * slowly
+        self._released, self._ticks = parameters.released, math.ceil(parameters.ticks)
+        self._anchored, self._edge = parameters.anchor * weight, parameters.edge
+        self._tare_time, self._tare_height = parameters.tare_time, parameters.tare_height
+        self._bias, self._tared_after, self._begun = sensors.wrench_bias, parameters.tared_after, False
+        self._filtered, self.tare, self._slow = np.zeros((2, 6)), np.zeros((2, 6)), np.full(2, 0.5 * weight)
+        self._wrenches = self._wrench = self.wrench = np.zeros((2, 6))
+        self._count, self.tared = np.zeros(2, dtype=np.intp), np.zeros(2)
+        self._tare, self._tared = self.tare, self.tared
         self.felt, self.firm = [True, True], [True, True]
-        kernels = library()
-        self._update = self._compiled(kernels) if kernels else None
-
-    def _compiled(self, kernels: Library) -> Callable[[float, int], int]:
-        p, force = self._parameters, self.weight
-        self._reading, self._above, self._seen = np.zeros((2, 6)), np.zeros(2), np.zeros((2, 6))
-        update: Callable[[float, int], int] = kernels.bind(
-            "sole_contact_update",
-            ticks=math.ceil(p.ticks),
-            slow_share=self._slow_share,
-            threshold=self.threshold,
-            lasting=self._lasting,
-            released=p.released,
-            bias=self._bias,
-            tared_after=p.tared_after,
-            anchored=p.anchor * force,
-            edge=p.edge,
-            firm_edge=FIRM_EDGE,
-            half_length=self._half[0],
-            half_width=self._half[1],
-            carries=CARRIES * force,
-            unlikely=UNLIKELY,
-            period=self._period,
-            tare_time=p.tare_time,
-            tare_share=self._tare_share,
-            tare_height=p.tare_height,
-            reading=self._reading,
-            above=self._above,
-            filtered=self._filtered,
-            tare=self._tare,
-            wrench=self._seen,
-            slow=self._slow,
-            tared=self.tared,
-            count=self._count,
-            felt=np.ones(2, dtype=np.int64),
-            firm=np.ones(2, dtype=np.int64),
-        )
-        return update
 
     @property
     def bias(self) -> float:
         """Deviation of what a force is off for long: a sensor's bias until it was tared, then that of the tare [N]."""
         if self._bias == 0.0:
             return 0.0
-        return math.hypot(self._bias * math.exp(-float(self.tared.min()) / self._parameters.tare_time), self._settled)
+        tared = min(self._tared[0], self._tared[1])
+        return math.hypot(self._bias * math.exp(-tared / self._tare_time), self._settled)
 
-    def update(self, reading: Reading, still: Sequence[bool], above: Array | Sequence[float]) -> None:
+    def update(self, reading: Reading, still: Sequence[bool], above: Array) -> None:
         """Take the wrenches of a tick.
 
         Args:
@@ -143,57 +109,68 @@ class SoleContact:
         if not self._begun:
             share, self._begun = 1.0, True
         self.age = reading.age + self._late
-        if self._update is not None:
-            self._reading[:], self._above[:] = reading.values, above
-            bits = self._update(share, still[0] + 2 * still[1])
-            self.wrench, (self.felt, self.firm) = self._seen.copy(), _FEET[bits]
-            return
-        self._filtered += share * (reading.values - self._filtered)
-        self.wrench = wrench = self._filtered - self._tare
-        self._slow += self._slow_share * (wrench[:, 2] - self._slow)
-        force = wrench[:, 2].tolist()
+        self._filter(reading.values, share)
         for k in (0, 1):
-            self._feel(k, force)
-            self._tare_foot(k, force, above[k])
-        if not any(self.felt) and max(force) > self.threshold:
-            self.felt[int(force[1] > force[0])] = True
+            self._feel(k)
+            self._tare_foot(k, above[k])
+        carrying = 1 if self._force(1) > self._force(0) else 0
+        if not (self.felt[0] or self.felt[1]) and self._force(carrying) > self.threshold:
+            self.felt[carrying] = True
         for k in (0, 1):
-            self.firm[k] = self.felt[k] and self._flat(k, force) and still[k]
-        if not any(self.firm):
-            carrying = int(force[1] > force[0])
+            self.firm[k] = bool(self.felt[k] and self._flat(k) and still[k])
+        if not (self.firm[0] or self.firm[1]):
             self.firm[carrying] = self.felt[carrying]
+        self.wrench = self._wrenches.copy()
 
-    def _feel(self, k: int, force: list[float]) -> None:
-        p = self._parameters
+    def _filter(self, reading: Array, share: float) -> None:
+        """Let the wrenches follow a share of a reading, and a slower force follow them."""
+        for k in range(2):
+            for i in range(6):
+                if share > 0.0:
+                    self._filtered[k, i] += share * (reading[k, i] - self._filtered[k, i])
+                self._wrench[k, i] = self._filtered[k, i] - self._tare[k, i]
+            self._slow[k] += self._slow_share * (self._force(k) - self._slow[k])
+
+    def _force(self, k: int) -> float:
+        """Normal force on a sole [N]."""
+        force: float = self._wrench[k, 2]
+        return force
+
+    def _feel(self, k: int) -> None:
         # A sensor that was not tared yet says the force of its bias, too.
-        more = 2.0 * self._bias if self.tared[k] < p.tared_after else 0.0
+        more = 2.0 * self._bias if self._tared[k] < self._tared_after else 0.0
+        force = self._force(k)
         if self.felt[k]:
-            touches = force[k] > p.released * (self.threshold + more)
+            touches = force > self._released * (self.threshold + more)
         else:
-            touches = bool(force[k] > self.threshold + more or self._slow[k] > self._lasting + more)
+            touches = force > self.threshold + more or self._slow[k] > self._lasting + more
         self._count[k] = self._count[k] + 1 if touches != self.felt[k] else 0
-        if self._count[k] >= p.ticks:
-            self.felt[k], self._count[k] = touches, 0
+        if self._count[k] >= self._ticks:
+            self.felt[k], self._count[k] = bool(touches), 0
 
-    def _flat(self, k: int, force: list[float]) -> bool:
-        p, load = self._parameters, force[k]
-        anchored = load > p.anchor * self.weight * (0.5 if self.firm[k] else 1.0)
-        if not anchored or force[1 - k] < self.threshold:
-            return anchored or force[1 - k] < self.threshold
-        moment = self.wrench[k, 3:5].tolist()
-        reach = FIRM_EDGE if self.firm[k] else p.edge
-        return bool(abs(moment[1]) < reach * self._half[0] * load and abs(moment[0]) < reach * self._half[1] * load)
+    def _flat(self, k: int) -> bool:
+        """Whether a sole that is felt lies flat: its CoP is well inside it, or it is all that carries."""
+        load = self._force(k)
+        if self._force(1 - k) < self.threshold:
+            return True
+        if not load > self._anchored * (0.5 if self.firm[k] else 1.0):
+            return False
+        reach = FIRM_EDGE if self.firm[k] else self._edge
+        pitch, roll = abs(self._wrench[k, 4]), abs(self._wrench[k, 3])
+        inside: bool = pitch < reach * self._half_length * load and roll < reach * self._half_width * load
+        return inside
 
-    def _tare_foot(self, k: int, force: list[float], above: float) -> None:
-        p, x = self._parameters, self.wrench[k, :2]
-        swings = above > p.tare_height and not self.felt[k] and force[1 - k] > CARRIES * self.weight
+    def _tare_foot(self, k: int, above: float) -> None:
+        swings = above > self._tare_height and not self.felt[k] and self._force(1 - k) > CARRIES * self.weight
         if not swings or self._bias == 0.0:
             return
         # A foot that strikes something is pushed, whichever way: that is no bias, and would be felt ever after.
-        left = UNLIKELY * self._bias * math.exp(-self.tared[k] / p.tare_time)
-        if math.hypot(x.item(0), x.item(1), force[k]) < self.threshold + left:
-            self.tared[k] += self._period
-            self._tare[k] += self._tare_share * self.wrench[k]
+        left = UNLIKELY * self._bias * math.exp(-self._tared[k] / self._tare_time)
+        force = algebra.row(self._wrench, k)
+        if math.sqrt(algebra.inner(force, force)) < self.threshold + left:
+            self._tared[k] += self._period
+            for i in range(6):
+                self._tare[k, i] += self._tare_share * self._wrench[k, i]
 
 
 def sprung(changed: Array, half_size: tuple[float, float], give: float) -> Array:

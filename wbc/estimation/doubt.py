@@ -1,18 +1,17 @@
 """How sure an estimate is: standard deviations of what planner and controller use, by the covariance of the filter."""
 
 import math
-from collections.abc import Callable
 
 import numpy as np
-import pinocchio as pin
 
-from surefoot.native.library import library
+from surefoot import algebra, linear
+from surefoot.algebra import Vector
+from surefoot.wbc.estimation import stand
 from surefoot.wbc.estimation.contact import SoleContact
 from surefoot.wbc.estimation.estimate import Deviation
-from surefoot.wbc.estimation.invariant_filter import InvariantFilter
 from surefoot.wbc.estimation.kinematics import SensedBody
 from surefoot.wbc.estimation.parameters import SensorNoise
-from surefoot.wbc.estimation.stand import AXES, OFFSETS, POSITION, TURN, VELOCITY
+from surefoot.wbc.estimation.stand import Stand
 from surefoot.wbc.external import SPAN
 from surefoot.wbc.types import GRAVITY, Array
 
@@ -23,88 +22,132 @@ LASTS = 3.0
 class Doubt:
     """Standard deviations of an estimate.
 
+    What is told is linear in the error ξ of the filter, whose covariance is P: it has the variance r' P r for the row r
+    that it makes of ξ. A turn ξ_R moves a point x by ξ_R x, and an offset moves it as its joint does, the other way.
+
     Args:
         body: kinematics of the robot.
         sensors: noise of the sensors.
         rate_noise: standard deviation of a joint's velocity [rad/s].
+        state: of the filter, whose arrays stay where they are.
+        P: covariance of its error, which stays likewise, shape (n, n).
+
+    Attributes:
+        lever: the CoM from the stance sole's centre, in axes of the IMU, as last looked at [m].
     """
 
-    def __init__(self, body: SensedBody, sensors: SensorNoise, rate_noise: float) -> None:
-        self._body, self._sensors, self._rate_noise = body, sensors, rate_noise
+    def __init__(self, body: SensedBody, sensors: SensorNoise, rate_noise: float, state: Stand, P: Array) -> None:
+        self._body, self._rate_noise, self._encoder_offset = body, rate_noise, sensors.encoder_offset
         self._weight = GRAVITY * body.mass
         self._turning: tuple[float, float] | None = None
-        self._lever, self._variance = np.zeros(3), np.zeros(11)
-        self._tell: Callable[[int, float], None] | None = None
-        self._of: InvariantFilter | None = None
+        self._R, self._columns, self._P = state.R, state.columns, P
+        self._position, self._jacobian, self._to_world = body.position, body.jacobian, np.zeros((3, 3))
+        self._joints, self._chain, self._rows = body.model.nv - 6, body.chain, np.zeros((8, len(P)))
+        self.lever = self._by_others = self._by_rates = (0.0, 0.0, 0.0)
+        self._variances = np.zeros(11)
+        self._variance = self._variances
 
-    def deviation(self, filter_: InvariantFilter, contact: SoleContact, gyro: float, J: Array) -> Deviation:
-        """Deviations now.
+    def deviation(self, contact: SoleContact, gyro: float) -> Deviation:
+        """Deviations now, after `SensedBody.offset_jacobians` at the same angles.
 
         Args:
-            filter_: of the state.
             contact: of the soles.
             gyro: standard deviation of the angular velocity [rad/s].
-            J: Jacobians of the soles, as of `SensedBody.offset_jacobians`.
         """
-        force = contact.wrench[:, 2]
-        stance = int(force[1] > force[0])
-        if filter_ is not self._of:
-            self._of, self._tell = filter_, self._compiled(filter_)
-        if self._tell is None:
-            lever, variance = self._plain(filter_, stance, gyro, J)
-        else:
-            self._body.place_com()
-            self._tell(stance, gyro)
-            lever, variance = self._lever, self._variance
-        deviation = np.sqrt(variance)
+        self.look(1 if contact.wrench[1, 2] > contact.wrench[0, 2] else 0, gyro)
+        deviation = np.sqrt(self._variances)
         com, heights, apart, tilt = deviation[:3], deviation[3:5], deviation.item(5), deviation[6:8]
-        speed, up = deviation[8:], float(lever @ filter_.stand.R[2])
+        speed, up = deviation[8:], algebra.inner(self.lever, algebra.row(self._R, 2))
         load = self._of_load(float(speed[:2].max()), float(com[:2].max()), float(tilt.max()), up, gyro, contact)
         return Deviation(com, speed, tilt, heights, apart, *load)
 
-    def _compiled(self, filter_: InvariantFilter) -> Callable[[int, float], None] | None:
-        kernels, body, s = library(), self._body.compiled, filter_.stand
-        if kernels is None or body is None:
-            return None
-        tell: Callable[[int, float], None] = kernels.bind(
-            "doubt_tell",
-            body=body,
-            covariance=kernels.fill(
-                "Covariance", filter=kernels.fill("Filter", size=len(filter_.P), R=s.R, columns=s.columns), P=filter_.P
-            ),
-            encoder_offset=self._sensors.encoder_offset,
-            rate_noise=self._rate_noise,
-            rows=np.zeros((8, len(filter_.P))),
-            lever=self._lever,
-            variance=self._variance,
-        )
-        return tell
+    def look(self, stance: int, gyro: float) -> Array:
+        """Variances of the CoM, the soles' heights, one over the other, the base's tilt and the CoM velocity.
 
-    def _plain(self, filter_: InvariantFilter, stance: int, gyro: float, J: Array) -> tuple[Array, Array]:
-        """Lever of the CoM from the stance sole in axes of the IMU, and variances of what `deviation` says.
+        Args:
+            stance: sole from which the CoM is seen.
+            gyro: standard deviation of the angular velocity [rad/s].
 
-        Of the CoM, the soles' heights, one over the other, the base's tilt and the CoM velocity, shape (11,).
+        Returns:
+            shape (11,); the next call writes over them.
         """
-        body, sensors, s, P = self._body, self._sensors, filter_.stand, filter_.P
-        lever, by_joints, moving = body.com_jacobians(stance)
-        by_joints = s.R @ by_joints
-        rows = np.zeros((8, len(P)))
-        rows[:3, TURN] = -pin.skew(s.R @ lever)
-        rows[:3, OFFSETS] = np.hstack((-by_joints[:, body.chain], s.R @ pin.skew(lever)))
-        for k in (0, 1):
-            rows[3 + k, TURN] = -pin.skew(s.R @ body.position[k] + s.p)[2]
-            rows[3 + k, POSITION.stop - 1] = 1.0
-            rows[3 + k, OFFSETS] = -s.R[2] @ J[k, :3]
-        rows[5] = rows[3] - rows[4]
-        rows[6:, TURN], rows[6:, -AXES:] = np.eye(3)[:2], -s.R[:2]
-        place = np.maximum(np.einsum("ij,jk,ik->i", rows, P, rows), 0.0)
-        by_joints[:, body.chain] = 0.0
-        place[:3] += (by_joints**2).sum(axis=1) * sensors.encoder_offset**2
-        arm = s.R @ (body.position[stance] + lever)
+        self._body.place_com()
+        self._rows[:] = 0.0
+        self._of_joints(stance)
+        arm = algebra.rotate(self._R, self.lever)
+        self._of_com(arm)
+        self._of_heights()
+        self._of_tilt()
+        for a in range(8):
+            found = linear.quadratic(self._P, self._rows[a])
+            self._variance[a] = found if found > 0.0 else 0.0
+        reach = algebra.add(algebra.rotate(self._R, algebra.row(self._position, stance)), arm)
+        self._add_noise(reach, gyro)
+        return self._variances
+
+    def _of_joints(self, stance: int) -> None:
+        """Lever of the CoM, and how joints move it: those of the chain by the filter's offsets, others by their own."""
+        body = self._body
+        body.to_world(self._R, self._to_world)
+        at = body.in_base(stance)
+        self.lever = body.com_from(at)
+        self._by_others = self._by_rates = (0.0, 0.0, 0.0)
+        c = 0
+        for j in range(self._joints):
+            moved = body.com_by(j)
+            own = algebra.subtract(moved, algebra.scale(body.carries(j, stance), body.moved_by(j, at)))
+            by = algebra.rotate(self._to_world, own)
+            rate = algebra.rotate(self._to_world, moved)
+            self._by_rates = algebra.add(self._by_rates, algebra.squares(rate))
+            if c < len(self._chain) and self._chain[c] == j:
+                algebra.put_column(self._rows, stand.OFFSETS_AT + c, algebra.scale(-1.0, by))
+                c += 1
+            else:
+                self._by_others = algebra.add(self._by_others, algebra.squares(by))
+
+    def _of_com(self, arm: Vector) -> None:
+        """Rows of the CoM over the stance sole: less the cross product with its arm, and the mount's offsets."""
+        x, y, z = arm
+        algebra.put_row(self._rows, 0, (0.0, z, -y), stand.TURN_AT)
+        algebra.put_row(self._rows, 1, (-z, 0.0, x), stand.TURN_AT)
+        algebra.put_row(self._rows, 2, (y, -x, 0.0), stand.TURN_AT)
+        for i in range(3):
+            turned = algebra.cross(algebra.row(self._R, i), self.lever)
+            algebra.put_row(self._rows, i, turned, stand.OFFSETS_AT + len(self._chain))
+
+    def _of_heights(self) -> None:
+        """Rows of the soles' heights, and of one over the other."""
+        for k in range(2):
+            foot = algebra.rotate(self._R, algebra.row(self._position, k))
+            x, y, _ = algebra.add(foot, algebra.row(self._columns, 1))
+            algebra.put_row(self._rows, 3 + k, (y, -x, 0.0), stand.TURN_AT)
+            self._rows[3 + k, stand.POSITION_AT + 2] = 1.0
+            for c in range(len(self._chain) + 3):
+                by = algebra.column(self._jacobian[k], c)
+                self._rows[3 + k, stand.OFFSETS_AT + c] = -algebra.inner(algebra.row(self._R, 2), by)
+        for i in range(self._rows.shape[1]):
+            self._rows[5, i] = self._rows[3, i] - self._rows[4, i]
+
+    def _of_tilt(self) -> None:
+        """Rows of the base's roll and pitch, which are those of the IMU less the mount's offsets."""
+        mount = stand.OFFSETS_AT + len(self._chain)
+        self._rows[6, stand.TURN_AT] = self._rows[7, stand.TURN_AT + 1] = 1.0
+        algebra.put_row(self._rows, 6, algebra.scale(-1.0, algebra.row(self._R, 0)), mount)
+        algebra.put_row(self._rows, 7, algebra.scale(-1.0, algebra.row(self._R, 1)), mount)
+
+    def _add_noise(self, reach: Vector, gyro: float) -> None:
+        """Add what no state of the filter tells, of a CoM at that place from the IMU [m]."""
+        far, squares = algebra.inner(reach, reach), algebra.squares(reach)
         # A turn about an axis moves the CoM as far as it is beside that.
-        turned = (float(arm @ arm) - arm**2) * gyro**2
-        moved = ((s.R @ moving) ** 2).sum(axis=1) * self._rate_noise**2
-        return lever, np.concatenate((place, np.diagonal(P)[VELOCITY] + moved + turned))
+        beside = algebra.subtract((far, far, far), squares)
+        offsets = algebra.scale(algebra.square(self._encoder_offset), self._by_others)
+        rates = algebra.scale(algebra.square(self._rate_noise), self._by_rates)
+        turns = algebra.scale(algebra.square(gyro), beside)
+        v = stand.VELOCITY_AT
+        speed = (self._P[v, v], self._P[v + 1, v + 1], self._P[v + 2, v + 2])
+        place = algebra.add(algebra.vector(self._variance), offsets)
+        algebra.put(self._variance, place)
+        algebra.put(self._variance[8:], algebra.add(algebra.add(speed, rates), turns))
 
     def _of_load(
         self, speed: float, com: float, tilt: float, height: float, gyro: float, contact: SoleContact

@@ -1,18 +1,21 @@
 """The state of a robot from its sensors: joint observer, contacts, invariant filter, and how sure all of that is."""
 
-from collections import deque
+from dataclasses import replace
 
 import numpy as np
 import pinocchio as pin
 
+from surefoot import algebra
+from surefoot.algebra import Vector
 from surefoot.readings import Reading, Readings
-from surefoot.wbc.estimation.base import FARTHEST, FASTEST, FloatingBase
+from surefoot.wbc.estimation.base import FloatingBase
 from surefoot.wbc.estimation.contact import SoleContact, sprung
 from surefoot.wbc.estimation.doubt import Doubt
-from surefoot.wbc.estimation.estimate import Deviation, Estimate, Planned
+from surefoot.wbc.estimation.estimate import Estimate, Planned
+from surefoot.wbc.estimation.footing import Footing, ImuMount
 from surefoot.wbc.estimation.invariant_filter import InvariantFilter
 from surefoot.wbc.estimation.joints import KEPT, JointObserver
-from surefoot.wbc.estimation.kinematics import Footing, ImuMount, SensedBody
+from surefoot.wbc.estimation.kinematics import SensedBody
 from surefoot.wbc.estimation.parameters import EstimatorParameters
 from surefoot.wbc.estimation.rates import RateFilter
 from surefoot.wbc.estimation.stand import AXES, Stand
@@ -33,6 +36,9 @@ class SensedState:
         footing: how it stands, on level soles, at the first tick.
         period: control period [s].
         parameters: noise and thresholds.
+
+    Attributes:
+        parameters: as given.
     """
 
     def __init__(
@@ -44,93 +50,125 @@ class SensedState:
         period: float,
         parameters: EstimatorParameters,
     ) -> None:
-        self._parameters, self._footing, self._period = parameters, footing, period
-        self._model, self._sole_names = model, soles
+        self.parameters, self._footing, self._period = parameters, footing, period
+        self._model, self._sole_names, self._count = model, soles, model.nv - 6
         sensors = parameters.sensors
         self._body = SensedBody(model, soles, mount, footing.leaning)
         self._weight = GRAVITY * self._body.mass
-        self._joints = JointObserver(model.nv - 6, period, parameters.joint_bandwidth, sensors.encoder)
-        self._contact: SoleContact
+        self._joints = JointObserver(self._count, period, parameters.joint_bandwidth, sensors.encoder)
         self._every = max(1, round(1.0 / (parameters.covariance_rate * period)))
         self._torques: TorqueWrench | None = None
         self._torques_at, self._encoders = 0, np.zeros(0)
-        self._filter: InvariantFilter | None = None
-        self._base: FloatingBase | None = None
+        self._begun, self._lost, self._still = False, False, [True, True]
         self._tick, self._imu_at, self._from = -1, 0, 0.0
-        self._base_told: deque[Array] = deque(maxlen=KEPT)
-        self._still, self._lost = [True, True], False
-        self._state: RobotState | None = None
-        self._deviation: Deviation | None = None
-        self._doubt = Doubt(self._body, sensors, self._joints.rate_noise)
-        self._rate: RateFilter
+        self._told, self._told_count = np.zeros((KEPT, 6)), 0
+        self._gained, self._turned, self._unmoved = np.zeros(6), np.zeros(3), np.zeros(self._count)
         self._above = np.zeros(2)
         self._load = np.zeros((2, 6))
+        joints, axes = (self._count,), (3,)
+        self._always = (("joint_position", joints), ("joint_torque", joints), ("angular_velocity", axes))
+        self._always += (("mean_angular_velocity", axes), ("specific_force", axes))
+        self._maybe = (("joint_velocity", joints), ("wrench", (2, 6)))
 
     @property
     def filter(self) -> InvariantFilter:
         """The filter; there is none before the first tick."""
-        assert self._filter is not None
+        assert self._begun
         return self._filter
 
     def told(self, planned: Planned) -> None:
         """Hear what the controller does until the next tick."""
-        # What is planned for a state that is lost is no motion of the robot.
-        bend = planned.acceleration[6:]
-        self._joints.told(np.zeros_like(bend) if self._lost else bend)
-        self._base_told.append(planned.acceleration[:6])
+        self._remember(planned.acceleration)
         self._still = [planned.contact[k] and k != planned.rolling_foot for k in (0, 1)]
 
+    def _remember(self, acceleration: Array) -> None:
+        """Generalised accelerations until the next tick, shape (6 + nj,)."""
+        if self._lost:
+            # What is planned for a state that is lost is no motion of the robot.
+            self._joints.told(self._unmoved)
+        else:
+            self._joints.told(acceleration[6:])
+        slot = self._told_count % len(self._told)
+        for i in range(6):
+            self._told[slot, i] = acceleration[i]
+        self._told_count += 1
+
     def sense(self, readings: Readings) -> Estimate:
-        """The estimate of a tick, by the time of its readings, which may come at any."""
-        parameters = self._parameters
+        """The estimate of a tick, by the time of its readings, which may come at any.
+
+        Raises:
+            ValueError: values of a reading have another shape, or are no numbers.
+        """
+        readings = self._fitting(readings)
         if self._tick < 0:
             self._from = readings.time
         self._tick = round((readings.time - self._from) / self._period)
-        q, qd = self._joints.update(readings)
-        if self._filter is None:
-            self._filter = self._start(readings.joint_position.values)
-            gyro = readings.angular_velocity.values
-            self._rate = RateFilter(gyro, self._period, parameters.sensors.gyro_density, parameters.ground.turning_plan)
-            self._contact = self._feeling(readings)
-            self._contact.update(self._wrench(readings), self._still, self._above)
-            self._load = self._contact.wrench
-            self._base = self._fixed(len(q))
+        q, v = self._joints.update(readings)
+        if not self._begun:
+            self._begin(readings)
             # First readings that are not finite make a state that is not, which the controller tells.
             nowhere = RobotState(np.full(7 + len(q), np.nan), np.full(6 + len(q), np.nan))
-            self._state = self._now(q, qd) or nowhere
-            self._deviation = self._unsure(self._body.offset_jacobians())
+            self._state = self._now() or nowhere
         elif not self._lost:
             with np.errstate(all="ignore"):
                 self._step(readings)
-                now = self._now(q, qd)
-            if now is None or not (self._tick % self._every or self.filter.finite):
+                now = self._now()
+            if now is None or not (self._tick % self._every or self._filter.finite):
                 self._lost = True
             else:
                 self._state = now
-        state = self._state
-        assert state is not None
         if self._lost:
             # The walk is lost with it; what is left falls as a body does.
-            state = RobotState(np.concatenate((state.q[:7], q)), np.concatenate((np.zeros(6), qd)))
-        self._state = state
-        contact, felt = self._contact, self._contact.felt
-        return Estimate(state, contact.wrench, (felt[0], felt[1]), self._deviation, self._channels(), contact.age)
+            self._state = RobotState(np.concatenate((self._state.q[:7], q)), np.concatenate((np.zeros(6), v)))
+        contact = self._contact
+        felt = contact.felt[0], contact.felt[1]
+        return Estimate(self._state, contact.wrench, felt, self._deviation, self._channels(), contact.age)
 
-    def _fixed(self, joints: int) -> FloatingBase | None:
-        """The base of an IMU that no joint moves against it."""
-        body = self._body
-        if body.mount is None:
-            return None
-        return FloatingBase(self.filter.stand, body.mount, body.chain, self._rate.rate, joints)
+    def _fitting(self, readings: Readings) -> Readings:
+        """Readings of arrays of doubles in their shapes, which are the same where they are that already."""
+        for name, shape in self._always:
+            if not _fits(getattr(readings, name), shape):
+                readings = replace(readings, **{name: _fitted(getattr(readings, name), shape, name)})
+        for name, shape in self._maybe:
+            reading = getattr(readings, name)
+            if reading is not None and not _fits(reading, shape):
+                readings = replace(readings, **{name: _fitted(reading, shape, name)})
+        return readings
 
-    def _channels(self) -> dict[str, Array]:
-        s = self.filter.stand
-        biases = {"gyro_bias": s.gyro_bias.copy(), "force_bias": s.force_bias.copy()}
-        return {**biases, "offsets": s.offsets[:-AXES].copy(), "mounting": s.mounting.copy()}
+    def _begin(self, readings: Readings) -> None:
+        """Make of the first readings what cannot be made before."""
+        parameters, body = self.parameters, self._body
+        self._filter = filter_ = self._start(readings.joint_position.values)
+        self._stand = state = filter_.stand
+        self._doubt = Doubt(body, parameters.sensors, self._joints.rate_noise, state, filter_.P)
+        gyro, density = readings.angular_velocity.values, parameters.sensors.gyro_density
+        self._rate = RateFilter(gyro, self._period, density, parameters.ground.turning_plan)
+        self._base = FloatingBase(state, body, self._rate.rate)
+        self._contact = self._feeling(readings)
+        self._begun = True
+        self._contact.update(self._wrench(readings), self._still, self._above)
+        self._load = self._contact.wrench
+        body.offset_jacobians()
+        self._deviation = self._doubt.deviation(self._contact, self._rate.deviation)
+
+    def _start(self, joints: Array) -> InvariantFilter:
+        body, footing = self._body, self._footing
+        R, normals = footing.attitude(body, joints), footing.normals()
+        p = (footing.position - body.position @ R.T).mean(axis=0)
+        m = len(body.chain) + AXES
+        columns = np.vstack((np.zeros(3), p, footing.position))
+        state = Stand(R, columns, np.zeros((2, 3, 3)), np.zeros(3), np.zeros(3), np.zeros(m))
+        parameters, leaning = self.parameters, footing.leaning is not None
+        filter_ = InvariantFilter(state, parameters.sensors, parameters.ground, leaning)
+        J = body.offset_jacobians()
+        filter_.begin(body.position, body.rotation, J, normals, ATTITUDE)
+        body.update(joints, state.R, state.offsets)
+        filter_.weigh(J)
+        return filter_
 
     def _feeling(self, readings: Readings) -> SoleContact:
         """Contact by sensors in the feet, or by the torques of the joints."""
-        parameters, deviation = self._parameters, None
+        parameters, deviation = self.parameters, None
         if readings.wrench is None:
             at_ends = readings.joint_velocity is not None
             self._torques = TorqueWrench(self._model, self._sole_names, self._period, parameters.sensors, at_ends)
@@ -157,67 +195,80 @@ class SensedState:
 
         What observes the joints follows an impact later than the IMU does, which would be a force that is none.
         """
-        s, reading = self.filter.stand, readings.joint_position
-        joints, at = self._body.known(reading.values, s.offsets), self._tick - round(reading.age / self._period)
-        rate, v = readings.angular_velocity.values - s.gyro_bias, s.v
-        if readings.joint_velocity is not None:
-            speed = readings.joint_velocity.values
+        reading, velocity = readings.joint_position, readings.joint_velocity
+        at = self._tick - round(reading.age / self._period)
+        v, speed = algebra.row(self._stand._columns, 0), np.zeros(self._count)
+        if velocity is not None:
+            speed = velocity.values
         elif at > self._torques_at:
             time = (at - self._torques_at) * self._period
             speed = (reading.values - self._encoders) / time
-            v = v - (0.5 * time) * self.filter.acceleration
-        else:
-            speed = np.zeros(len(joints))
+            v = algebra.subtract(v, algebra.scale(0.5 * time, algebra.vector(self._filter._acceleration)))
         self._encoders = reading.values
-        base, p, velocity = self._body.base(s.R, s.p, v, rate, joints, speed, s.mounting)
-        return RobotState(np.concatenate((p, pin.Quaternion(base).coeffs(), joints)), np.concatenate((velocity, speed)))
-
-    def _start(self, joints: Array) -> InvariantFilter:
-        body, footing = self._body, self._footing
-        R, normals = footing.attitude(body, joints), footing.normals()
-        p = (footing.position - body.position @ R.T).mean(axis=0)
-        m = len(body.chain) + AXES
-        columns = np.vstack((np.zeros(3), p, footing.position))
-        stand = Stand(R, columns, np.zeros((2, 3, 3)), np.zeros(3), np.zeros(3), np.zeros(m))
-        parameters, leaning = self._parameters, footing.leaning is not None
-        filter_ = InvariantFilter(stand, parameters.sensors, parameters.ground, leaning)
-        J = body.offset_jacobians()
-        filter_.begin(body.position, body.rotation, J, normals, ATTITUDE)
-        body.update(joints, filter_.stand.R, filter_.stand.offsets)
-        filter_.weigh(J)
-        return filter_
+        return self._base.seen(reading.values, speed, v, algebra.vector(readings.angular_velocity.values))
 
     def _step(self, readings: Readings) -> None:
-        filter_, contact, body = self.filter, self._contact, self._body
-        rate, force = readings.mean_angular_velocity, readings.specific_force
-        at = self._tick - round(rate.age / self._period)
-        if at > self._imu_at:
-            filter_.propagate(rate.values, force.values, (at - self._imu_at) * self._period)
-            self._rate.update(readings.angular_velocity.values, self._gained(at), at - self._imu_at)
-            self._imu_at = at
+        """Take the readings of a tick: the IMU, then the feet, then the encoders."""
+        filter_, contact, body, encoders = self._filter, self._contact, self._body, readings.joint_position
+        self._turn(readings)
         contact.update(self._wrench(readings), self._still, self._above)
-        body.update(readings.joint_position.values, filter_.stand.R, filter_.stand.offsets)
+        body.update(encoders.values, self._stand.R, self._stand._offsets)
         changed = contact.firm != filter_.standing
         due = changed or self._tick % self._every == 0
         if due:
-            J = body.offset_jacobians()
-            force_z = contact.wrench[:, 2] / self._weight
-            filter_.spread((max(float(force_z[0]), 0.0), max(float(force_z[1]), 0.0)), self._sprung())
-            if changed:
-                self._change(J)
-            filter_.weigh(J)
-        if readings.joint_position.fresh:
-            slipped = filter_.correct(body.position, body.rotation)
+            self._renew(changed)
+        if encoders.fresh:
+            slipped = filter_.correct(body._position, body._rotation)
             if slipped:
-                J = body.offset_jacobians()
-                filter_.spread((0.5, 0.5))
-                for k in slipped:
-                    self._land(k, J, None)
-                filter_.weigh(J)
-                filter_.correct(body.position, body.rotation)
+                self._land_anew(slipped)
         if due:
-            self._deviation = self._unsure(J)
-            self._above = self._over_ground()
+            self._deviation = self._doubt.deviation(contact, self._rate.deviation)
+            self._look_down()
+
+    def _turn(self, readings: Readings) -> None:
+        """Go on with what the IMU says, if that is new."""
+        rate, force = readings.mean_angular_velocity, readings.specific_force
+        at = self._tick - round(rate.age / self._period)
+        if at > self._imu_at:
+            self._filter.propagate(rate.values, force.values, (at - self._imu_at) * self._period)
+            gained = None
+            if self._hears(at):
+                gained = self._turned
+            self._rate.update(readings.angular_velocity.values, gained, at - self._imu_at)
+            self._imu_at = at
+
+    def _hears(self, at: int) -> bool:
+        """Find by what the IMU was planned to turn faster from its last reading to that of a tick, if somebody said."""
+        back = self._tick - self._imu_at
+        if back > min(self._told_count, len(self._told)) or self._body.behind:
+            return False
+        self._add_told(back, self._tick - at + 1)
+        algebra.put(self._turned, self._body.turned_to_imu(algebra.vector(self._gained[3:])))
+        return True
+
+    def _add_told(self, first: int, last: int) -> None:
+        """Set what the base was planned to gain from a tick to another one, so many ticks ago."""
+        step = -1 if first > last else 1
+        for i in range(6):
+            gained, back = 0.0, first
+            while back != last + step:
+                gained += self._told[(self._told_count - back) % len(self._told), i]
+                back += step
+            self._gained[i] = self._period * gained
+
+    def _renew(self, changed: bool) -> None:
+        """Compute covariance and gain anew, after feet have landed and lifted."""
+        filter_, body = self._filter, self._body
+        J = body.offset_jacobians()
+        filter_.spread((self._share(0), self._share(1)), self._sprung())
+        if changed:
+            self._change(J)
+        filter_.weigh(J)
+
+    def _share(self, k: int) -> float:
+        """Share of the weight on a sole [-]."""
+        share: float = max(self._contact._wrench[k, 2] / self._weight, 0.0)
+        return share
 
     def _sprung(self) -> Array | None:
         """How each sole moved on the springs of the ground since this was asked last, as of `sprung`.
@@ -228,23 +279,11 @@ class SensedState:
             return None
         changed = self._contact.wrench - self._load
         self._load = self._contact.wrench
-        return sprung(changed, self._footing.half_size, self._parameters.ground.depth / self._weight)
-
-    def _gained(self, at: int) -> Array | None:
-        """Angular velocity that the IMU was planned to gain from its last reading to that of a tick, shape (3,)."""
-        told, first = self._base_told, self._imu_at - self._tick
-        if len(told) < -first:
-            return None
-        gained = told[first][3:]
-        for back in range(first + 1, at - self._tick):
-            gained = gained + told[back][3:]
-        return self._body.turned_to_imu(self._period * gained)
-
-    def _unsure(self, J: Array) -> Deviation:
-        return self._doubt.deviation(self.filter, self._contact, self._rate.deviation, J)
+        return sprung(changed, self._footing.half_size, self.parameters.ground.depth / self._weight)
 
     def _change(self, J: Array) -> None:
-        filter_, firm = self.filter, self._contact.firm
+        """Let feet lift and land as their contact says."""
+        filter_, firm = self._filter, self._contact.firm
         for k in (0, 1):
             if filter_.standing[k] and not firm[k]:
                 filter_.lift(k)
@@ -254,41 +293,64 @@ class SensedState:
 
     def _height(self, k: int) -> tuple[float, float] | None:
         """Of the ground under a sole, and its deviation; None where nothing is known of it [m]."""
-        s, deviation = self.filter.stand, self._parameters.ground.height
-        foot = s.p + s.R @ self._body.position[k]
-        return (self._footing.height(float(foot[0]), float(foot[1])), deviation) if deviation > 0.0 else None
+        deviation = self.parameters.ground.height
+        if deviation <= 0.0:
+            return None
+        x, y, _ = self._sole(k)
+        return self._footing.height(x, y), deviation
 
     def _land(self, k: int, J: Array, height: tuple[float, float] | None) -> None:
         """A foot stands anew, on ground of that height; one that slipped is on ground that has told its own before."""
-        body, noise = self._body, self._parameters.ground
-        self.filter.land(k, body.position[k], body.rotation[k], J[k], height, noise.landing, noise.landing_turn)
+        body, noise = self._body, self.parameters.ground
+        self._filter.land(k, body.position[k], body.rotation[k], J[k], height, noise.landing, noise.landing_turn)
 
-    def _over_ground(self) -> Array:
-        """How far the soles are over the ground, shape (2,) [m]."""
-        s, height = self.filter.stand, self._footing.height
-        soles = (s.p + self._body.position @ s.R.T).tolist()
-        return np.array([z - height(x, y) for x, y, z in soles])
+    def _land_anew(self, slipped: tuple[int, ...]) -> None:
+        """Let feet land that have slipped, and take the tick after it."""
+        filter_, body = self._filter, self._body
+        J = body.offset_jacobians()
+        filter_.spread((0.5, 0.5))
+        for k in slipped:
+            self._land(k, J, None)
+        filter_.weigh(J)
+        filter_.correct(body._position, body._rotation)
 
-    def _now(self, q: Array, qd: Array) -> RobotState | None:
+    def _sole(self, k: int) -> Vector:
+        """Centre of a sole in the world, by the kinematics [m]."""
+        state = self._stand
+        reach = algebra.rotate(state._R, algebra.row(self._body._position, k))
+        return algebra.add(algebra.row(state._columns, 1), reach)
+
+    def _look_down(self) -> None:
+        """Find how far the soles are over the ground."""
+        for k in range(2):
+            x, y, z = self._sole(k)
+            self._above[k] = z - self._footing.height(x, y)
+
+    def _now(self) -> RobotState | None:
         """The state now, which is older by the age of the IMU's readings; None of one that has diverged."""
-        s, told, late = self.filter.stand, self._base_told, self._tick - self._imu_at
-        gained, time = None, late * self._period
-        if late and told:
+        late = self._tick - self._imu_at
+        gained = None
+        if late and self._told_count:
             # What the controller has planned since; its velocity is that of the base in its own axes.
-            gained = told[-1]
-            for back in range(2, min(late, len(told)) + 1):
-                gained = gained + told[-back]
-            gained = self._period * gained
-        if self._base is not None:
-            return self._base.state(q, qd, gained, time)
-        q = self._body.known(q, s.offsets)
-        base, p, velocity = self._body.base(s.R, s.p, s.v, self._rate.rate - s.gyro_bias, q, qd, s.mounting)
-        if gained is not None:
-            way = time * (velocity + 0.5 * gained)
-            turn = pin.exp3(0.5 * way[3:])
-            half = base @ turn
-            p, base, velocity = p + half @ way[:3], half @ turn, velocity + gained
-        place = np.concatenate((p, pin.Quaternion(base).coeffs()))
-        state = RobotState(np.concatenate((place, q)), np.concatenate((velocity, qd)))
-        # Nothing that is not finite is less than a number.
-        return state if place @ place < FARTHEST**2 and state.v @ state.v < FASTEST**2 else None
+            self._add_told(1, max(1, min(late, self._told_count, len(self._told))))
+            gained = self._gained
+        return self._base.state(self._joints._q_now, self._joints._v_now, gained, late * self._period)
+
+    def _channels(self) -> dict[str, Array]:
+        s = self._stand
+        biases = {"gyro_bias": s.gyro_bias.copy(), "force_bias": s.force_bias.copy()}
+        return {**biases, "offsets": s.offsets[:-AXES].copy(), "mounting": s.mounting.copy()}
+
+
+def _fits(reading: Reading, shape: tuple[int, ...]) -> bool:
+    """Whether the values of a reading are an array of doubles of a shape."""
+    values = reading.values
+    return isinstance(values, np.ndarray) and values.dtype == np.float64 and values.shape == shape
+
+
+def _fitted(reading: Reading, shape: tuple[int, ...], name: str) -> Reading:
+    """A reading with its values as an array of doubles."""
+    values = np.asarray(reading.values, dtype=np.float64)
+    if values.shape != shape:
+        raise ValueError(f"the reading '{name}' has values of shape {values.shape}, which should be {shape}")
+    return replace(reading, values=values)

@@ -1,39 +1,45 @@
-"""Where the soles are from the IMU, how encoder zeros move them, where the base is, and how a robot stands at first.
+"""Where the soles are from the IMU, how encoder zeros move them, and where the base is.
 
 Of soles that lean (see `surefoot.wbc.leaning`) the place is that of the line on which they stand: it stays where it is
 while they turn about it.
 """
 
-import math
-from collections.abc import Callable
-
 import numpy as np
 import pinocchio as pin
 
-from surefoot.native.library import Bound, Library, library
-from surefoot.values import dataclass
+from surefoot import algebra, linear
+from surefoot.algebra import Vector
+from surefoot.wbc.estimation.footing import ImuMount
 from surefoot.wbc.estimation.stand import AXES
 from surefoot.wbc.leaning import line_centre
-from surefoot.wbc.model import cross
 from surefoot.wbc.types import Array
 
-ROUNDS = 4
-"""Rounds in which the attitude over soles that lean is found."""
 
+class Sole:
+    """A sole in the base's frame, by the pose that Pinocchio has of its joint.
 
-@dataclass(frozen=True, slots=True)
-class ImuMount:
-    """Where the IMU is; the default is the frame of the floating base.
+    Args:
+        model: of the robot, with a free-flyer base.
+        data: of Pinocchio, with the base in the world's frame.
+        frame: number of the sole's.
 
     Attributes:
-        body: frame of the model that carries it; None for the floating base.
-        position: of its origin in that frame, shape (3,) [m].
-        rotation: of its axes to that frame, shape (3, 3).
+        rotation: to the base's axes, as last placed, shape (3, 3).
+        position: of its centre likewise [m].
     """
 
-    body: str | None = None
-    position: tuple[float, float, float] = (0.0, 0.0, 0.0)
-    rotation: tuple[tuple[float, ...], ...] = ((1.0, 0.0, 0.0), (0.0, 1.0, 0.0), (0.0, 0.0, 1.0))
+    def __init__(self, model: pin.Model, data: pin.Data, frame: int) -> None:
+        joint, placement = data.oMi[model.frames[frame].parentJoint], model.frames[frame].placement
+        self._data, self._joint_rotation, self._joint_position = data, joint.rotation, joint.translation
+        self._placed_rotation = np.ascontiguousarray(placement.rotation)
+        self._placed_position = algebra.vector(np.array(placement.translation))
+        self.rotation, self.position = np.zeros((3, 3)), (0.0, 0.0, 0.0)
+
+    def place(self) -> None:
+        """Take where its joint is now."""
+        algebra.compose(self._joint_rotation, self._placed_rotation, self.rotation)
+        offset = algebra.rotate(self._joint_rotation, self._placed_position)
+        self.position = algebra.add(offset, algebra.vector(self._joint_position))
 
 
 class SensedBody:
@@ -47,10 +53,16 @@ class SensedBody:
 
     Attributes:
         leaning: as given.
-        compiled: it as kernels take it; None for plain Python.
+        mass: of the robot [kg].
         chain: indices of the joints between the IMU and the soles, shape (m,).
         position: of the soles in the frame of the IMU, shape (2, 3) [m].
         rotation: of the soles to the frame of the IMU, shape (2, 3, 3).
+        jacobian: as last asked for, see `offset_jacobians`.
+        behind: whether joints are between the base and the IMU.
+        carried: orientation of the IMU in the base, as of `carry`, shape (3, 3).
+        lever: its place there [m].
+        turning: its angular velocity against the base likewise, in axes of the base [rad/s].
+        moving: its velocity [m/s].
 
     Raises:
         ValueError: there is no such frame.
@@ -60,70 +72,38 @@ class SensedBody:
         for name in (*soles, *((mount.body,) if mount.body else ())):
             if not model.existFrame(name):
                 raise ValueError(f"robot '{model.name}' has no frame '{name}'")
-        self.model, self._data = model, model.createData()
-        self._soles = tuple(model.getFrameId(name) for name in soles)
-        self._placement = pin.SE3(np.array(mount.rotation), np.array(mount.position))
-        self._carrier = model.getFrameId(mount.body) if mount.body else None
-        self._behind = self._carrier is not None and model.frames[self._carrier].parentJoint != 1
-        if self._carrier is not None:
-            self._placement = model.frames[self._carrier].placement * self._placement
-        parent = 1 if self._carrier is None else model.frames[self._carrier].parentJoint
-        self._parent = parent
-        turned = not np.allclose(self._placement.rotation, np.eye(3), rtol=0.0, atol=1e-12)
-        self._to_imu = np.ascontiguousarray(self._placement.rotation.T) if turned else None
-        self.chain = _between(model, parent, self._soles)
-        self._q, self._v = pin.neutral(model), np.zeros(model.nv)
-        self._imu_rotation, self._imu_position = self._placement.rotation.copy(), self._placement.translation.copy()
-        self._mounting = np.zeros(AXES)
-        self.position, self.rotation = np.zeros((2, 3)), np.zeros((2, 3, 3))
-        self._jacobian = np.zeros((2, 6, len(self.chain) + AXES))
-        self._jacobian[:, 3:, -AXES:] = np.eye(3)
-        self._supporting = supporting(model, (*(model.frames[sole].parentJoint for sole in self._soles), parent))
-        self.leaning, self._beside = leaning, np.zeros((2, 3))
+        self.model, self._data, self.leaning = model, model.createData(), leaning
         self.mass = float(sum(inertia.mass for inertia in model.inertias))
-        # Which of its edges a leaning sole is on, only Python knows.
-        kernels = library() if leaning is None else None
-        self.compiled = self._bound(kernels) if kernels else None
-        if kernels and self.compiled:
-            self._place = kernels.bind("sensed_body_update", self.compiled)
-            self._move = kernels.bind("sensed_body_jacobians", self.compiled)
+        frames = [model.getFrameId(name) for name in soles]
+        self._left, self._right = (Sole(model, self._data, frame) for frame in frames)
+        self._mount_imu(model, mount)
+        self._find_chain(model, [model.frames[frame].parentJoint for frame in frames])
+        self._q, self._v = pin.neutral(model), np.zeros(model.nv)
+        self._angles, self._speeds = self._q[7:], self._v[6:]
+        self.position, self.rotation = np.zeros((2, 3)), np.zeros((2, 3, 3))
+        self._position, self._rotation = self.position, self.rotation
+        self.jacobian = self._jacobian = np.zeros((2, 6, len(self.chain) + AXES))
+        self.jacobian[:, 3:, -AXES:] = np.eye(3)
+        data = self._data
+        self._joint_jacobian, self._com_jacobian, self._com = data.J, data.Jcom, data.com[0]
 
-    def _bound(self, kernels: Library) -> Bound:
-        model, data, imu = self.model, self._data, self._data.oMi[self._parent]
-        left, right = (sole_of(kernels, model, data, frame) for frame in self._soles)
-        return kernels.fill(
-            "SensedBody",
-            joints=model.nv - 6,
-            chain_count=len(self.chain),
-            chain=self.chain,
-            supporting=self._supporting,
-            imu_joint_rotation_columns=imu.rotation.T,
-            imu_joint_position=imu.translation,
-            mount_rotation=np.ascontiguousarray(self._placement.rotation),
-            mount_position=np.array(self._placement.translation),
-            mounting=self._mounting,
-            left=left,
-            right=right,
-            joint_jacobian_columns=data.J.T,
-            com=data.com[0],
-            com_jacobian_columns=data.Jcom.T,
-            imu_rotation=self._imu_rotation,
-            imu_position=self._imu_position,
-            position=self.position,
-            rotation=self.rotation,
-            jacobian=self._jacobian,
-        )
+    def _mount_imu(self, model: pin.Model, mount: ImuMount) -> None:
+        placed, parent = pin.SE3(np.array(mount.rotation), np.array(mount.position)), 1
+        if mount.body:
+            frame = model.frames[model.getFrameId(mount.body)]
+            placed, parent = frame.placement * placed, frame.parentJoint
+        self._parent, self.behind = parent, parent != 1
+        joint = self._data.oMi[parent]
+        self._joint_rotation, self._joint_position = joint.rotation, joint.translation
+        self._mount_rotation = np.ascontiguousarray(placed.rotation)
+        self._mount_position = algebra.vector(np.array(placed.translation))
+        self._imu_rotation, self._imu_position = self._mount_rotation.copy(), self._mount_position
+        self._turn, self._mounted, self.carried = np.zeros((3, 3)), np.zeros((3, 3)), np.zeros((3, 3))
+        self.lever, self.turning, self.moving = self._mount_position, (0.0, 0.0, 0.0), (0.0, 0.0, 0.0)
 
-    @property
-    def mount(self) -> tuple[Array, Array] | None:
-        """Orientation, shape (3, 3), and place, shape (3,) [m], of the IMU in the base; None where joints move it."""
-        return None if self._behind else (self._placement.rotation, self._placement.translation)
-
-    def known(self, joints: Array, offsets: Array) -> Array:
-        """Angles that encoders say, shape (nj,), less what their zeros are known to be off [rad]."""
-        known = joints.copy()
-        known[self.chain] -= offsets[:-AXES]
-        return known
+    def _find_chain(self, model: pin.Model, carriers: list[int]) -> None:
+        self.chain = self._chain = _between(model, self._parent, carriers)
+        self._supporting = supporting(model, (*carriers, self._parent))
 
     def update(self, joints: Array, attitude: Array, offsets: Array | None = None) -> None:
         """Take joint angles.
@@ -133,26 +113,40 @@ class SensedBody:
             attitude: of the IMU in the world, by which soles that lean do so, shape (3, 3).
             offsets: what is known of those of the chain and of the mount, shape (m + 3,); None where nothing is [rad].
         """
-        self._mounting[:] = 0.0 if offsets is None else offsets[-AXES:]
-        self._q[7:] = joints if offsets is None else self.known(joints, offsets)
+        turn = (0.0, 0.0, 0.0)
+        self._angles[:] = joints
+        if offsets is not None:
+            m = len(self._chain)
+            for c in range(m):
+                self._angles[self._chain[c]] -= offsets[c]
+            turn = algebra.vector(offsets[m:])
         pin.forwardKinematics(self.model, self._data, self._q)
-        if self.compiled is not None:
-            self._place()
-            return
-        imu = self._mounted(self._mounting)
-        if self._behind:
-            imu = self._data.oMi[self._parent] * imu
-        self._imu_rotation[:], self._imu_position[:] = imu.rotation, imu.translation
-        for k, frame in enumerate(self._soles):
-            placed = imu.actInv(pin.updateFramePlacement(self.model, self._data, frame))
-            self.position[k], self.rotation[k] = placed.translation, placed.rotation
-            if self.leaning is not None:
-                self._beside[k] = line_centre(k, np.zeros(3), attitude @ placed.rotation, self.leaning) @ attitude
-                self.position[k] += self._beside[k]
+        self._place_imu(turn)
+        self._place_sole(0, self._left)
+        self._place_sole(1, self._right)
+        if self.leaning is not None:
+            self._lean(attitude, self.leaning)
 
-    def _mounted(self, turn: Array) -> pin.SE3:
-        """The IMU in what carries it, turned by that about its own axes, shape (3,) [rad]."""
-        return pin.SE3(self._placement.rotation @ pin.exp3(turn), self._placement.translation)
+    def _place_imu(self, turn: Vector) -> None:
+        """The IMU in the base, turned by that about its own axes [rad]."""
+        algebra.rotation_of(turn, self._turn)
+        algebra.compose(self._mount_rotation, self._turn, self._mounted)
+        algebra.compose(self._joint_rotation, self._mounted, self._imu_rotation)
+        arm = algebra.rotate(self._joint_rotation, self._mount_position)
+        self._imu_position = algebra.add(arm, algebra.vector(self._joint_position))
+
+    def _place_sole(self, k: int, sole: Sole) -> None:
+        """A sole in the frame of the IMU."""
+        sole.place()
+        apart = algebra.subtract(sole.position, self._imu_position)
+        algebra.put_row(self._position, k, algebra.rotate_back(self._imu_rotation, apart))
+        algebra.compose_back(self._imu_rotation, sole.rotation, self._rotation[k])
+
+    def _lean(self, attitude: Array, half_width: float) -> None:
+        """Take the lines of the soles for their centres."""
+        for k in (0, 1):
+            beside = line_centre(k, np.zeros(3), attitude @ self.rotation[k], half_width)
+            self.position[k] += beside @ attitude
 
     def offset_jacobians(self) -> Array:
         """From small turns of the joints of the chain, and of offsets of the mount, to those of the soles.
@@ -164,44 +158,73 @@ class SensedBody:
             IMU. At the angles last taken; the next call writes over them.
         """
         pin.computeJointJacobians(self.model, self._data)
-        if self.compiled is not None:
-            self._move()
-            return self._jacobian
-        carries, R = self._supporting[:2] - self._supporting[2], self._imu_rotation
-        for k in (0, 1):
+        for k in range(2):
+            self._by_joints(k)
+            self._by_mount(k)
+        return self.jacobian
+
+    def _by_joints(self, k: int) -> None:
+        """Columns of the chain's joints in the Jacobian of a sole."""
+        at = self.in_base(k)
+        for c in range(len(self._chain)):
+            j = self._chain[c]
             # What carries both moves neither against the other, and what carries the IMU turns the sole the other way.
-            moved = (carries[k] * self._motion(self._in_base(k)))[:, self.chain]
-            self._jacobian[k, :3, :-AXES], self._jacobian[k, 3:, :-AXES] = R.T @ moved[:3], R.T @ moved[3:]
-            self._jacobian[k, :3, -AXES:] = -pin.skew(self.position[k])
-        return self._jacobian
+            carries = self._supporting[k, j] - self._supporting[2, j]
+            moved = algebra.scale(carries, self._to_imu(self.moved_by(j, at)))
+            turned = algebra.scale(carries, self._to_imu(self._axis(j)))
+            self._jacobian[k, 0, c], self._jacobian[k, 1, c], self._jacobian[k, 2, c] = moved
+            self._jacobian[k, 3, c], self._jacobian[k, 4, c], self._jacobian[k, 5, c] = turned
 
-    def _in_base(self, k: int) -> Array:
-        """A sole's centre in the base's frame, shape (3,) [m]."""
-        at: Array = self._imu_position + self._imu_rotation @ self.position[k]
-        return at
+    def _by_mount(self, k: int) -> None:
+        """Columns of the mount's offsets: less the cross product with the sole's place; turns are turns."""
+        J, m = self._jacobian[k], len(self._chain)
+        x, y, z = algebra.row(self._position, k)
+        algebra.put_row(J, 0, (0.0, z, -y), m)
+        algebra.put_row(J, 1, (-z, 0.0, x), m)
+        algebra.put_row(J, 2, (y, -x, 0.0), m)
 
-    def _motion(self, at: Array) -> Array:
-        """How joints move a point of the base's frame, shape (3,) [m], fixed to what they carry, shape (6, nj)."""
-        J = self._data.J[:, 6:]
-        found: Array = np.vstack((J[:3] - pin.skew(at) @ J[3:], J[3:]))
-        return found
+    def in_base(self, k: int) -> Vector:
+        """A sole's centre in the base's frame [m]."""
+        return algebra.add(algebra.rotate(self._imu_rotation, algebra.row(self._position, k)), self._imu_position)
 
-    def com_jacobians(self, k: int) -> tuple[Array, Array, Array]:
-        """The CoM from a sole, in axes of the IMU, after `offset_jacobians` at the same angles.
+    def moved_by(self, joint: int, at: Vector) -> Vector:
+        """How a joint moves a point of the base's frame [m] that is fixed to what it carries [m/rad]."""
+        c = 6 + joint
+        along = self._joint_jacobian[0, c], self._joint_jacobian[1, c], self._joint_jacobian[2, c]
+        return algebra.add(algebra.cross(self._axis(joint), at), along)
 
-        Returns:
-            its place from the sole's centre, shape (3,) [m]; that by the joints, shape (3, nj) [m/rad]; the same of the
-            CoM from the floating base, shape (3, nj) [m/rad].
-        """
-        self.place_com()
-        com, J, to_imu = self._data.com[0], self._data.Jcom[:, 6:], self._imu_rotation.T
-        at = self._in_base(k)
-        sole = self._supporting[k] * self._motion(at)[:3]
-        return to_imu @ (com - at), to_imu @ (J - sole), to_imu @ J
+    def _axis(self, joint: int) -> Vector:
+        """How a joint turns what it carries."""
+        c = 6 + joint
+        return self._joint_jacobian[3, c], self._joint_jacobian[4, c], self._joint_jacobian[5, c]
+
+    def _to_imu(self, a: Vector) -> Vector:
+        """A vector of the base's frame in the axes of the IMU."""
+        return algebra.rotate_back(self._imu_rotation, a)
 
     def place_com(self) -> None:
         """Let Pinocchio compute the CoM and its Jacobian, after `offset_jacobians`."""
         pin.jacobianCenterOfMass(self.model, self._data, False)
+
+    def com_from(self, at: Vector) -> Vector:
+        """The CoM from a point of the base's frame [m], in axes of the IMU, as last placed."""
+        apart = algebra.subtract(algebra.vector(self._com), at)
+        return algebra.rotate_back(self._imu_rotation, apart)
+
+    def com_by(self, joint: int) -> Vector:
+        """How a joint moves the CoM against the base, as last placed [m/rad]."""
+        return algebra.column(self._com_jacobian, 6 + joint)
+
+    def carries(self, joint: int, k: int) -> float:
+        """1 where a joint carries a sole, 0 else."""
+        carries: float = self._supporting[k, joint]
+        return carries
+
+    def to_world(self, R: Array, out: Array) -> None:
+        """Write the orientation of the base in the world, by that of the IMU, R, into an array, shape (3, 3) each."""
+        for i in range(3):
+            for j in range(3):
+                out[i, j] = linear.rows_dot(R, i, self._imu_rotation, j)
 
     def turning_inertia(self) -> tuple[float, float]:
         """What angular velocities make of moment of momentum about the CoM, at the angles last taken.
@@ -212,120 +235,41 @@ class SensedBody:
         A = pin.computeCentroidalMap(self.model, self._data, self._q)[3:5]
         return float(np.linalg.norm(A[:, 3:6], axis=1).max()), float(np.linalg.norm(A[:, 6:], axis=1).max())
 
-    def turned_to_imu(self, turn: Array) -> Array | None:
-        """A turn of the base in the axes of the IMU, shape (3,); None where joints are between them [rad/s]."""
-        if self._behind:
-            return None
-        return turn if self._to_imu is None else np.asarray(self._to_imu @ turn)
+    def turned_to_imu(self, turn: Vector) -> Vector:
+        """A turn of the base in the axes of an IMU that no joint parts from it [rad/s]."""
+        return algebra.rotate_back(self._mount_rotation, turn)
 
-    def base(
-        self, R: Array, p: Array, v: Array, rate: Array, q: Array, qd: Array, mounting: Array
-    ) -> tuple[Array, Array, Array]:
-        """The base from the IMU: orientation (3, 3), position (3,) [m], velocity in its axes (6,) [m/s, rad/s].
+    def carry(self, q: Array, v: Array, turn: Vector) -> None:
+        """Find where the IMU is in the base, and how joints move it there: `carried`, `lever`, `turning`, `moving`.
 
         Args:
-            R: orientation of the IMU in the world, shape (3, 3).
-            p: its position in the world, shape (3,) [m].
-            v: its velocity in world axes, shape (3,) [m/s].
-            rate: its angular velocity in its own axes, shape (3,) [rad/s].
             q: joint angles, shape (nj,) [rad].
-            qd: joint velocities, shape (nj,) [rad/s].
-            mounting: offsets of the mount, shape (3,) [rad].
+            v: joint velocities, shape (nj,) [rad/s].
+            turn: offsets of the mount [rad].
         """
-        imu, turning, moving = self._mounted(mounting), np.zeros(3), np.zeros(3)
-        if self._behind:
-            self._q[7:], self._v[6:] = q, qd
-            pin.forwardKinematics(self.model, self._data, self._q, self._v)
-            imu = self._data.oMi[self._parent] * imu
-            motion, turned = self._data.v[self._parent], self._data.oMi[self._parent].rotation
-            turning = turned @ motion.angular
-            moving = turned @ (motion.linear + cross(motion.angular, self._placement.translation))
-        base, lever = R @ imu.rotation.T, imu.translation
-        spin = imu.rotation @ rate - turning
-        velocity = base.T @ v - cross(spin, lever) - moving
-        return base, p - base @ lever, np.concatenate((velocity, spin))
+        algebra.rotation_of(turn, self._turn)
+        if not self.behind:
+            algebra.compose(self._mount_rotation, self._turn, self.carried)
+            return
+        self._angles[:] = q
+        self._speeds[:] = v
+        pin.forwardKinematics(self.model, self._data, self._q, self._v)
+        motion, R, arm = self._data.v[self._parent], self._joint_rotation, self._mount_position
+        algebra.compose(self._mount_rotation, self._turn, self._mounted)
+        algebra.compose(R, self._mounted, self.carried)
+        self.lever = algebra.add(algebra.rotate(R, arm), algebra.vector(self._joint_position))
+        spin = algebra.vector(motion.angular)
+        self.turning = algebra.rotate(R, spin)
+        self.moving = algebra.rotate(R, algebra.add(algebra.vector(motion.linear), algebra.cross(spin, arm)))
 
 
-@dataclass(frozen=True, slots=True)
-class Footing:
-    """Soles on the ground.
-
-    Attributes:
-        position: sole centres in the world, left first, shape (2, 3) [m].
-        yaw: headings of the soles, shape (2,) [rad].
-        half_size: half of a sole's length and width [m].
-        height: of the ground at x and y [m].
-        normal: of the ground at x and y [m], a unit vector, shape (3,).
-        leaning: half width of soles that lean with their shanks, of which position has the lines on which they stand;
-            None for others [m].
-    """
-
-    position: Array
-    yaw: Array
-    half_size: tuple[float, float]
-    height: Callable[[float, float], float]
-    normal: Callable[[float, float], Array]
-    leaning: float | None = None
-
-    def normals(self) -> Array:
-        """Of the ground under the soles, shape (2, 3)."""
-        return np.stack([self.normal(*place[:2].tolist()) for place in self.position])
-
-    def attitude(self, body: SensedBody, joints: Array) -> Array:
-        """Orientation of the IMU in the world over level soles, shape (3, 3); the body is left at these joints.
-
-        Args:
-            body: kinematics of the robot.
-            joints: their angles, shape (nj,) [rad].
-        """
-        body.update(joints, np.eye(3))
-        level = [_level(float(yaw), normal) for yaw, normal in zip(self.yaw, self.normals(), strict=True)]
-        turned = [level[k] @ body.rotation[k].T for k in (0, 1)]
-        R: Array = turned[0] @ pin.exp3(0.5 * pin.log3(turned[0].T @ turned[1]))
-        return R if self.leaning is None else self._leaning(body, joints, R, level)
-
-    def _leaning(self, body: SensedBody, joints: Array, R: Array, level: list[Array]) -> Array:
-        """Over soles that lean: their lines are level, and so is the way from one to the other; R is a first guess."""
-        left, right = self.position
-        apart = (left - right) / np.linalg.norm(left - right)
-        for _ in range(ROUNDS):
-            # Which edges are the lines follows from how the soles lean.
-            body.update(joints, R)
-            across = body.position[0] - body.position[1]
-            seen = np.stack((body.rotation[0, :, 0], body.rotation[1, :, 0], across / np.linalg.norm(across)))
-            U, _, V = np.linalg.svd(np.stack((level[0][:, 0], level[1][:, 0], apart)).T @ seen)
-            R = U @ np.diag([1.0, 1.0, float(np.linalg.det(U @ V))]) @ V
-        return R
-
-
-def _level(yaw: float, up: Array) -> Array:
-    """Orientation of a sole with a heading, flat on ground with a normal, shape (3, 3)."""
-    ahead = np.array([math.cos(yaw), math.sin(yaw), 0.0])
-    side = np.cross(up, ahead)
-    side /= np.linalg.norm(side)
-    return np.column_stack((np.cross(side, up), side, up))
-
-
-def _between(model: pin.Model, carrier: int, soles: tuple[int, ...]) -> Array:
-    """Indices of the joints on the ways from a joint to the soles."""
+def _between(model: pin.Model, carrier: int, carriers: list[int]) -> Array:
+    """Indices of the joints on the ways from a joint to others."""
     up = set(_ancestors(model, carrier))
     found: set[int] = set()
-    for sole in soles:
-        found |= up ^ set(_ancestors(model, model.frames[sole].parentJoint))
+    for joint in carriers:
+        found |= up ^ set(_ancestors(model, joint))
     return np.array(sorted(model.idx_vs[joint] - 6 for joint in found), dtype=np.intp)
-
-
-def sole_of(kernels: Library, model: pin.Model, data: pin.Data, number: int) -> Bound:
-    """A sole as kernels take it, by its frame."""
-    frame = model.frames[number]
-    joint = data.oMi[frame.parentJoint]
-    return kernels.fill(
-        "SensedSole",
-        joint_rotation_columns=joint.rotation.T,
-        joint_position=joint.translation,
-        placement_rotation=np.ascontiguousarray(frame.placement.rotation),
-        placement_position=np.array(frame.placement.translation),
-    )
 
 
 def supporting(model: pin.Model, carriers: tuple[int, ...]) -> Array:

@@ -4,7 +4,7 @@ import math
 
 import numpy as np
 
-from surefoot.native.library import library
+from surefoot import algebra
 from surefoot.wbc.types import Array
 
 IMPACT = 9.0
@@ -36,28 +36,13 @@ class RateFilter:
 
     def __init__(self, rate: Array, period: float, density: float, unplanned: float) -> None:
         self._noise, self._more = density**2 / period, unplanned**2 * period
-        self.rate, self._seen, self._gained, self._variance = (np.array(rate) for _ in range(4))
-        self._variance[:] = self._noise
-        kernels = library()
-        self._update = (
-            None
-            if kernels is None
-            else kernels.bind(
-                "rate_filter_update",
-                noise=self._noise,
-                more=self._more,
-                impact=IMPACT,
-                seen=self._seen,
-                gained=self._gained,
-                rate=self.rate,
-                variance=self._variance,
-            )
-        )
+        self.rate = self._rate = np.array(rate, dtype=float)
+        self._variance = np.full(3, self._noise)
 
     @property
     def deviation(self) -> float:
         """See the attributes."""
-        return math.sqrt(max(self._variance.tolist()))
+        return math.sqrt(max(self._variance[0], self._variance[1], self._variance[2]))
 
     def update(self, reading: Array, gained: Array | None, ticks: int) -> None:
         """Take a reading.
@@ -68,16 +53,19 @@ class RateFilter:
                 nobody has told [rad/s].
             ticks: since the reading before.
         """
-        if self._update is not None:
-            self._seen[:] = reading
-            if gained is not None:
-                self._gained[:] = gained
-            self._update(ticks, gained is not None)
-        elif gained is None or self._noise == 0.0:
-            self.rate[:], self._variance[:] = reading, self._noise
-        else:
-            expected, variance = self.rate + gained, self._variance + ticks * self._more
-            square = (reading - expected) ** 2
-            variance = np.where(square > IMPACT * (variance + self._noise), square - self._noise, variance)
-            gain = variance / (variance + self._noise)
-            self.rate[:], self._variance[:] = expected + gain * (reading - expected), gain * self._noise
+        for i in range(3):
+            if gained is None or self._noise == 0.0:
+                self._rate[i], self._variance[i] = reading[i], self._noise
+            else:
+                self._take(i, reading[i], gained[i], ticks)
+
+    def _take(self, i: int, z: float, gained: float, ticks: int) -> None:
+        """Take the reading z of an axis."""
+        expected = self._rate[i] + gained
+        y = z - expected
+        P = self._variance[i] + ticks * self._more
+        if algebra.square(y) > IMPACT * (P + self._noise):
+            P = algebra.square(y) - self._noise
+        gain = P / (P + self._noise)
+        self._rate[i] = expected + gain * y
+        self._variance[i] = gain * self._noise

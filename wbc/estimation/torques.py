@@ -1,13 +1,12 @@
 """Sole wrenches of a robot without sensors in its feet, from the torques of its joints."""
 
 import math
-from collections.abc import Callable
 
 import numpy as np
 import pinocchio as pin
 
-from surefoot.native.library import Library, library
-from surefoot.wbc.estimation.kinematics import sole_of, supporting
+from surefoot import algebra, linear
+from surefoot.wbc.estimation.kinematics import Sole, supporting
 from surefoot.wbc.estimation.parameters import SensorNoise
 from surefoot.wbc.types import Array, RobotState
 
@@ -52,7 +51,7 @@ class TorqueWrench:
             in the middle between two calls, and a torque that changes evenly.
 
     Attributes:
-        wrench: as of the last call, shape (2, 6) [N, N·m].
+        wrench: as of the last call, shape (2, 6) [N, N·m]; not finite where the state was not.
         deviation: of its forces and of its moments, the largest [N, N·m].
         late: by how much the low pass makes it later [s].
     """
@@ -61,7 +60,8 @@ class TorqueWrench:
         self, model: pin.Model, soles: tuple[str, str], period: float, sensors: SensorNoise, held: bool = True
     ) -> None:
         self._model, self._data, self._period, self._held = model, model.createData(), period, held
-        self._soles = tuple(model.getFrameId(name) for name in soles)
+        frames = [model.getFrameId(name) for name in soles]
+        self._left, self._right = (Sole(model, self._data, frame) for frame in frames)
         # As in an α-β filter the noise grows with the bandwidth faster than the lag falls.
         quiet = min((FINE / sensors.encoder) ** 0.4, 1.0) if sensors.encoder > 0.0 else 1.0
         self._gain = gain = 1.0 - math.exp(-math.tau * BANDWIDTH * quiet * period)
@@ -69,57 +69,29 @@ class TorqueWrench:
         # White noise of a velocity, differenced and low-passed, and that of a torque.
         differenced, passed = 2.0 * gain**2 / (2.0 - gain) / period**2, gain / (2.0 - gain)
         rate = max(sensors.encoder, 1e-7) * math.sqrt(2.0) / period
-        self._velocity_noise = np.full(model.nv, rate**2 * differenced)
-        self._velocity_noise[:6] = np.repeat(np.square(BASE), 3) * differenced
+        base = np.repeat(np.square(BASE), 3) * differenced
+        self._velocity_noise = np.concatenate((base, np.full(model.nv - 6, rate**2 * differenced)))
         self._torque_noise = (sensors.joint_torque**2 + 0.05**2) * passed
         self._begun, self._residual = False, np.zeros(model.nv)
         self._momentum, self._driven, self._torque = np.zeros(model.nv), np.zeros(model.nv), np.zeros(model.nv - 6)
-        self._scale = np.tile([1.0, 1.0, 1.0, LEVER, LEVER, LEVER], 2)
         # The base moves both soles.
-        carriers = tuple(model.frames[sole].parentJoint for sole in self._soles)
-        self._supporting = np.hstack((np.ones((2, 6)), supporting(model, carriers)))
-        self._rows = np.flatnonzero(self._supporting.any(axis=0))
+        carriers = tuple(model.frames[frame].parentJoint for frame in frames)
+        carry = np.hstack((np.ones((2, 6)), supporting(model, carriers)))
+        self._supporting, self._rows = carry, np.flatnonzero(carry.any(axis=0))
         self.wrench, self.deviation = np.zeros((2, 6)), (0.0, 0.0)
-        kernels = library()
-        self._find = self._compiled(kernels) if kernels else None
+        self._share_memory(model.nv, len(self._rows))
 
-    def _compiled(self, kernels: Library) -> Callable[[float, float], None]:
-        model, data, m = self._model, self._data, len(self._rows)
-        self._v, self._given = np.zeros(model.nv), np.zeros(model.nv - 6)
-        self._found, self._spread = np.zeros((2, 6)), np.zeros(12)
-        left, right = (sole_of(kernels, model, data, frame) for frame in self._soles)
-        find: Callable[[float, float], None] = kernels.bind(
-            "torque_wrench_update",
-            nv=model.nv,
-            count=m,
-            held=self._held,
-            base_noise=BASE_NOISE,
-            torque_noise=self._torque_noise,
-            least=1.0 / LARGEST**2,
-            M=data.M.T,
-            C_columns=data.C.T,
-            gravity=data.g,
-            joint_jacobian_columns=data.J.T,
-            left=left,
-            right=right,
-            rows=self._rows,
-            supporting=self._supporting,
-            velocity_noise=self._velocity_noise,
-            scale=self._scale,
-            v=self._v,
-            torque=self._given,
-            momentum=self._momentum,
-            driven=self._driven,
-            last_torque=self._torque,
-            residual=self._residual,
-            noise=np.zeros((m, m)),
-            A=np.zeros((m, 12)),
-            some=np.zeros(model.nv),
-            seen=np.zeros(m),
-            wrench=self._found,
-            deviation=self._spread,
-        )
-        return find
+    def _share_memory(self, nv: int, m: int) -> None:
+        """See Pinocchio's data, of which a row here is a column there, and have room for what lies between."""
+        data = self._data
+        self._upper, self._M, self._C, self._gravity, self._J = data.M, data.M.T, data.C.T, data.g, data.J.T
+        self._M_v, self._C_v = np.zeros(nv), np.zeros(nv)
+        self._some, self._noisy, self._noise = np.zeros((m, nv)), np.zeros((m, nv)), np.zeros((m, m))
+        # Beside the Jacobian stands the residual, beside the normal equations their right side.
+        self._A = np.zeros((m, 13))
+        self._both, self._root = np.zeros((12, 13)), np.zeros((12, 13))
+        self._normal, self._spreads = self._both[:, :12], np.zeros(12)
+        self._spread = self._spreads
 
     def update(self, state: RobotState, torque: Array, passed: float | None = None) -> Array:
         """Wrenches in the sole frames, shape (2, 6) [N, N·m].
@@ -128,52 +100,101 @@ class TorqueWrench:
             state: of the robot at the instant of the torque.
             torque: of the joints over the tick that ended, shape (nj,) [N·m].
             passed: since the call before; None for a control period [s].
+
+        Raises:
+            ValueError: velocities or torques are of another robot.
         """
-        model, data, q, v = self._model, self._data, state.q, state.v
+        model, data, q = self._model, self._data, state.q
+        v, torque = np.asarray(state.v, dtype=np.float64), np.asarray(torque, dtype=np.float64)
+        if v.shape != (model.nv,) or torque.shape != (model.nv - 6,):
+            raise ValueError(
+                f"velocities of shape {v.shape} and torques of shape {torque.shape} of {model.nv - 6} joints"
+            )
         pin.computeCoriolisMatrix(model, data, q, v)
         pin.crba(model, data, q)
         pin.computeGeneralizedGravity(model, data, q)
         pin.computeJointJacobians(model, data, q)
         # At first there is no span.
         span, self._begun = (passed or self._period) if self._begun else 0.0, True
-        share = 1.0 - (1.0 - self._gain) ** (span / self._period)
-        if self._find is not None:
-            self._v[:], self._given[:] = v, torque
-            self._find(span, share)
-            self.wrench, spread = self._found.copy(), self._spread
-        else:
-            M = np.triu(data.M) + np.triu(data.M, 1).T
-            self._observe(M, v, torque, span, share)
-            self.wrench, spread = self._wrenches(M)
-        largest = spread.reshape(2, 2, 3).max(axis=(0, 2)).tolist()
+        linear.mirror(self._upper)
+        self._observe(v, torque, span)
+        self.wrench = np.full((2, 6), math.nan)
+        self._spread[:] = math.nan
+        if not self._weigh():
+            self._explain(self.wrench.ravel())
+        largest = self._spreads.reshape(2, 2, 3).max(axis=(0, 2)).tolist()
         self.deviation = largest[0], largest[1]
         return self.wrench
 
-    def _observe(self, M: Array, v: Array, torque: Array, span: float, share: float) -> None:
+    def _observe(self, v: Array, torque: Array, span: float) -> None:
         """Take what drives the momentum beside all that is known, a share of it in a span."""
-        driven, momentum = self._data.C.T @ v - self._data.g, M @ v
-        if span > 0.0:
-            # The exact discrete low pass. Half a tick in the torque is a force where a command jumps.
-            lacking = (momentum - self._momentum) / span - 0.5 * (driven + self._driven)
-            lacking[6:] -= torque if self._held else 0.5 * (torque + self._torque)
-            self._residual += share * (lacking - self._residual)
-        else:
-            self._residual[:] = -driven
-            self._residual[6:] -= torque
+        linear.multiply(self._M, v, self._M_v)
+        linear.multiply(self._C, v, self._C_v)
+        share = 1.0 - math.pow(1.0 - self._gain, span / self._period)
+        for i in range(len(self._residual)):
+            momentum, driven = self._M_v[i], self._C_v[i] - self._gravity[i]
+            now = torque[i - 6] if i >= 6 else 0.0
+            if span > 0.0:
+                # The exact discrete low pass. Half a tick in the torque is a force where a command jumps.
+                acted = now if i < 6 or self._held else 0.5 * (now + self._torque[i - 6])
+                lacking = (momentum - self._momentum[i]) / span - 0.5 * (driven + self._driven[i])
+                self._residual[i] += share * (lacking - acted - self._residual[i])
+            else:
+                self._residual[i] = -driven - now
+            self._momentum[i], self._driven[i] = momentum, driven
         # Who gives the torque may write the next one into the same array.
-        self._momentum[:], self._driven[:], self._torque[:] = momentum, driven, torque
+        self._torque[:] = torque
 
-    def _wrenches(self, M: Array) -> tuple[Array, Array]:
-        """Wrenches of the soles, and their deviations one after the other, shape (12,)."""
-        model, data, rows = self._model, self._data, self._rows
-        pin.updateFramePlacements(model, data)
-        jacobians = [pin.getFrameJacobian(model, data, frame, pin.ReferenceFrame.LOCAL) for frame in self._soles]
-        A, some = (np.vstack(jacobians).T * self._scale)[rows], M[rows]
-        noise = (some * self._velocity_noise) @ some.T
-        noise[np.diag_indices_from(noise)] += np.where(rows < 6, BASE_NOISE, self._torque_noise)
-        weighted = np.linalg.solve(noise, A)
-        normal = A.T @ weighted
-        normal[np.diag_indices(12)] += 1.0 / LARGEST**2
-        covariance = np.linalg.inv(normal)
-        found: Array = (self._scale * (covariance @ (weighted.T @ self._residual[rows]))).reshape(2, 6)
-        return found, self._scale * np.sqrt(covariance.diagonal())
+    def _weigh(self) -> bool:
+        """Set up the normal equations A' N⁻¹ A w = A' N⁻¹ r of the wrenches, with the covariance N of the residual r.
+
+        Returns:
+            Whether there are none, as of a state that is not finite.
+        """
+        self._see(0, self._left)
+        self._see(1, self._right)
+        for r in range(len(self._rows)):
+            row = self._rows[r]
+            self._A[r, 12] = self._residual[row]
+            for j in range(len(self._residual)):
+                self._some[r, j] = self._M[row, j]
+                self._noisy[r, j] = self._velocity_noise[j] * self._M[row, j]
+        linear.upper_product(self._noisy, self._some, self._noise)
+        for r in range(len(self._rows)):
+            self._noise[r, r] += BASE_NOISE if self._rows[r] < 6 else self._torque_noise
+        if linear.factor(self._noise):
+            return True
+        linear.forward_solve(self._noise, self._A)
+        self._both[:] = 0.0
+        linear.add_gram(self._both, self._A)
+        for a in range(12):
+            self._normal[a, a] += 1.0 / LARGEST**2
+        return linear.factor(self._normal)
+
+    def _see(self, k: int, sole: Sole) -> None:
+        """Transposed Jacobian of a sole in its frame, of the rows that move one, with moments counted as forces."""
+        sole.place()
+        for r in range(len(self._rows)):
+            row = self._rows[r]
+            along = self._J[row, 0], self._J[row, 1], self._J[row, 2]
+            angular = self._J[row, 3], self._J[row, 4], self._J[row, 5]
+            at_sole = algebra.subtract(along, algebra.cross(sole.position, angular))
+            carries = self._supporting[k, row]
+            force, moment = algebra.rotate_back(sole.rotation, at_sole), algebra.rotate_back(sole.rotation, angular)
+            algebra.put_row(self._A, r, algebra.scale(carries, force), 6 * k)
+            algebra.put_row(self._A, r, algebra.scale(carries * LEVER, moment), 6 * k + 3)
+
+    def _explain(self, wrench: Array) -> None:
+        """Solve the normal equations U'U w = y: the wrenches, shape (12,), and how far off they may be."""
+        self._root[:] = 0.0
+        for a in range(12):
+            self._root[a, a], self._root[a, 12] = 1.0, self._both[a, 12]
+        linear.forward_solve(self._normal, self._root)
+        for a in range(12):
+            variance, found = 0.0, 0.0
+            for r in range(a, 12):
+                variance += self._root[r, a] * self._root[r, a]
+                found += self._root[r, a] * self._root[r, 12]
+            scale = 1.0 if a % 6 < 3 else LEVER
+            wrench[a] = scale * found
+            self._spread[a] = scale * math.sqrt(variance)

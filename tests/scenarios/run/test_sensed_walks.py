@@ -15,10 +15,9 @@ from surefoot.scenarios.setup.walk import resolve
 from surefoot.sim.sensor_errors import CHEAP, GOOD, PERFECT
 from surefoot.wbc.estimation import estimator
 from surefoot.wbc.estimation.estimate import Deviation, Estimate, Planned
-from surefoot.wbc.estimation.parameters import GroundNoise
 from surefoot.wbc.estimation.torques import TorqueWrench
 from surefoot.wbc.external import LoadObserver
-from surefoot.wbc.types import GRAVITY, RobotState
+from surefoot.wbc.types import RobotState
 
 STAND = {"gait.steps": 0, "duration": 0.1}
 GOOD_SENSORS = {"sensing.source": "ekf", "sensing.preset": "good"}
@@ -80,7 +79,7 @@ def test_what_is_no_estimate_is_its_own_fault(tmp_path):
 def test_an_option_that_is_unknown_or_out_of_range_is_refused():
     walk = resolve(surefoot.load("stand", GOOD_SENSORS))
     made = sensed_state(walk, covariance_rate=50.0, ground={"height": 0.0})
-    assert made._parameters.covariance_rate == 50.0 and made._parameters.ground.height == 0.0
+    assert made.parameters.covariance_rate == 50.0 and made.parameters.ground.height == 0.0
     for options, words in (
         ({"speed": 1.0}, "unknown option 'speed'"),
         ({"ground": {"width": 1.0}}, "unknown option 'width'"),
@@ -143,38 +142,6 @@ def test_a_walk_from_sensors_is_planned_where_they_say_that_the_robot_stands():
     away = loop.walker.measurement.q[:2] - mind.state.q[:2]
     assert np.hypot(*away) > 0.005  # the start noise has put it somewhere else
     np.testing.assert_allclose(loop.planning.plan.zmp_reference[0], believed, atol=1e-3)
-
-
-@pytest.mark.unit
-def test_standing_soles_sink_under_what_the_filter_is_told_of_their_loads():
-    """All that its springs have given by in a while is the change of the wrench over it."""
-    made = []
-
-    def make(walk):
-        made.append(Listening(walk))
-        return made[0]
-
-    keys = {"start.angle_noise": 0.017, "sensing.preset": "good"}
-    loop = closed_loop(resolve(surefoot.load("stand", keys)), NoLog(), surefoot.Parts(estimator=make))
-    loop.step()
-    estimator = made[0].inner
-    first, risen, inner = estimator._load[:, 2].copy(), np.zeros(2), estimator.filter
-
-    class Heard:
-        def __getattr__(self, name):
-            return getattr(inner, name)
-
-        def spread(self, loads, sprung=None):
-            risen[:] += sprung[:, 2]
-            inner.spread(loads, sprung)
-
-    estimator._filter = Heard()
-    for _ in range(40):
-        loop.step()
-    changed, depth = estimator._load[:, 2] - first, GroundNoise().depth
-    assert np.abs(changed).max() > 2.0
-    weight = GRAVITY * estimator._body.mass
-    np.testing.assert_allclose(risen, -depth * changed / weight, rtol=1e-9)
 
 
 @pytest.mark.unit

@@ -1,16 +1,18 @@
-"""The state of a robot now by an IMU that is fixed to its base."""
+"""The state of a robot by its IMU, wherever that is."""
 
 import numpy as np
 import pinocchio as pin
 import pytest
 
 from surefoot.wbc.estimation.base import FARTHEST, FASTEST, FloatingBase
-from surefoot.wbc.estimation.kinematics import ImuMount, SensedBody
+from surefoot.wbc.estimation.footing import ImuMount
+from surefoot.wbc.estimation.kinematics import SensedBody
 from surefoot.wbc.estimation.stand import AXES, Stand
 
 pytestmark = pytest.mark.unit
 
 TURNED = tuple(map(tuple, pin.exp3(np.array([0.3, -0.2, 0.9])).tolist()))
+MOUNTS = [ImuMount(), ImuMount(None, (0.05, 0.01, -0.08), TURNED), ImuMount("torso", (0.02, 0.03, 0.2), TURNED)]
 LATE = 0.006
 
 
@@ -23,19 +25,23 @@ def seen(robot, mount, q, v, rng):
     pin.forwardKinematics(robot.model, data, q, v)
     by, bias = 0.1 * rng.normal(size=AXES), 0.1 * rng.normal(size=3)
     placement = pin.SE3(np.array(mount.rotation) @ pin.exp3(by), np.array(mount.position))
-    pose, motion = data.oMi[1] * placement, placement.actInv(data.v[1])
+    joint = 1
+    if mount.body:
+        frame = robot.model.frames[robot.model.getFrameId(mount.body)]
+        joint, placement = frame.parentJoint, frame.placement * placement
+    pose, motion = data.oMi[joint] * placement, placement.actInv(data.v[joint])
     body = SensedBody(robot.model, robot.frames.soles, mount)
     zeros, joints = 1e-3 * rng.normal(size=len(body.chain)), q[7:].copy()
     joints[body.chain] += zeros
     columns = np.vstack((pose.rotation @ motion.linear, pose.translation, np.zeros((2, 3))))
     offsets = np.concatenate((zeros, by))
     stand = Stand(pose.rotation.copy(), columns, np.zeros((2, 3, 3)), bias, np.zeros(3), offsets)
-    return FloatingBase(stand, body.mount, body.chain, motion.angular + bias, len(joints)), stand, joints
+    return FloatingBase(stand, body, motion.angular + bias), stand, joints
 
 
 @pytest.mark.parametrize("turned", [0.1, 2.5, 3.1])
 @pytest.mark.parametrize("axis", [(0.6, 0.0, 0.8), (1.0, 0.0, 0.0), (0.0, 1.0, 0.1)])
-@pytest.mark.parametrize("mount", [ImuMount(), ImuMount(None, (0.05, 0.01, -0.08), TURNED)])
+@pytest.mark.parametrize("mount", MOUNTS)
 def test_the_base_is_where_it_has_come_to(robot, mount, axis, turned):
     """As by Pinocchio; with late readings gone on evenly by what it is planned to gain."""
     rng = np.random.default_rng(3)
@@ -52,6 +58,24 @@ def test_the_base_is_where_it_has_come_to(robot, mount, axis, turned):
         np.testing.assert_allclose(state.v[:6], v[:6] + (0.0 if given is None else gained), atol=1e-12)
         np.testing.assert_allclose(state.q[7:], q[7:], atol=1e-15)
         np.testing.assert_array_equal(state.v[6:], v[6:])
+
+
+@pytest.mark.parametrize("mount", MOUNTS)
+def test_a_state_at_another_time_has_the_velocities_of_then(robot, mount):
+    rng = np.random.default_rng(5)
+    q = pin.integrate(robot.model, robot.standing, 0.3 * rng.normal(size=robot.nv))
+    v, faster, turned = rng.normal(size=robot.nv), rng.normal(size=3), rng.normal(size=3)
+    base, stand, joints = seen(robot, mount, q, v, rng)
+    pose = pin.XYZQUATToSE3(q[:7])
+    now = base.state(joints, v[6:], None, 0.0)
+    then = base.seen(joints, v[6:], tuple(stand.v + faster), tuple(turned))
+    again = base.seen(joints, v[6:], tuple(stand.v), tuple(turned))
+    np.testing.assert_allclose(then.q, now.q, atol=1e-12)
+    # A velocity of the IMU is one of the base; a turn moves the base by its lever.
+    np.testing.assert_allclose(then.v[:3] - again.v[:3], pose.rotation.T @ faster, atol=1e-12)
+    spin = then.v[3:6] - now.v[3:6]
+    np.testing.assert_allclose(again.v[:3] - now.v[:3], -np.cross(spin, pose.actInv(stand.p)), atol=1e-12)
+    assert np.linalg.norm(spin) > 0.1
 
 
 def test_a_state_is_its_own_and_none_of_one_that_has_diverged(robot):

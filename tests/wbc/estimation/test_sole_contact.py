@@ -31,7 +31,7 @@ class Feet:
             wrench[0, 4] = -cop * HALF[0] * wrench[0, 2]
             noise = np.repeat([self.sensors.wrench_force, self.sensors.wrench_moment], 3)
             said = wrench + self.bias + noise * self.rng.normal(size=(2, 6))
-            self.contact.update(Reading(said, 0.0, True), [k != rolling for k in (0, 1)], above)
+            self.contact.update(Reading(said, 0.0, True), [k != rolling for k in (0, 1)], np.array(above))
             if felt is None and self.contact.felt[0]:
                 felt = tick + 1
         return felt
@@ -44,7 +44,7 @@ def test_a_swing_tares_the_sensor_and_feels_nothing(sensors):
     assert feet.update(0.0, 1.0, above=(0.05, 0.0), ticks=30000) is None or sensors is POOR
     np.testing.assert_allclose(feet.contact.wrench[0] - 0.0, 0.0, atol=4.0 * sensors.wrench_force)
     assert feet.contact.tared[0] > 1.0 > feet.contact.tared[1]
-    tare = feet.contact._tare[0] - feet.bias[0]
+    tare = feet.contact.tare[0] - feet.bias[0]
     assert np.abs(tare[:3]).max() < 0.5 * sensors.wrench_force
     # Both must have swung before no bias is left in what both feel.
     assert feet.contact.bias == pytest.approx(sensors.wrench_bias, rel=0.01)
@@ -133,7 +133,7 @@ def test_a_force_that_grows_evenly_acted_when_its_age_says(sensors):
     for tick in range(100):
         wrench = np.zeros((2, 6))
         wrench[:, 2] = 100.0 + slope * (tick * PERIOD - latency)
-        feet.contact.update(Reading(wrench, latency, True), [True, True], (0.0, 0.0))
+        feet.contact.update(Reading(wrench, latency, True), [True, True], np.zeros(2))
     assert feet.contact.age > latency + 0.0005
     np.testing.assert_allclose(feet.contact.wrench[:, 2], 100.0 + slope * (99 * PERIOD - feet.contact.age), atol=1e-6)
 

@@ -4,9 +4,8 @@ import copy
 import logging
 import math
 import threading
-from collections.abc import Callable, Sequence
-from functools import lru_cache, partial
-from typing import Any
+from collections.abc import Sequence
+from functools import lru_cache
 
 import numpy as np
 
@@ -15,7 +14,6 @@ from surefoot.forces import Push
 from surefoot.joints import JointCommand
 from surefoot.models.convert import pinocchio_to_mujoco
 from surefoot.models.types import RobotDescription, nearest
-from surefoot.native.library import Library, library
 from surefoot.planner.ground.terrain import Terrain
 from surefoot.sim.bodies import BodyPoses
 from surefoot.sim.drives import Drives
@@ -78,27 +76,6 @@ class World:
         self._qacc, self._xfrc = self.data.qacc, self.data.xfrc_applied
         self._last_qpos, self._last_qvel = self._qpos.copy(), self._qvel.copy()
         self._torque = self._ctrl if drives is None else np.zeros(self._model.nu)
-        self._begin, self._is_sound = self._around(library())
-
-    def _around(self, kernels: Library | None) -> tuple[Callable[[], Any], Callable[[float], Any]]:
-        """What begins a step and what judges it, by kernels where there are any."""
-        now, last, pushed = (self._qpos, self._qvel), (self._last_qpos, self._last_qvel), self._pushes.mean
-        if kernels is None:
-            return partial(_begun, self._torque, now, last, pushed), partial(_sound, self._qacc)
-        step = kernels.fill(
-            "WorldStep",
-            nq=self._model.nq,
-            nv=self._model.nv,
-            nu=self._model.nu,
-            qpos=now[0],
-            qvel=now[1],
-            qacc=self._qacc,
-            torque=self._torque,
-            last_qpos=last[0],
-            last_qvel=last[1],
-            pushed=pushed,
-        )
-        return kernels.bind("world_begun", step), kernels.bind("world_sound", step)
 
     @property
     def model(self) -> mujoco.MjModel:
@@ -175,11 +152,14 @@ class World:
             SimulationDiverged: the torque or the state is not finite.
         """
         self._torque[:] = torque
-        if not self._begin():
+        if not self._torque.dot(self._torque) < math.inf:
             raise SimulationDiverged(self.time, "the commanded torque is not finite")
+        self._last_qpos[:] = self._qpos
+        self._last_qvel[:] = self._qvel
         if self._drives is not None:
             self._drives.tell(self.tick, torque)
         pushes, tick, end = self._pushes, self.tick, self.tick + steps
+        pushes.mean[:] = 0.0
         while tick < end:
             if tick >= pushes.next_change:
                 pushes.step_over(self._xfrc)
@@ -190,7 +170,7 @@ class World:
             if pushes.active:
                 pushes.mean += (stop - tick) / steps * pushes.total
             tick = stop
-        if not self._is_sound(ACCELERATION_LIMIT):
+        if not self._qacc.dot(self._qacc) < ACCELERATION_LIMIT**2:  # which NaN is not
             self._diverge()
         self.tick = end
 
@@ -219,21 +199,6 @@ class World:
         self.data.qacc_warmstart[:] = 0.0
         mujoco.mj_forward(self._model, self.data)
         raise SimulationDiverged(self.time, "the acceleration is not finite")
-
-
-def _begun(torque: Array, now: tuple[Array, Array], last: tuple[Array, Array], pushed: Array) -> bool:
-    """Keep the state to come back to, and forget the push of the step before; whether the torque is finite."""
-    # Methods and assignments: numpy's functions of these names go through Python first.
-    if not torque.dot(torque) < math.inf:
-        return False
-    last[0][...], last[1][...] = now
-    pushed[:] = 0.0
-    return True
-
-
-def _sound(acceleration: Array, most: float) -> bool:
-    """Whether an acceleration has a norm below that, which NaN has not."""
-    return bool(acceleration.dot(acceleration) < most**2)
 
 
 @lru_cache(maxsize=4)

@@ -1,3 +1,5 @@
+from surefoot.algebra cimport vector3
+
 cpdef double dot(const double[:] a, const double[:] b) noexcept nogil
 cpdef double row_dot(const double[:, :] A, Py_ssize_t i, const double[:] x) noexcept nogil
 cpdef void multiply(const double[:, :] A, const double[:] x, double[:] out) noexcept nogil
@@ -23,3 +25,7 @@ cpdef void downdate(double[:, :] P, const double[:, :] Y) noexcept nogil
 cpdef void inverse(const double[:, :] U, double[:, :] out) noexcept nogil
 cpdef double fused_sum(double a, double x, double b, double y, double c, double z) noexcept nogil
 cpdef double nearest(double value) noexcept nogil
+cpdef vector3 fused_rotate(const double[:, :] A, vector3 x) noexcept nogil
+cpdef vector3 fused_rotate_back(const double[:, :] A, vector3 x) noexcept nogil
+cpdef void fused_compose(const double[:, :] A, const double[:, :] B, double[:, :] out) noexcept nogil
+cpdef void fill(double[:] out, Py_ssize_t start, const double[:] values) noexcept nogil

@@ -58,9 +58,9 @@ class SensorReader:
     def _allocate(self, nq: int, nv: int, wrench: Array) -> None:
         q, v, torque, felt, push = np.zeros(nq), np.zeros(nv), np.zeros(nv - 6), np.zeros(3), np.zeros(3)
         self._q, self._v, self._torque, self._accelerometer, self._push = q, v, torque, felt, push
+        q, v, torque, felt = _read_only(q), _read_only(v), _read_only(torque), _read_only(felt)
         # Of a measurement, from the joints' positions to the push.
-        views = (q[7:], v[6:], torque, v[3:6], felt, wrench, q, v, push)
-        self._views = tuple([_read_only(view) for view in views])
+        self._views = (q[7:], v[6:], torque, v[3:6], felt, _read_only(wrench), q, v, _read_only(push))
 
     def read(self, time: float) -> Measurement:
         """Everything at `time` [s], where a step of the world ended."""

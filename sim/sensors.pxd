@@ -28,7 +28,7 @@ cdef class SensorReader:
     @cython.locals(sole=Sole)
     cdef void _read(self, const double[:, ::1] external)
     cdef void _without_pushes(self)
-    @cython.locals(row=cython.double[::1])
+    @cython.locals(lever=vector3, torque=vector3, rest=vector3)
     cdef void _take_off(self, Py_ssize_t body, vector3 force) noexcept
 
 cdef double _largest(vector3 a, vector3 b) noexcept nogil

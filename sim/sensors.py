@@ -91,12 +91,13 @@ class SensorReader:
             self._take_off(body, algebra.vector(force))
 
     def _take_off(self, body: int, force: Vector) -> None:
-        row = self._contact[body]
-        lever = algebra.subtract(algebra.vector(self._body_com[body]), algebra.vector(self._com))
-        algebra.put(row[:3], algebra.subtract(algebra.vector(row[:3]), algebra.cross(lever, force)))
-        algebra.put(row[3:], algebra.subtract(algebra.vector(row[3:]), force))
-        if _largest(algebra.vector(row[:3]), algebra.vector(row[3:])) < ROUND_OFF * _largest(force, force):
-            row[:] = 0.0
+        lever = algebra.subtract(algebra.row(self._body_com, body), algebra.vector(self._com))
+        torque = algebra.subtract(algebra.row(self._contact, body), algebra.cross(lever, force))
+        rest = algebra.subtract(algebra.row(self._contact, body, 3), force)
+        if _largest(torque, rest) < ROUND_OFF * _largest(force, force):
+            torque, rest = (0.0, 0.0, 0.0), (0.0, 0.0, 0.0)
+        algebra.put_row(self._contact, body, 0, torque)
+        algebra.put_row(self._contact, body, 3, rest)
 
 
 class Sole:
@@ -119,7 +120,7 @@ class Sole:
             external: forces on all bodies, shape (nbody, 6) [N·m, N].
             com: of the robot in the world [m].
         """
-        torque, force = algebra.vector(external[self.foot, :3]), algebra.vector(external[self.foot, 3:])
+        torque, force = algebra.row(external, self.foot), algebra.row(external, self.foot, 3)
         lever = algebra.subtract(com, algebra.vector(self.position))
         torque = algebra.add(algebra.cross(lever, force), torque)
         algebra.put(self.wrench[:3], algebra.rotate_back(self.rotation, force))

@@ -2,7 +2,6 @@
 
 import copy
 import logging
-import math
 import threading
 from collections.abc import Sequence
 from functools import lru_cache
@@ -16,6 +15,7 @@ from surefoot.models.convert import pinocchio_to_mujoco
 from surefoot.models.types import RobotDescription, nearest
 from surefoot.planner.ground.terrain import Terrain
 from surefoot.sim.bodies import BodyPoses
+from surefoot.sim.checkpoint import Checkpoint, is_finite
 from surefoot.sim.drives import Drives
 from surefoot.sim.errors import SimulationDiverged, WorldError
 from surefoot.sim.measurement import Array, Measurement
@@ -25,9 +25,6 @@ from surefoot.sim.sensors import SensorReader
 from surefoot.similarity import REFERENCE_SIZE, Similarity
 
 _LOG = logging.getLogger(__name__)
-
-ACCELERATION_LIMIT = 1e10
-"""Norm of the generalised acceleration beyond which a state counts as diverged; MuJoCo's own bound."""
 
 
 class World:
@@ -73,8 +70,7 @@ class World:
         self._pushes = PushSchedule(pushes, [self._model.body(push.body).id for push in pushes], physics_rate)
         self._sensors = SensorReader(self._model, self.data, description, self._pushes)
         self._ctrl, self._qpos, self._qvel = self.data.ctrl, self.data.qpos, self.data.qvel
-        self._qacc, self._xfrc = self.data.qacc, self.data.xfrc_applied
-        self._last_qpos, self._last_qvel = self._qpos.copy(), self._qvel.copy()
+        self._xfrc, self._sound = self.data.xfrc_applied, Checkpoint(self.data)
         self._torque = self._ctrl if drives is None else np.zeros(self._model.nu)
 
     @property
@@ -152,10 +148,9 @@ class World:
             SimulationDiverged: the torque or the state is not finite.
         """
         self._torque[:] = torque
-        if not self._torque.dot(self._torque) < math.inf:
+        if not is_finite(self._torque):
             raise SimulationDiverged(self.time, "the commanded torque is not finite")
-        self._last_qpos[:] = self._qpos
-        self._last_qvel[:] = self._qvel
+        self._sound.keep()
         if self._drives is not None:
             self._drives.tell(self.tick, torque)
         pushes, tick, end = self._pushes, self.tick, self.tick + steps
@@ -170,7 +165,7 @@ class World:
             if pushes.active:
                 pushes.mean += (stop - tick) / steps * pushes.total
             tick = stop
-        if not self._qacc.dot(self._qacc) < ACCELERATION_LIMIT**2:  # which NaN is not
+        if self._sound.diverged():
             self._diverge()
         self.tick = end
 
@@ -194,8 +189,7 @@ class World:
         self._pushes.mean[:] = pushed / steps
 
     def _diverge(self) -> None:
-        self._qpos[:] = self._last_qpos
-        self._qvel[:] = self._last_qvel
+        self._sound.restore()
         self.data.qacc_warmstart[:] = 0.0
         mujoco.mj_forward(self._model, self.data)
         raise SimulationDiverged(self.time, "the acceleration is not finite")

@@ -40,7 +40,7 @@ def measured_zmp(wrench: Array, sole_position: Array, sole_rotation: Array) -> t
     """
     load, height = 0.0, 0.0
     for foot in range(2):
-        force = algebra.rotate(sole_rotation[foot], algebra.vector(wrench[foot, :3]))
+        force = algebra.rotate(sole_rotation[foot], algebra.row(wrench, foot))
         load += force[2]
         height += force[2] * sole_position[foot, 2]
     if load < _LEAST:
@@ -48,8 +48,8 @@ def measured_zmp(wrench: Array, sole_position: Array, sole_rotation: Array) -> t
     height /= load
     moment_x, moment_y = 0.0, 0.0
     for foot in range(2):
-        force = algebra.rotate(sole_rotation[foot], algebra.vector(wrench[foot, :3]))
-        torque = algebra.rotate(sole_rotation[foot], algebra.vector(wrench[foot, 3:]))
+        force = algebra.rotate(sole_rotation[foot], algebra.row(wrench, foot))
+        torque = algebra.rotate(sole_rotation[foot], algebra.row(wrench, foot, 3))
         x, y, z = sole_position[foot, 0], sole_position[foot, 1], sole_position[foot, 2] - height
         moment_x += torque[0] + y * force[2] - z * force[1]
         moment_y += torque[1] + z * force[0] - x * force[2]

@@ -44,7 +44,7 @@ def measured_zmp(wrench: Array, sole_position: Array, sole_rotation: Array) -> t
         load += force[2]
         height += force[2] * sole_position[foot, 2]
     if load < _LEAST:
-        return NOWHERE, NOWHERE, NOWHERE
+        load = NOWHERE
     height /= load
     moment_x, moment_y = 0.0, 0.0
     for foot in range(2):

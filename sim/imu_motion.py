@@ -97,9 +97,9 @@ class ImuChain:
         """Its motion in a state of Pinocchio's convention, shapes (7 + nj,) and (6 + nj,)."""
         at = ImuMotion()
         x, y, z = convert.rotation(q[6], q[3], q[4], q[5])
-        algebra.put_row(self._R, 0, 0, x)
-        algebra.put_row(self._R, 1, 0, y)
-        algebra.put_row(self._R, 2, 0, z)
+        algebra.put_row(self._R, 0, x)
+        algebra.put_row(self._R, 1, y)
+        algebra.put_row(self._R, 2, z)
         at.velocity, at.angular_velocity = (v[0], v[1], v[2]), (v[3], v[4], v[5])
         for link in self._links:
             self._pass(link, q[7 + link.joint], v[6 + link.joint], at)

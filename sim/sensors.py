@@ -96,8 +96,8 @@ class SensorReader:
         rest = algebra.subtract(algebra.row(self._contact, body, 3), force)
         if _largest(torque, rest) < ROUND_OFF * _largest(force, force):
             torque, rest = (0.0, 0.0, 0.0), (0.0, 0.0, 0.0)
-        algebra.put_row(self._contact, body, 0, torque)
-        algebra.put_row(self._contact, body, 3, rest)
+        algebra.put_row(self._contact, body, torque)
+        algebra.put_row(self._contact, body, rest, 3)
 
 
 class Sole:

@@ -91,7 +91,7 @@ class RowWriter:
         """Write vectors and numbers into a row."""
         column = 0
         for source in self._sources:
-            linear.copy(source.values, row, column)
+            linear.fill(row, column, source.values)
             column += len(source.values)
         for k in range(len(numbers)):
             row[column + k] = numbers[k]

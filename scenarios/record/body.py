@@ -141,7 +141,7 @@ class BodyRows:
         """ZMP, normal forces and centres of pressure."""
         wrench = self._wrench[n]
         point = zmp.measured_zmp(wrench, self._soles[n, :, :3], self._sole_rotation[n])
-        algebra.put_row(self._zmp, n, 0, point)
+        algebra.put_row(self._zmp, n, point)
         for foot in range(2):
             self._normal_force[n, foot] = wrench[foot, 2]
             self._cop[n, foot, 0], self._cop[n, foot, 1] = zmp.centre_of_pressure(wrench[foot])

@@ -136,9 +136,9 @@ class EstimationRows:
         R, true = self._base[n], self._true_base[n]
         yaw = _within_half_turn(math.atan2(R[1, 0], R[0, 0]) - math.atan2(true[1, 0], true[0, 0]))
         c, s = math.cos(-yaw), math.sin(-yaw)
-        algebra.put_row(self._back, 0, 0, (c, -s, 0.0))
-        algebra.put_row(self._back, 1, 0, (s, c, 0.0))
-        algebra.put_row(self._back, 2, 0, (0.0, 0.0, 1.0))
+        algebra.put_row(self._back, 0, (c, -s, 0.0))
+        algebra.put_row(self._back, 1, (s, c, 0.0))
+        algebra.put_row(self._back, 2, (0.0, 0.0, 1.0))
         linear.fused_compose(self._back, R, self._turned)
         self._yaw_error[n, 0] = yaw
         T = self._turned
@@ -152,9 +152,9 @@ class EstimationRows:
         true_com = algebra.subtract(algebra.row(self._true_com, n), true_sole)
         velocity = algebra.rotate(self._back, algebra.row(self._com_velocity, n))
         true_velocity = algebra.row(self._true_com_velocity, n)
-        algebra.put_row(self._com_error, n, 0, algebra.subtract(com, true_com))
-        algebra.put_row(self._com_velocity_error, n, 0, algebra.subtract(velocity, true_velocity))
-        algebra.put_row(self._place_error, n, 0, algebra.subtract(sole, true_sole))
+        algebra.put_row(self._com_error, n, algebra.subtract(com, true_com))
+        algebra.put_row(self._com_velocity_error, n, algebra.subtract(velocity, true_velocity))
+        algebra.put_row(self._place_error, n, algebra.subtract(sole, true_sole))
 
 
 def _rows_product(A: Array, i: int, B: Array, j: int) -> float:

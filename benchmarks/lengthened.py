@@ -59,7 +59,8 @@ class _Rewriter:
                 rows = slice(*np.searchsorted(times, (begin, until)).tolist())
                 for name, found in values.items():
                     channel.view(name)[: rows.stop - rows.start] = found[rows]
-                channel.fill((times[rows] + shift).tolist())
+                stamps = times[rows] + shift
+                channel.fill(stamps.tolist(), stamps.astype(np.uint64))
             for writer, messages in self._others.values():
                 for time, data in _between(messages, begin, until):
                     writer.append(time + shift, data)

@@ -4,56 +4,74 @@ import math
 
 import numpy as np
 
+from surefoot import algebra, linear
+from surefoot.algebra import Vector
 from surefoot.engine import mujoco
+from surefoot.models import convert
 from surefoot.models.types import ImuPlace
 from surefoot.sim.measurement import Array
-from surefoot.values import dataclass
+
+SMALL = 1e-9
+"""Sine of an angle below which it is the angle itself."""
 
 
-@dataclass(frozen=True, slots=True)
 class ImuMotion:
     """Motion of the IMU's frame at one instant.
 
     Attributes:
         rotation: of its axes in the world, shape (3, 3).
-        velocity: of its origin, world axes, shape (3,) [m/s].
-        angular_velocity: in its own axes, shape (3,) [rad/s].
+        velocity: of its origin, world axes [m/s].
+        angular_velocity: in its own axes [rad/s].
     """
 
-    rotation: Array
-    velocity: Array
-    angular_velocity: Array
+    def __init__(self) -> None:
+        self.rotation = np.zeros((3, 3))
+        self.velocity: Vector = (0.0, 0.0, 0.0)
+        self.angular_velocity: Vector = (0.0, 0.0, 0.0)
 
 
-@dataclass(frozen=True, slots=True)
 class Link:
-    """A body of the chain: its axes and origin in its parent at zero angle, and the joint that turns it.
+    """A body of the chain and the joint that turns it in its parent.
+
+    Args:
+        model: of the world.
+        body: its number.
 
     Attributes:
-        rotation: of its axes, shape (3, 3).
-        lever: cross product matrix of its origin, shape (3, 3) [m].
         joint: number of the joint.
-        axis: of the joint in the body, shape (3,).
-        twist: cross product matrix of the axis, and its square, each shape (3, 3).
-        point: of the joint in the body where that is not its origin, shape (3,) [m].
+        rotation: of its axes in its parent at zero angle, shape (3, 3).
+        lever: cross product matrix of its origin in its parent, shape (3, 3) [m].
+        axis: of the joint in the body.
+        twist: cross product matrix of the axis, shape (3, 3).
+        square: of that, shape (3, 3).
+        beside: whether the joint is not at the body's origin.
+        point: of the joint in the body [m].
     """
 
-    rotation: Array
-    lever: Array
-    joint: int
-    axis: Array
-    twist: tuple[Array, Array]
-    point: Array | None
+    def __init__(self, model: mujoco.MjModel, body: int) -> None:
+        joint = int(model.body_jntadr[body])
+        axis, point = np.array(model.jnt_axis[joint]), np.array(model.jnt_pos[joint])
+        twist = skew(axis)
+        self.joint = joint - 1  # joint 0 is the floating base
+        self.rotation = rotation_of(model.body_quat[body])
+        self.lever = skew(np.array(model.body_pos[body]))
+        self.axis, self.twist, self.square = algebra.vector(axis), twist, twist @ twist
+        self.beside, self.point = bool(point.any()), algebra.vector(point)
 
-    def axes(self, angle: float) -> Array:
-        """Its axes in its parent at an angle of the joint [rad], shape (3, 3)."""
-        K, square = self.twist
-        found: Array = self.rotation @ (_UNIT + math.sin(angle) * K + (1.0 - math.cos(angle)) * square)
-        return found
+    def turn(self, angle: float, out: Array) -> None:
+        """Write the rotation of the joint by an angle [rad]: Rodrigues' formula 1 + sin a K + (1 - cos a) K²."""
+        sine = math.sin(angle)
+        rest = 1.0 - math.cos(angle)
+        for i in range(3):
+            for j in range(3):
+                unit = 1.0 if i == j else 0.0
+                out[i, j] = unit + sine * self.twist[i, j] + rest * self.square[i, j]
 
 
 class ImuChain:
     """The bodies from the floating base to the IMU.
+
+    Products are rounded as numpy's library does on processors that fuse.
 
     Args:
         model: of the world.
@@ -61,59 +79,101 @@ class ImuChain:
         place: of the IMU.
         turn: rotation vector by which it is mounted wrongly, in its own axes, shape (3,) [rad].
         shift: by which it is away from its place, in the axes of its body, shape (3,) [m].
-
-    Attributes:
-        links: the bodies, from that above the base on.
-        mount: orientation of the IMU in the last body, shape (3, 3).
-        lever: cross product matrix of its place there, shape (3, 3) [m].
     """
 
     def __init__(self, model: mujoco.MjModel, base: int, place: ImuPlace, turn: Array, shift: Array) -> None:
         body = base if place.body is None else model.body(place.body).id
         links: list[Link] = []
         while body != base:
-            links.append(_link(model, body))
+            links.append(Link(model, body))
             body = int(model.body_parentid[body])
-        self.links = tuple(reversed(links))
-        self.mount = rotation_of(np.array(place.quaternion)) @ turned(turn)
-        self.lever = skew(np.array(place.position) + shift)
+        self._links = links[::-1]
+        # Orientation of the IMU in the last body, and cross product matrix of its place there [m].
+        self._mount = rotation_of(np.array(place.quaternion)) @ turned(turn)
+        self._lever = skew(np.array(place.position) + shift)
+        self._R, self._E, self._turn, self._product = (np.zeros((3, 3)) for _ in range(4))
 
-    def __call__(self, q: Array, v: Array) -> ImuMotion:
+    def motion(self, q: Array, v: Array) -> ImuMotion:
         """Its motion in a state of Pinocchio's convention, shapes (7 + nj,) and (6 + nj,)."""
-        x, y, z, w = q[3:7].tolist()
-        R, velocity, rate = _matrix(w, x, y, z), v[:3], v[3:6]
-        for link in self.links:
-            E, spin = link.axes(float(q[7 + link.joint])), link.axis * float(v[6 + link.joint])
-            lever = link.lever
-            if link.point is not None:
-                lever = lever + skew(link.rotation @ link.point - E @ link.point)
-            velocity, rate, R = (velocity - lever @ rate) @ E, rate @ E + spin, R @ E
-            if link.point is not None:
-                velocity = velocity + skew(link.point) @ spin
-        velocity = R @ (velocity - self.lever @ rate)
-        return ImuMotion(R @ self.mount, velocity, rate @ self.mount)
+        at = ImuMotion()
+        x, y, z = convert.rotation(q[6], q[3], q[4], q[5])
+        algebra.put_row(self._R, 0, x)
+        algebra.put_row(self._R, 1, y)
+        algebra.put_row(self._R, 2, z)
+        at.velocity, at.angular_velocity = (v[0], v[1], v[2]), (v[3], v[4], v[5])
+        for link in self._links:
+            self._pass(link, q[7 + link.joint], v[6 + link.joint], at)
+        arm = algebra.subtract(at.velocity, linear.fused_rotate(self._lever, at.angular_velocity))
+        at.velocity = linear.fused_rotate(self._R, arm)
+        linear.fused_compose(self._R, self._mount, at.rotation)
+        at.angular_velocity = linear.fused_rotate_back(self._mount, at.angular_velocity)
+        return at
+
+    def _pass(self, link: Link, angle: float, speed: float, at: ImuMotion) -> None:
+        """Go on to a body of the chain, whose joint has an angle [rad] and a speed [rad/s].
+
+        `_R` is then the rotation of its axes, and the motion that of its origin, both in its own axes.
+        """
+        spin = algebra.scale(speed, link.axis)
+        link.turn(angle, self._turn)
+        linear.fused_compose(link.rotation, self._turn, self._E)
+        if link.beside:
+            moved = self._moved_beside(link, at.angular_velocity)
+        else:
+            moved = linear.fused_rotate(link.lever, at.angular_velocity)
+        at.velocity = linear.fused_rotate_back(self._E, algebra.subtract(at.velocity, moved))
+        at.angular_velocity = algebra.add(linear.fused_rotate_back(self._E, at.angular_velocity), spin)
+        linear.fused_compose(self._R, self._E, self._product)
+        self._R[:] = self._product
+        if link.beside:
+            put_skew(self._product, link.point)
+            at.velocity = algebra.add(at.velocity, linear.fused_rotate(self._product, spin))
+
+    def _moved_beside(self, link: Link, rate: Vector) -> Vector:
+        """Lever times the parent's angular velocity, where the turn of the joint moves the body's origin."""
+        at_zero = linear.fused_rotate(link.rotation, link.point)
+        put_skew(self._product, algebra.subtract(at_zero, linear.fused_rotate(self._E, link.point)))
+        for i in range(3):
+            for j in range(3):
+                self._product[i, j] = link.lever[i, j] + self._product[i, j]
+        return linear.fused_rotate(self._product, rate)
 
 
-_UNIT = np.eye(3)
+def turn_between(before: Array, after: Array) -> Vector:
+    """Rotation vector from one orientation to the next, in the axes of either, less than half a turn [rad].
+
+    Args:
+        before: rotation to the world, shape (3, 3).
+        after: of the next, shape (3, 3).
+    """
+    x = 0.5 * (_along(before, 2, after, 1) - _along(before, 1, after, 2))
+    y = 0.5 * (_along(before, 0, after, 2) - _along(before, 2, after, 0))
+    z = 0.5 * (_along(before, 1, after, 0) - _along(before, 0, after, 1))
+    sine = math.sqrt(linear.fused_sum(x, x, y, y, z, z))
+    if sine < SMALL:
+        return x, y, z
+    trace = _along(before, 0, after, 0) + _along(before, 1, after, 1) + _along(before, 2, after, 2)
+    factor = math.atan2(sine, 0.5 * (trace - 1.0)) / sine
+    return x * factor, y * factor, z * factor
 
 
-def _link(model: mujoco.MjModel, body: int) -> Link:
-    joint = int(model.body_jntadr[body])
-    twist, point = skew(np.array(model.jnt_axis[joint])), np.array(model.jnt_pos[joint])
-    return Link(
-        rotation=rotation_of(model.body_quat[body]),
-        lever=skew(np.array(model.body_pos[body])),
-        joint=joint - 1,  # joint 0 is the floating base
-        axis=np.array(model.jnt_axis[joint]),
-        twist=(twist, twist @ twist),
-        point=point if point.any() else None,
-    )
+def _along(before: Array, i: int, after: Array, j: int) -> float:
+    """An axis of one orientation along an axis of the next: an entry of R' R⁺."""
+    return linear.fused_sum(before[0, i], after[0, j], before[1, i], after[1, j], before[2, i], after[2, j])
+
+
+def put_skew(out: Array, a: Vector) -> None:
+    """Write the matrix whose product with another vector is the cross product, shape (3, 3)."""
+    out[0, 0], out[0, 1], out[0, 2] = 0.0, -a[2], a[1]
+    out[1, 0], out[1, 1], out[1, 2] = a[2], 0.0, -a[0]
+    out[2, 0], out[2, 1], out[2, 2] = -a[1], a[0], 0.0
 
 
 def skew(vector: Array) -> Array:
-    """The matrix whose product with another vector is the cross product, shape (3, 3)."""
-    x, y, z = vector.tolist()
-    return np.array([[0.0, -z, y], [z, 0.0, -x], [-y, x, 0.0]])
+    """That matrix of an array, shape (3, 3)."""
+    made = np.zeros((3, 3))
+    put_skew(made, algebra.vector(vector))
+    return made
 
 
 def turned(vector: Array) -> Array:
@@ -122,41 +182,11 @@ def turned(vector: Array) -> Array:
     if angle == 0.0:
         return np.eye(3)
     K = skew(vector / angle)
-    found: Array = _UNIT + math.sin(angle) * K + (1.0 - math.cos(angle)) * (K @ K)
+    found: Array = np.eye(3) + math.sin(angle) * K + (1.0 - math.cos(angle)) * (K @ K)
     return found
 
 
-def turn_between(before: Array, after: Array) -> Array:
-    """Rotation vector from one orientation to the next, in the axes of either, less than half a turn, shape (3,) [rad].
-
-    Args:
-        before: rotation to the world, shape (3, 3).
-        after: likewise.
-    """
-    R = before.T @ after
-    vector = 0.5 * np.array([R[2, 1] - R[1, 2], R[0, 2] - R[2, 0], R[1, 0] - R[0, 1]])
-    sine = math.sqrt(float(vector @ vector))
-    if sine < SMALL:
-        return vector
-    cosine = 0.5 * (float(R[0, 0] + R[1, 1] + R[2, 2]) - 1.0)
-    return vector * (math.atan2(sine, cosine) / sine)
-
-
-SMALL = 1e-9
-"""Sine of an angle below which it is the angle itself."""
-
-
 def rotation_of(quaternion: Array) -> Array:
-    """Rotation of a quaternion w x y z, shape (3, 3)."""
+    """Rotation of a quaternion w x y z of any length, shape (3, 3)."""
     w, x, y, z = (np.asarray(quaternion) / np.linalg.norm(quaternion)).tolist()
-    return _matrix(w, x, y, z)
-
-
-def _matrix(w: float, x: float, y: float, z: float) -> Array:
-    return np.array(
-        [
-            [1 - 2 * (y * y + z * z), 2 * (x * y - z * w), 2 * (x * z + y * w)],
-            [2 * (x * y + z * w), 1 - 2 * (x * x + z * z), 2 * (y * z - x * w)],
-            [2 * (x * z - y * w), 2 * (y * z + x * w), 1 - 2 * (x * x + y * y)],
-        ]
-    )
+    return np.array(convert.rotation(w, x, y, z))

@@ -1,13 +1,12 @@
 """Reading the sensors out of MuJoCo's state, without a look at the forces of single contacts."""
 
-from collections.abc import Callable
-
 import numpy as np
 
+from surefoot import algebra
+from surefoot.algebra import Vector
 from surefoot.engine import mujoco
-from surefoot.models.convert import mujoco_to_pinocchio
+from surefoot.models import convert
 from surefoot.models.types import RobotDescription
-from surefoot.native.library import Library, library
 from surefoot.sim.contacts import ContactSense
 from surefoot.sim.errors import WorldError
 from surefoot.sim.measurement import Array, Measurement
@@ -40,117 +39,97 @@ class SensorReader:
         self.model, self._data, self._pushes = model, data, pushes
         base = model.body(description.pelvis_body).id
         _check_imu(model, description, base)
-        soles = [model.site(name).id for name in description.sole_sites]
-        feet = [int(model.site_bodyid[sole]) for sole in soles]
-        self._qpos, self._qvel, self._qacc_base = data.qpos, data.qvel, data.qacc[:3]
-        self._joint_force = data.qfrc_actuator[6:]
-        self._base_rotation = data.xmat[base].reshape(3, 3)
-        self._gravity = model.opt.gravity.copy()
-        self._com, self._body_com = data.subtree_com[base], data.xipos
-        self._soles = [
-            (foot, data.site_xpos[sole], data.site_xmat[sole]) for foot, sole in zip(feet, soles, strict=True)
-        ]
-        self._external = data.cfrc_ext
-        self._contact: Array = np.zeros((model.nbody, 6))
+        sites = [model.site(name).id for name in description.sole_sites]
+        feet = [int(model.site_bodyid[site]) for site in sites]
+        self._qpos, self._qvel, self._joint_force = data.qpos, data.qvel, data.qfrc_actuator[6:]
+        self._acceleration, self._gravity = data.qacc[:3], model.opt.gravity.copy()
+        self._base, self._com = data.xmat[base].reshape(3, 3), data.subtree_com[base]
+        self._body_com, self._external = data.xipos, data.cfrc_ext
+        self._contact = np.zeros((model.nbody, 6))
+        self._mean = pushes.mean
         self._touch = ContactSense(model, data, feet)
-        self._allocate(model.nq, model.nv)
-        kernels = library()
-        self._read_compiled = self._compiled(kernels, data) if kernels else None
+        wrench = np.zeros((2, 6))
+        self._soles = [
+            Sole(foot, data.site_xpos[site], data.site_xmat[site].reshape(3, 3), felt)
+            for foot, site, felt in zip(feet, sites, wrench, strict=True)
+        ]
+        self._allocate(model.nq, model.nv, wrench)
 
-    def _allocate(self, nq: int, nv: int) -> None:
-        self._q, self._v, self._torque = np.zeros(nq), np.zeros(nv), np.zeros(nv - 6)
-        self._specific_force, self._accelerometer = np.zeros(3), np.zeros(3)
-        self._wrench, self._push = np.zeros((2, 6)), np.zeros(3)
-        q, v = _read_only(self._q), _read_only(self._v)
-        torque, felt, wrench = _read_only(self._torque), _read_only(self._accelerometer), _read_only(self._wrench)
-        self._views = q[7:], v[6:], torque, v[3:6], felt, wrench, q, v, _read_only(self._push)
-        """Of a measurement, from the joints' positions to the push."""
+    def _allocate(self, nq: int, nv: int, wrench: Array) -> None:
+        q, v, torque, felt, push = np.zeros(nq), np.zeros(nv), np.zeros(nv - 6), np.zeros(3), np.zeros(3)
+        self._q, self._v, self._torque, self._accelerometer, self._push = q, v, torque, felt, push
+        q, v, torque, felt = _read_only(q), _read_only(v), _read_only(torque), _read_only(felt)
+        # Of a measurement, from the joints' positions to the push.
+        self._views = (q[7:], v[6:], torque, v[3:6], felt, _read_only(wrench), q, v, _read_only(push))
 
     def read(self, time: float) -> Measurement:
         """Everything at `time` [s], where a step of the world ended."""
         mujoco.mj_rnePostConstraint(self.model, self._data)
-        pushed = bool(self._pushes.active)
-        if pushed:
+        if self._pushes.active:
             self._without_pushes()
-        if self._read_compiled is None:
-            self._read(self._contact if pushed else self._external)
+            self._read(self._contact)
         else:
-            self._read_compiled(pushed)
+            self._read(self._external)
         nonfoot_contact, self_contact = self._touch.read()
         return _a_measurement(time, *self._views, nonfoot_contact, self_contact)
 
-    def _read(self, contact: Array) -> None:
+    def _read(self, external: Array) -> None:
         """Fill the buffers; the terrain's forces on the bodies as MuJoCo has them, shape (nbody, 6) [N m, N]."""
-        self._push[:] = self._pushes.mean
-        mujoco_to_pinocchio(self._qpos, self._qvel, self._q, self._v)
+        convert.mujoco_to_pinocchio(self._qpos, self._qvel, self._q, self._v)
         self._torque[:] = self._joint_force
-        np.subtract(self._qacc_base, self._gravity, out=self._specific_force)
-        np.dot(self._specific_force, self._base_rotation, out=self._accelerometer)
-        com = self._com.tolist()
-        for wrench, (foot, position, rotation) in zip(self._wrench, self._soles, strict=True):
-            wrench[:] = _at_sole(contact[foot].tolist(), com, position.tolist(), rotation.tolist())
-
-    def _compiled(self, kernels: Library, data: mujoco.MjData) -> Callable[[int], None]:
-        """The kernel that does what `_read` does."""
-        (left, *at_left), (right, *at_right) = self._soles
-        return kernels.bind(
-            "sensors_read",
-            nq=len(self._q),
-            nv=len(self._v),
-            qpos=self._qpos,
-            qvel=self._qvel,
-            base_acceleration=self._qacc_base,
-            joint_force=self._joint_force,
-            base_rotation=self._base_rotation,
-            gravity=self._gravity,
-            com=self._com,
-            push=self._pushes.mean,
-            left_external=self._external[left],
-            right_external=self._external[right],
-            left_contact=self._contact[left],
-            right_contact=self._contact[right],
-            left_position=at_left[0],
-            right_position=at_right[0],
-            left_rotation=at_left[1],
-            right_rotation=at_right[1],
-            q=self._q,
-            v=self._v,
-            torque=self._torque,
-            accelerometer=self._accelerometer,
-            wrench=self._wrench,
-            pushed=self._push,
-        )
+        self._push[:] = self._mean
+        specific_force = algebra.subtract(algebra.vector(self._acceleration), algebra.vector(self._gravity))
+        algebra.put(self._accelerometer, algebra.rotate_back(self._base, specific_force))
+        com = algebra.vector(self._com)
+        for sole in self._soles:
+            sole.feel(external, com)
 
     def _without_pushes(self) -> None:
         """External forces of the bodies minus the pushes: what the terrain does."""
         self._contact[:] = self._external
         for body, force in self._pushes.active:
-            row = self._contact[body]
-            row[:3] -= np.cross(self._body_com[body] - self._com, force)
-            row[3:] -= force
-            if np.abs(row).max() < ROUND_OFF * np.abs(force).max():
-                row[:] = 0.0
+            self._take_off(body, algebra.vector(force))
+
+    def _take_off(self, body: int, force: Vector) -> None:
+        lever = algebra.subtract(algebra.row(self._body_com, body), algebra.vector(self._com))
+        torque = algebra.subtract(algebra.row(self._contact, body), algebra.cross(lever, force))
+        rest = algebra.subtract(algebra.row(self._contact, body, 3), force)
+        if _largest(torque, rest) < ROUND_OFF * _largest(force, force):
+            torque, rest = (0.0, 0.0, 0.0), (0.0, 0.0, 0.0)
+        algebra.put_row(self._contact, body, torque)
+        algebra.put_row(self._contact, body, rest, 3)
 
 
-def _at_sole(
-    external: list[float], com: list[float], position: list[float], rotation: list[float]
-) -> tuple[float, ...]:
-    """Spatial force about the CoM in world axes (torque first) as a wrench at the sole in sole axes (force first).
+class Sole:
+    """A sole's centre and axes in the world, and the wrench that the ground exerts there.
 
-    Plain floats: at this size they are faster than arrays.
+    Args:
+        foot: number of its body.
+        position: of its centre, shape (3,) [m].
+        rotation: of its axes, shape (3, 3).
+        wrench: in its axes, force first, shape (6,) [N, N·m], which is written.
     """
-    tx, ty, tz, fx, fy, fz = external
-    x, y, z = com[0] - position[0], com[1] - position[1], com[2] - position[2]
-    tx, ty, tz = tx + y * fz - z * fy, ty + z * fx - x * fz, tz + x * fy - y * fx
-    a, b, c, d, e, f, g, h, i = rotation
-    return (
-        a * fx + d * fy + g * fz,
-        b * fx + e * fy + h * fz,
-        c * fx + f * fy + i * fz,
-        a * tx + d * ty + g * tz,
-        b * tx + e * ty + h * tz,
-        c * tx + f * ty + i * tz,
-    )
+
+    def __init__(self, foot: int, position: Array, rotation: Array, wrench: Array) -> None:
+        self.foot, self.position, self.rotation, self.wrench = foot, position, rotation, wrench
+
+    def feel(self, external: Array, com: Vector) -> None:
+        """Take over the spatial force on its body, which MuJoCo has about the CoM in world axes, torque first.
+
+        Args:
+            external: forces on all bodies, shape (nbody, 6) [N·m, N].
+            com: of the robot in the world [m].
+        """
+        torque, force = algebra.row(external, self.foot), algebra.row(external, self.foot, 3)
+        lever = algebra.subtract(com, algebra.vector(self.position))
+        torque = algebra.add(algebra.cross(lever, force), torque)
+        algebra.put(self.wrench[:3], algebra.rotate_back(self.rotation, force))
+        algebra.put(self.wrench[3:], algebra.rotate_back(self.rotation, torque))
+
+
+def _largest(a: Vector, b: Vector) -> float:
+    """Largest size of the numbers of two vectors."""
+    return max(abs(a[0]), abs(a[1]), abs(a[2]), abs(b[0]), abs(b[1]), abs(b[2]))
 
 
 def _read_only(array: Array) -> Array:

@@ -2,11 +2,9 @@
 
 import copy
 import logging
-import math
 import threading
-from collections.abc import Callable, Sequence
-from functools import lru_cache, partial
-from typing import Any
+from collections.abc import Sequence
+from functools import lru_cache
 
 import numpy as np
 
@@ -15,9 +13,9 @@ from surefoot.forces import Push
 from surefoot.joints import JointCommand
 from surefoot.models.convert import pinocchio_to_mujoco
 from surefoot.models.types import RobotDescription, nearest
-from surefoot.native.library import Library, library
 from surefoot.planner.ground.terrain import Terrain
 from surefoot.sim.bodies import BodyPoses
+from surefoot.sim.checkpoint import Checkpoint, is_finite
 from surefoot.sim.drives import Drives
 from surefoot.sim.errors import SimulationDiverged, WorldError
 from surefoot.sim.measurement import Array, Measurement
@@ -27,9 +25,6 @@ from surefoot.sim.sensors import SensorReader
 from surefoot.similarity import REFERENCE_SIZE, Similarity
 
 _LOG = logging.getLogger(__name__)
-
-ACCELERATION_LIMIT = 1e10
-"""Norm of the generalised acceleration beyond which a state counts as diverged; MuJoCo's own bound."""
 
 
 class World:
@@ -75,30 +70,8 @@ class World:
         self._pushes = PushSchedule(pushes, [self._model.body(push.body).id for push in pushes], physics_rate)
         self._sensors = SensorReader(self._model, self.data, description, self._pushes)
         self._ctrl, self._qpos, self._qvel = self.data.ctrl, self.data.qpos, self.data.qvel
-        self._qacc, self._xfrc = self.data.qacc, self.data.xfrc_applied
-        self._last_qpos, self._last_qvel = self._qpos.copy(), self._qvel.copy()
+        self._xfrc, self._sound = self.data.xfrc_applied, Checkpoint(self.data)
         self._torque = self._ctrl if drives is None else np.zeros(self._model.nu)
-        self._begin, self._is_sound = self._around(library())
-
-    def _around(self, kernels: Library | None) -> tuple[Callable[[], Any], Callable[[float], Any]]:
-        """What begins a step and what judges it, by kernels where there are any."""
-        now, last, pushed = (self._qpos, self._qvel), (self._last_qpos, self._last_qvel), self._pushes.mean
-        if kernels is None:
-            return partial(_begun, self._torque, now, last, pushed), partial(_sound, self._qacc)
-        step = kernels.fill(
-            "WorldStep",
-            nq=self._model.nq,
-            nv=self._model.nv,
-            nu=self._model.nu,
-            qpos=now[0],
-            qvel=now[1],
-            qacc=self._qacc,
-            torque=self._torque,
-            last_qpos=last[0],
-            last_qvel=last[1],
-            pushed=pushed,
-        )
-        return kernels.bind("world_begun", step), kernels.bind("world_sound", step)
 
     @property
     def model(self) -> mujoco.MjModel:
@@ -175,11 +148,13 @@ class World:
             SimulationDiverged: the torque or the state is not finite.
         """
         self._torque[:] = torque
-        if not self._begin():
+        if not is_finite(self._torque):
             raise SimulationDiverged(self.time, "the commanded torque is not finite")
+        self._sound.keep()
         if self._drives is not None:
             self._drives.tell(self.tick, torque)
         pushes, tick, end = self._pushes, self.tick, self.tick + steps
+        pushes.mean[:] = 0.0
         while tick < end:
             if tick >= pushes.next_change:
                 pushes.step_over(self._xfrc)
@@ -190,7 +165,7 @@ class World:
             if pushes.active:
                 pushes.mean += (stop - tick) / steps * pushes.total
             tick = stop
-        if not self._is_sound(ACCELERATION_LIMIT):
+        if self._sound.diverged():
             self._diverge()
         self.tick = end
 
@@ -214,26 +189,10 @@ class World:
         self._pushes.mean[:] = pushed / steps
 
     def _diverge(self) -> None:
-        self._qpos[:] = self._last_qpos
-        self._qvel[:] = self._last_qvel
+        self._sound.restore()
         self.data.qacc_warmstart[:] = 0.0
         mujoco.mj_forward(self._model, self.data)
         raise SimulationDiverged(self.time, "the acceleration is not finite")
-
-
-def _begun(torque: Array, now: tuple[Array, Array], last: tuple[Array, Array], pushed: Array) -> bool:
-    """Keep the state to come back to, and forget the push of the step before; whether the torque is finite."""
-    # Methods and assignments: numpy's functions of these names go through Python first.
-    if not torque.dot(torque) < math.inf:
-        return False
-    last[0][...], last[1][...] = now
-    pushed[:] = 0.0
-    return True
-
-
-def _sound(acceleration: Array, most: float) -> bool:
-    """Whether an acceleration has a norm below that, which NaN has not."""
-    return bool(acceleration.dot(acceleration) < most**2)
 
 
 @lru_cache(maxsize=4)

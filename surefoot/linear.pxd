@@ -1,3 +1,5 @@
+from surefoot.algebra cimport vector3
+
 cpdef double dot(const double[:] a, const double[:] b) noexcept nogil
 cpdef double row_dot(const double[:, :] A, Py_ssize_t i, const double[:] x) noexcept nogil
 cpdef void add_scaled(double[:] y, double a, const double[:] x) noexcept nogil
@@ -32,3 +34,7 @@ cpdef void evaluate_polynomials(const double[:, ::1] C, double t, double[::1] ou
 cpdef double fused_pair(double a, double x, double b, double y) noexcept nogil
 cpdef double fused_sum(double a, double x, double b, double y, double c, double z) noexcept nogil
 cpdef double nearest(double value) noexcept nogil
+cpdef vector3 fused_rotate(const double[:, :] A, vector3 x) noexcept nogil
+cpdef vector3 fused_rotate_back(const double[:, :] A, vector3 x) noexcept nogil
+cpdef void fused_compose(const double[:, :] A, const double[:, :] B, double[:, :] out) noexcept nogil
+cpdef void fill(double[:] out, Py_ssize_t start, const double[:] values) noexcept nogil

@@ -8,6 +8,8 @@ import numpy as np
 from numpy.typing import NDArray
 from scipy.linalg import blas, lapack
 
+from surefoot.algebra import Vector
+
 Array = NDArray[np.float64]
 
 
@@ -102,7 +104,7 @@ def subtract_products(S: Array, Y: Array) -> None:
 
 def nearest(value: float) -> float:
     """The nearest whole number, of two the even one."""
-    return float(round(value))
+    return float(np.rint(value))
 
 
 def copy(A: Array, out: Array) -> None:
@@ -182,6 +184,28 @@ def fused_pair(a: float, x: float, b: float, y: float) -> float:
 def fused_sum(a: float, x: float, b: float, y: float, c: float, z: float) -> float:
     """Sum a x + b y + c z, rounded once a term, as numpy's library sums on processors that fuse."""
     return float(np.array([a, b, c]) @ np.array([x, y, z]))
+
+
+def fused_rotate(A: Array, x: Vector) -> Vector:
+    """A x, shapes (3, 3) and (3,), rounded once a term: the second column first, then the first and the third."""
+    first, second, third = (A @ np.array(x)).tolist()
+    return first, second, third
+
+
+def fused_rotate_back(A: Array, x: Vector) -> Vector:
+    """A' x, rounded once a term in the order of the rows."""
+    first, second, third = (np.array(x) @ A).tolist()
+    return first, second, third
+
+
+def fused_compose(A: Array, B: Array, out: Array) -> None:
+    """A B, of two matrices of shape (3, 3), neither of which is `out`; rounded once a term in the order of the sum."""
+    out[:] = A @ B
+
+
+def fill(out: Array, start: int, values: Array) -> None:
+    """Copy numbers, shape (n,), into an array from a place on."""
+    out[start : start + len(values)] = values
 
 
 def _whole(U: Array) -> Array:

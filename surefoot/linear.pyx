@@ -4,6 +4,7 @@ Sums go in an order of their own, the same on every machine.
 """
 
 from libc.math cimport fma, rint, sqrt
+from surefoot.algebra cimport vector3
 
 
 cdef inline double _dot(const double *a, const double *b, Py_ssize_t count) noexcept nogil:
@@ -331,3 +332,32 @@ cpdef double fused_sum(double a, double x, double b, double y, double c, double 
 
 cpdef double nearest(double value) noexcept nogil:
     return rint(value)
+
+
+cpdef vector3 fused_rotate(const double[:, :] A, vector3 x) noexcept nogil:
+    return (
+        fused_sum(A[0, 1], x[1], A[0, 0], x[0], A[0, 2], x[2]),
+        fused_sum(A[1, 1], x[1], A[1, 0], x[0], A[1, 2], x[2]),
+        fused_sum(A[2, 1], x[1], A[2, 0], x[0], A[2, 2], x[2]),
+    )
+
+
+cpdef vector3 fused_rotate_back(const double[:, :] A, vector3 x) noexcept nogil:
+    return (
+        fused_sum(A[0, 0], x[0], A[1, 0], x[1], A[2, 0], x[2]),
+        fused_sum(A[0, 1], x[0], A[1, 1], x[1], A[2, 1], x[2]),
+        fused_sum(A[0, 2], x[0], A[1, 2], x[1], A[2, 2], x[2]),
+    )
+
+
+cpdef void fused_compose(const double[:, :] A, const double[:, :] B, double[:, :] out) noexcept nogil:
+    cdef Py_ssize_t i, j
+    for i in range(3):
+        for j in range(3):
+            out[i, j] = fused_sum(A[i, 0], B[0, j], A[i, 1], B[1, j], A[i, 2], B[2, j])
+
+
+cpdef void fill(double[:] out, Py_ssize_t start, const double[:] values) noexcept nogil:
+    cdef Py_ssize_t i
+    for i in range(values.shape[0]):
+        out[start + i] = values[i]

@@ -1,21 +1,26 @@
-"""Centre of pressure and ZMP from measured sole wrenches; mostly plain floats, since they run at every control tick."""
+"""Centre of pressure and ZMP from measured sole wrenches."""
 
 import math
 
-import numpy as np
-
+from surefoot import algebra
 from surefoot.wbc.types import Array
 
 UNLOADED = 1.0
 """Normal force below which a centre of pressure has no meaning [N]."""
 
+NOWHERE = math.nan
+"""Coordinate of a point that there is not."""
+
+_LEAST = UNLOADED
+"""The same for the compiler, whose constants no other module can read."""
+
 
 def centre_of_pressure(wrench: Array) -> tuple[float, float]:
     """Centre of pressure in the sole frame [m] of a sole wrench, shape (6,); NaN for an unloaded sole."""
-    _, _, fz, tx, ty, _ = wrench.tolist()
-    if fz < UNLOADED:
-        return math.nan, math.nan
-    return -ty / fz, tx / fz
+    normal = wrench[2]
+    if normal < _LEAST:
+        return NOWHERE, NOWHERE
+    return -wrench[4] / normal, wrench[3] / normal
 
 
 def measured_zmp(wrench: Array, sole_position: Array, sole_rotation: Array) -> tuple[float, float, float]:
@@ -33,16 +38,19 @@ def measured_zmp(wrench: Array, sole_position: Array, sole_rotation: Array) -> t
     Returns:
         (x, y, z) [m]; NaN when the feet carry no load.
     """
-    # World-frame force and torque of each sole as the columns of a (3, 2) matrix.
-    left, right = np.matmul(sole_rotation, wrench.reshape(2, 2, 3).transpose(0, 2, 1)).tolist()
-    (fx_l, tx_l), (fy_l, ty_l), (fz_l, _) = left
-    (fx_r, tx_r), (fy_r, ty_r), (fz_r, _) = right
-    force = fz_l + fz_r
-    if force < UNLOADED:
-        return math.nan, math.nan, math.nan
-    (x_l, y_l, z_l), (x_r, y_r, z_r) = sole_position.tolist()
-    height = (fz_l * z_l + fz_r * z_r) / force
-    z_l, z_r = z_l - height, z_r - height
-    moment_x = tx_l + y_l * fz_l - z_l * fy_l + tx_r + y_r * fz_r - z_r * fy_r
-    moment_y = ty_l + z_l * fx_l - x_l * fz_l + ty_r + z_r * fx_r - x_r * fz_r
-    return -moment_y / force, moment_x / force, height
+    load, height = 0.0, 0.0
+    for foot in range(2):
+        force = algebra.rotate(sole_rotation[foot], algebra.row(wrench, foot))
+        load += force[2]
+        height += force[2] * sole_position[foot, 2]
+    if load < _LEAST:
+        load = NOWHERE
+    height /= load
+    moment_x, moment_y = 0.0, 0.0
+    for foot in range(2):
+        force = algebra.rotate(sole_rotation[foot], algebra.row(wrench, foot))
+        torque = algebra.rotate(sole_rotation[foot], algebra.row(wrench, foot, 3))
+        x, y, z = sole_position[foot, 0], sole_position[foot, 1], sole_position[foot, 2] - height
+        moment_x += torque[0] + y * force[2] - z * force[1]
+        moment_y += torque[1] + z * force[0] - x * force[2]
+    return -moment_y / load, moment_x / load, height

@@ -201,30 +201,29 @@ class ChannelWriter(Waiting):
         """Where the values of a field wait, shape (capacity, *field shape)."""
         return self._views[self._names.index(name)]
 
-    @property
-    def records(self) -> NDArray[np.void]:
-        """Message records, of which those that wait are the first."""
-        return self._records
-
-    def fill(self, times_ns: list[int], stamped: bool = False) -> None:
+    def fill(self, times_ns: list[int], stamps: NDArray[np.uint64]) -> None:
         """Take over messages whose values were written into the views, while none waits.
 
         Args:
             times_ns: their times, in a list that nobody changes any more [ns].
-            stamped: whether times and numbers are written as well.
+            stamps: the same, shape (n,).
         """
-        self.times, self.count, self._stamped = times_ns, len(times_ns), stamped
+        self.times, self.count, self._stamped = times_ns, len(times_ns), True
+        self._stamp(stamps)
 
     def complete(self) -> int:
         """See `Waiting`."""
-        n = self.count
         if not self._stamped:
-            times = np.array(self.times, np.uint64)
-            for view in self._stamps:
-                view[:n] = times
-            self._sequence[:n] = np.arange(self.total, self.total + n)
+            self._stamp(np.array(self.times, np.uint64))
         self._stamped = False
-        return n * self.size
+        return self.count * self.size
+
+    def _stamp(self, stamps: NDArray[np.uint64]) -> None:
+        """Write times [ns] and numbers of the messages that wait."""
+        n = self.count
+        for view in self._stamps:
+            view[:n] = stamps
+        self._sequence[:n] = np.arange(self.total, self.total + n)
 
     def each(self) -> Iterator[tuple[int, int, memoryview]]:
         """See `Waiting`."""

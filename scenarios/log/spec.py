@@ -3,27 +3,19 @@
 Field 1 is the stamp (``fixed64``, always written). Every other field is always written whole: scalars as ``double``
 or ``sfixed32``, arrays as packed ``repeated`` ones. So any protobuf reader decodes a message by its schema, and numpy
 reads or writes a block of them without a loop.
-
-A message of any other schema becomes a `Template`: encoded once, by the schema's own class with recognisable numbers
-where values shall come, and then only these are written anew. Doubles take eight bytes anyway; the two varints of a
-``google.protobuf.Timestamp`` are padded by zero groups, which every decoder accepts, so that they keep their size.
 """
 
 import json
-import struct
-from collections.abc import Callable, Iterator, Mapping, Sequence
-from copy import copy
+from collections.abc import Iterator, Mapping, Sequence
 from functools import cache, cached_property, lru_cache
 from math import prod
 from typing import Any, Literal, NamedTuple
 
 import numpy as np
 from google.protobuf import descriptor_pb2
-from google.protobuf.message import Message
 from mcap.opcode import Opcode
-from numpy.typing import ArrayLike, NDArray
+from numpy.typing import NDArray
 
-from surefoot.native.library import Library, library
 from surefoot.values import dataclass
 
 Kind = Literal["double", "int"]
@@ -252,104 +244,3 @@ def _varint(value: int) -> bytes:
         parts.append(value & 0x7F | 0x80)
         value >>= 7
     return bytes([*parts, value])
-
-
-SECONDS, NANOS = (1 << 34) + 0x5EED5, (1 << 29) + 0xF00D
-"""Stand for the stamp in a message that is to become a template; both take five bytes as varints."""
-
-_SLOT = 0x7E57_AB1E_0000_0000
-_STAMP = struct.Struct("<B5sB5s")
-_SECONDS_TAG, _NANOS_TAG = 0x08, 0x10
-
-
-def slot(index: int) -> float:
-    """The number that stands for value `index` of a template; it may stand in several places."""
-    return float(struct.unpack("<d", _slot_bytes(index))[0])
-
-
-class Template:
-    """An encoded message and the places of its values.
-
-    Attributes:
-        size: how many values it takes.
-    """
-
-    def __init__(self, message: Message, size: int) -> None:
-        """Make a template of a message with slots 0 to size - 1.
-
-        Raises:
-            ValueError: a slot stands nowhere in the message.
-        """
-        data = message.SerializeToString(deterministic=True)
-        places = [(place, index) for index in range(size) for place in _all(data, _slot_bytes(index))]
-        missing = set(range(size)) - {index for _, index in places}
-        if missing:
-            raise ValueError(f"value {min(missing)} has no place in the message; it must stand in it at least once")
-        self.size, self._data = size, data
-        self._pick = np.array([index for _, index in places], np.int64)
-        self._values_at = _spans([place for place, _ in places], 8)
-        self._stamps_at = _spans(_all(data, _stamp(SECONDS, NANOS)), _STAMP.size)
-        self._take_memory()
-
-    def fresh(self) -> "Template":
-        """The same with memory of its own: no two writers fill the same bytes."""
-        made = copy(self)
-        made._take_memory()
-        return made
-
-    def _take_memory(self) -> None:
-        self._bytes = np.frombuffer(self._data, np.uint8).copy()
-        self._values, kernels = np.zeros(self.size), library()
-        self._fill = None if kernels is None else self._compile(kernels)
-
-    def _compile(self, kernels: Library) -> Callable[[int, int], None]:
-        return kernels.bind(
-            "template_fill",
-            message=self._bytes.ctypes.data,
-            values=self._values,
-            count=len(self._pick),
-            places=self._values_at[:, 0].copy(),
-            picked=self._pick,
-            stamps=len(self._stamps_at),
-            stamp_places=self._stamps_at[:, 0].copy(),
-        )
-
-    def encode(self, time_ns: int, values: ArrayLike) -> bytes:
-        """Encode the message with these values and this time [ns] in every stamp."""
-        if self._fill is not None:
-            self._values[:] = values
-            self._fill(*divmod(time_ns, 1_000_000_000))
-            return self._bytes.tobytes()
-        made = self._bytes.copy()
-        picked = np.asarray(values, "<f8")[self._pick]
-        made[self._values_at] = picked.view(np.uint8).reshape(-1, 8)
-        made[self._stamps_at] = np.frombuffer(_stamp(*divmod(time_ns, 1_000_000_000)), np.uint8)
-        return made.tobytes()
-
-
-def _spans(starts: Sequence[int], size: int) -> NDArray[np.int64]:
-    """Places of so many bytes from each start on, shape (starts, size)."""
-    return np.add.outer(np.array(starts, np.int64), np.arange(size))
-
-
-def _slot_bytes(index: int) -> bytes:
-    return struct.pack("<Q", _SLOT + index)
-
-
-def _stamp(seconds: int, nanos: int) -> bytes:
-    """Content of a ``google.protobuf.Timestamp`` of a fixed size."""
-    return _STAMP.pack(_SECONDS_TAG, _long_varint(seconds), _NANOS_TAG, _long_varint(nanos))
-
-
-def _long_varint(value: int) -> bytes:
-    """A varint of five bytes; the value is below 2^35."""
-    return bytes((*(value >> shift & 127 | 128 for shift in (0, 7, 14, 21)), value >> 28))
-
-
-def _all(data: bytes, part: bytes) -> list[int]:
-    """Every offset of a part."""
-    offsets, start = [], data.find(part)
-    while start >= 0:
-        offsets.append(start)
-        start = data.find(part, start + len(part))
-    return offsets

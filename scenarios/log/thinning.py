@@ -5,7 +5,8 @@ from collections.abc import Callable, Mapping, Sequence
 from numpy.typing import ArrayLike
 
 from surefoot.scenarios.log.channel import ChannelWriter, Clock, MessageWriter
-from surefoot.scenarios.log.rows import Array, RowWriter
+from surefoot.scenarios.log.layout import Array
+from surefoot.scenarios.log.rows import RowWriter
 from surefoot.scenarios.log.spec import ChannelSpec
 from surefoot.values import dataclass
 
@@ -92,14 +93,8 @@ class ThinnedRows:
 
     def __init__(self, rows: RowWriter, sieve: Sieve) -> None:
         self._rows, self._sieve = rows, sieve
-        self._vectors: tuple[Array, ...] = ()
 
     def append(self, time_ns: int, numbers: tuple[float, ...], *vectors: Array) -> None:
         """See `RowWriter`."""
-        self._vectors = vectors
-        self.again(time_ns, numbers)
-
-    def again(self, time_ns: int, numbers: tuple[float, ...]) -> None:
-        """See `RowWriter`."""
         if self._sieve.takes(time_ns):
-            self._rows.append(time_ns, numbers, *self._vectors)
+            self._rows.append(time_ns, numbers, *vectors)

@@ -10,14 +10,14 @@ from typing import Literal, Self
 
 from mcap.records import Attachment, Channel, Chunk, Metadata, Schema
 
-from surefoot.native.library import library
 from surefoot.scenarios.log.channel import ChannelWriter, Clock, MessageWriter, Waiting
 from surefoot.scenarios.log.chunk import BlockMaker
 from surefoot.scenarios.log.encoding import compress, encoded
 from surefoot.scenarios.log.file import Defined, Head, IndexedChunk, LogFile, Sink
+from surefoot.scenarios.log.layout import RowLayout
 from surefoot.scenarios.log.manifest import manifest
 from surefoot.scenarios.log.recorder import FlightRecorder
-from surefoot.scenarios.log.rows import CompiledRows, RowLayout, RowWriter
+from surefoot.scenarios.log.rows import RowWriter
 from surefoot.scenarios.log.spec import PACKAGE, ChannelSpec
 from surefoot.scenarios.log.thinning import THINNED, Sieve, ThinnedChannel, ThinnedMessages, ThinnedRows, Thinning
 from surefoot.values import dataclass
@@ -139,12 +139,7 @@ class LogWriter:
 
     def rows(self, layout: RowLayout) -> RowWriter | ThinnedRows:
         """Fill channels of one rate together, which are thinned together; errors as of `RowWriter`."""
-        kernels, derives = library(), layout.derive is not None and layout.compiled is None
-        rows = (
-            RowWriter(layout, _CAPACITY, self._clock)
-            if kernels is None or derives
-            else CompiledRows(layout, _CAPACITY, self._clock, kernels)
-        )
+        rows = RowWriter(layout, _CAPACITY, self._clock)
         self._rows.append(rows)
         sieves = {topic: self._sieve(topic) for topic in rows.topics}
         whole = [topic for topic, sieve in sieves.items() if sieve is None]

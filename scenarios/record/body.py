@@ -1,82 +1,51 @@
 """Writes what the robot's body and its controller exchange in one run into the log's channels."""
 
-from collections.abc import Callable
-from operator import attrgetter
+import math
 
 import numpy as np
 from numpy.typing import NDArray
 
-from surefoot.native.library import Library
+from surefoot import algebra
 from surefoot.planner.plan import PlanSample
 from surefoot.scenarios.log import LogWriter
-from surefoot.scenarios.log.rows import RowLayout, Rows
+from surefoot.scenarios.log.layout import RowLayout, Table
 from surefoot.scenarios.record import channels
 from surefoot.scenarios.record.channels import Sizes
 from surefoot.sim.measurement import Measurement
+from surefoot.wbc import zmp
 from surefoot.wbc.model import RobotTerms
 from surefoot.wbc.types import SolveStatus, WbcReport
-from surefoot.wbc.zmp import UNLOADED
 
 Array = NDArray[np.float64]
 
+_SECOND, _FALLBACK = float(SolveStatus.SECOND_SOLVER), float(SolveStatus.EQUALITIES_ONLY)
 
-def contact_points(wrench: Array, position: Array, rotation: Array) -> tuple[Array, Array]:
-    """ZMP and centres of pressure; the definitions are those of `wbc.zmp`.
-
-    Args:
-        wrench: sole wrenches in the sole frames, shape (n, 2, 6) [N, N·m].
-        position: sole centres in the world frame, shape (n, 2, 3) [m].
-        rotation: sole orientations, shape (n, 2, 3, 3).
-
-    Returns:
-        the ZMP in the world frame, shape (n, 3), and the centres of pressure in the sole frames, shape (n, 2, 2) [m];
-        NaN where there is no load.
-    """
-    columns = wrench.reshape(-1, 2, 2, 3).swapaxes(2, 3)
-    world = rotation @ columns
-    force, torque = world[..., 0], world[..., 1]
-    fz = force[..., 2]
-    total = fz.sum(axis=1)
-    load = np.where(total < UNLOADED, np.nan, total)
-    height = (fz * position[..., 2]).sum(axis=1) / load
-    lever = position[..., 2] - height[:, None]
-    moment_x = (torque[..., 0] + position[..., 1] * fz - lever * force[..., 1]).sum(axis=1)
-    moment_y = (torque[..., 1] + lever * force[..., 0] - position[..., 0] * fz).sum(axis=1)
-    normal = np.where(wrench[..., 2] < UNLOADED, np.nan, wrench[..., 2])
-    cop = np.stack((-wrench[..., 4] / normal, wrench[..., 3] / normal), axis=2)
-    return np.stack((-moment_y / load, moment_x / load, height), axis=1), cop
-
-
-_SECOND, _FALLBACK = SolveStatus.SECOND_SOLVER, SolveStatus.EQUALITIES_ONLY
-_SENSED = ("joint_position", "joint_velocity", "joint_torque", "gyro", "accelerometer")
-_STATE = ("q", "v")
-_TRUE = ("com", "com_velocity", "angular_momentum")
-_SOLVED = ("status", "iterations", "primal_residual", "dual_residual")
-_sensed, _state, _true, _solved = (attrgetter(*names) for names in (_SENSED, _STATE, _TRUE, _SOLVED))
-"""Fields that have the names that sensors, robot and report give them."""
-
-_MORE_VECTORS = {"sole_rotation": 18}
 _MORE_NUMBERS = ("omega", "upright")
-"""What is not logged as it is, but needed for what is: the soles' orientations for the ZMP, the pendulum's natural
-frequency for the DCM, the vertical part of the torso's upward axis for its tilt."""
+"""What is not logged as it is, but needed for what is: the pendulum's natural frequency for the DCM, and the vertical
+part of the torso's upward axis for its tilt."""
 
 
 class Recorder:
-    """The channels of the whole body, one row per control tick."""
+    """The channels of the whole body, one row per control tick.
+
+    Args:
+        writer: of the log.
+        sizes: of the channels.
+        torque_limit: of the joints, shape (nj,) [N·m].
+    """
 
     def __init__(self, writer: LogWriter, sizes: Sizes, torque_limit: Array) -> None:
-        """Open its channels; ``torque_limit`` of the joints, shape (nj,) [N·m]."""
-        self._inverse_limit = 1.0 / torque_limit
         measurement = writer.channel(channels.measurement(sizes))
         truth = writer.channel(channels.truth(sizes))
         estimate = writer.channel(channels.estimate(sizes))
         contact = writer.channel(channels.contact(sizes))
         wbc = writer.channel(channels.wbc(sizes))
         torque = writer.channel(channels.torque(sizes))
+        joints = ("joint_position", "joint_velocity", "joint_torque")
         vectors = (
-            (measurement, (*_SENSED, "wrench_left", "wrench_right", "external_force")),
-            (truth, (*_STATE, *_TRUE, "left_sole", "right_sole")),
-            (estimate, ("com", "com_velocity", "base_position", "base_velocity", "external_force", "external_moment")),
+            (measurement, (*joints, "gyro", "accelerometer", "wrench_left", "wrench_right", "external_force")),
+            (truth, ("q", "v", "com", "com_velocity", "angular_momentum", "left_sole", "right_sole")),
+            (estimate, ("com", "com_velocity", "external_force", "external_moment")),
             (wbc, ("acceleration", "wrench_left", "wrench_right", "task_error")),
             (torque, ("command",)),
         )
@@ -84,19 +53,23 @@ class Recorder:
             (truth, ("nonfoot_contact", "self_contact")),
             (estimate, ("mass",)),
             (contact, ("planned", "active", "felt")),
-            (wbc, _SOLVED),
+            (wbc, ("status", "iterations", "primal_residual", "dual_residual")),
         )
         derived = (
             (wbc, ("solver", "fallback")),
             (truth, ("torso_tilt",)),
-            (estimate, ("dcm",)),
+            (estimate, ("dcm", "base_position", "base_velocity")),
             (torque, ("limit_ratio_max",)),
             (contact, ("zmp", "normal_force", "cop_left", "cop_right")),
         )
-        more = _MORE_VECTORS, _MORE_NUMBERS
-        layout = RowLayout(vectors, numbers, derived, self._derived, *more, self._compiled, standing=True)
-        self._row = writer.rows(layout)
-        self._last: tuple[Measurement, RobotTerms, RobotTerms, Array, Array, WbcReport, Array] | None = None
+        # The soles' orientations are needed for the ZMP, and of the state that was given to the controller the base.
+        more = {"sole_rotation": 18, "given_q": sizes.nq, "given_v": sizes.nv}
+        inverse_limit = 1.0 / torque_limit
+
+        def derive(table: Table) -> BodyRows:
+            return BodyRows(table, inverse_limit)
+
+        self._row = writer.rows(RowLayout(vectors, numbers, derived, derive, more, _MORE_NUMBERS))
 
     def tick(
         self, time_ns: int, measurement: Measurement, truth: RobotTerms, terms: RobotTerms, planned: PlanSample,
@@ -113,97 +86,82 @@ class Recorder:
             report: what it did.
             torque: the torque commanded, shape (nj,) [N·m].
         """
-        m, r = measurement, report
+        m, r, load = measurement, report, report.load
         numbers = (
-            m.nonfoot_contact, m.self_contact, r.load.mass_scale * terms.model_mass,
-            *planned.contacts, *r.active, *r.felt, *_solved(r), planned.omega, truth.torso_rotation.item(8),
+            m.nonfoot_contact, m.self_contact, load.mass_scale * terms.model_mass,
+            *planned.contacts, *r.active, *r.felt, r.status, r.iterations, r.primal_residual, r.dual_residual,
+            planned.omega, truth.torso_rotation.item(8),
         )  # fmt: skip
-        if self._stands(m, truth, terms, r, torque):
-            self._row.again(time_ns, numbers)
-            return
-        self._last = m, truth, terms, terms.q, terms.v, r, torque
         self._row.append(
-            time_ns, numbers, *_sensed(m), m.wrench, m.external_force, *_state(m), *_true(truth), truth.sole_pose,
-            terms.com, terms.com_velocity, terms.q[:3], terms.v[:6], r.load.force, r.load.moment,
-            r.acceleration, r.wrench, r.task_error, torque, truth.sole_rotation,
+            time_ns, numbers, m.joint_position, m.joint_velocity, m.joint_torque, m.gyro, m.accelerometer, m.wrench,
+            m.external_force, m.q, m.v, truth.com, truth.com_velocity, truth.angular_momentum, truth.sole_pose,
+            terms.com, terms.com_velocity, load.force, load.moment, r.acceleration, r.wrench, r.task_error, torque,
+            truth.sole_rotation, terms.q, terms.v,
         )  # fmt: skip
 
-    def _stands(self, m: Measurement, truth: RobotTerms, terms: RobotTerms, r: WbcReport, torque: Array) -> bool:
-        """Whether all arrays of a row are those of the row before, whose memory holds other values now."""
-        if self._last is None:
-            return False
-        n, true, own, q, v, s, command = self._last
-        # One by one: tuples of them take four times as long.
-        return (
-            m.joint_position is n.joint_position
-            and m.joint_velocity is n.joint_velocity
-            and m.joint_torque is n.joint_torque
-            and m.gyro is n.gyro
-            and m.accelerometer is n.accelerometer
-            and m.wrench is n.wrench
-            and m.external_force is n.external_force
-            and m.q is n.q
-            and m.v is n.v
-            and truth is true
-            and terms is own
-            and terms.q is q
-            and terms.v is v
-            and r.load is s.load
-            and r.acceleration is s.acceleration
-            and r.wrench is s.wrench
-            and r.task_error is s.task_error
-            and torque is command
-        )
 
-    def _derived(self, rows: Rows) -> dict[tuple[str, str], Array]:
-        """What follows from the rest: solver, fallback, tilt, DCM, largest torque ratio, ZMP and contact points."""
-        status, upright = rows["/wbc", "status"], rows["upright"]
-        n = len(status)
-        wrench = rows.span(("/measurement", "wrench_left"), ("/measurement", "wrench_right")).reshape(n, 2, 6)
-        soles = rows.span(("/truth", "left_sole"), ("/truth", "right_sole")).reshape(n, 2, 7)
-        zmp, cop = contact_points(wrench, soles[:, :, :3], rows["sole_rotation"].reshape(n, 2, 3, 3))
-        com, velocity = rows["/estimate", "com"], rows["/estimate", "com_velocity"]
-        return {
-            ("/wbc", "solver"): status == _SECOND,
-            ("/wbc", "fallback"): status >= _FALLBACK,
-            ("/truth", "torso_tilt"): np.arccos(np.minimum(upright, 1.0)),
-            ("/estimate", "dcm"): com[:, :2] + velocity[:, :2] / rows["omega"],
-            ("/torque", "limit_ratio_max"): np.abs(rows["/torque", "command"] * self._inverse_limit).max(axis=1),
-            ("/contact", "zmp"): zmp,
-            ("/contact", "normal_force"): wrench[:, :, 2],
-            ("/contact", "cop_left"): cop[:, 0],
-            ("/contact", "cop_right"): cop[:, 1],
-        }
+class BodyRows:
+    """What of the body's rows follows from the rest, such as ZMP, centres of pressure and DCM.
 
-    def _compiled(self, kernels: Library, part: Callable[..., Array]) -> Callable[[], None]:
-        """The kernel that does what `_derived` does."""
+    Args:
+        table: of the rows.
+        inverse_limit: of the joints' torques, shape (nj,) [1/(N·m)].
+    """
 
-        def of(topic: str, first: str, last: str = "") -> Array:
-            return part((topic, first), (topic, last or first))
+    def __init__(self, table: Table, inverse_limit: Array) -> None:
+        count = len(table.values)
+        self._inverse_limit = inverse_limit
+        left, right = ("/measurement", "wrench_left"), ("/measurement", "wrench_right")
+        self._wrench = table.span(left, right).reshape(count, 2, 6)
+        self._soles = table.span(("/truth", "left_sole"), ("/truth", "right_sole")).reshape(count, 2, 7)
+        self._sole_rotation = table["sole_rotation"].reshape(count, 2, 3, 3)
+        self._zmp, self._normal_force = table["/contact", "zmp"], table["/contact", "normal_force"]
+        self._cop = table.span(("/contact", "cop_left"), ("/contact", "cop_right")).reshape(count, 2, 2)
+        self._status, self._solver = table["/wbc", "status"], table["/wbc", "solver"]
+        self._fallback = table["/wbc", "fallback"]
+        self._upright, self._tilt = table["upright"], table["/truth", "torso_tilt"]
+        self._com, self._com_velocity = table["/estimate", "com"], table["/estimate", "com_velocity"]
+        self._omega, self._dcm = table["omega"], table["/estimate", "dcm"]
+        self._q, self._v = table["given_q"], table["given_v"]
+        self._base_position = table["/estimate", "base_position"]
+        self._base_velocity = table["/estimate", "base_velocity"]
+        self._command, self._limit_ratio = table["/torque", "command"], table["/torque", "limit_ratio_max"]
 
-        return kernels.bind(
-            "body_row_derive",
-            joints=len(self._inverse_limit),
-            unloaded=UNLOADED,
-            second=_SECOND,
-            without=_FALLBACK,
-            wrench=of("/measurement", "wrench_left", "wrench_right"),
-            soles=of("/truth", "left_sole", "right_sole"),
-            sole_rotation=part("sole_rotation", "sole_rotation"),
-            status=of("/wbc", "status"),
-            upright=part("upright", "upright"),
-            com=of("/estimate", "com"),
-            com_velocity=of("/estimate", "com_velocity"),
-            omega=part("omega", "omega"),
-            command=of("/torque", "command"),
-            inverse_limit=self._inverse_limit,
-            solver=of("/wbc", "solver"),
-            fallback=of("/wbc", "fallback"),
-            tilt=of("/truth", "torso_tilt"),
-            dcm=of("/estimate", "dcm"),
-            limit_ratio=of("/torque", "limit_ratio_max"),
-            zmp=of("/contact", "zmp"),
-            normal_force=of("/contact", "normal_force"),
-            cop_left=of("/contact", "cop_left"),
-            cop_right=of("/contact", "cop_right"),
-        )
+    def derive(self, rows: int) -> None:
+        """See `Derived`."""
+        for n in range(rows):
+            self._feel(n)
+            self._estimate(n)
+            self._solver[n, 0] = 1.0 if self._status[n, 0] == _SECOND else 0.0
+            self._fallback[n, 0] = 1.0 if self._status[n, 0] >= _FALLBACK else 0.0
+            self._tilt[n, 0] = math.acos(algebra.clamp(self._upright[n, 0], -1.0, 1.0))
+            self._limit_ratio[n, 0] = self._largest_ratio(n)
+
+    def _feel(self, n: int) -> None:
+        """ZMP, normal forces and centres of pressure."""
+        wrench = self._wrench[n]
+        point = zmp.measured_zmp(wrench, self._soles[n, :, :3], self._sole_rotation[n])
+        algebra.put_row(self._zmp, n, point)
+        for foot in range(2):
+            self._normal_force[n, foot] = wrench[foot, 2]
+            self._cop[n, foot, 0], self._cop[n, foot, 1] = zmp.centre_of_pressure(wrench[foot])
+
+    def _estimate(self, n: int) -> None:
+        """DCM and base in the state that the controller was given."""
+        for axis in range(2):
+            self._dcm[n, axis] = self._com[n, axis] + self._com_velocity[n, axis] / self._omega[n, 0]
+        for k in range(3):
+            self._base_position[n, k] = self._q[n, k]
+        for k in range(6):
+            self._base_velocity[n, k] = self._v[n, k]
+
+    def _largest_ratio(self, n: int) -> float:
+        """Largest torque over its limit; NaN where one is."""
+        most: float = 0.0
+        for joint in range(len(self._inverse_limit)):
+            ratio = abs(self._command[n, joint] * self._inverse_limit[joint])
+            if ratio > most or ratio != ratio:
+                most = ratio
+            if most != most:
+                break
+        return most

@@ -1,15 +1,14 @@
 """Writes what an estimator makes of the sensors into the log: its estimate, how sure it is, and by what it is wrong."""
 
 import math
-from collections.abc import Callable, Mapping
+from collections.abc import Mapping
 
 import numpy as np
 
-from surefoot.native.library import Library
-from surefoot.planner.geometry import yaw_rotations
+from surefoot import algebra, linear
 from surefoot.readings import Readings
 from surefoot.scenarios.log import LogWriter
-from surefoot.scenarios.log.rows import RowLayout, Rows
+from surefoot.scenarios.log.layout import RowLayout, Table
 from surefoot.scenarios.log.spec import ChannelSpec, FieldSpec
 from surefoot.scenarios.record import channels
 from surefoot.scenarios.record.channels import Sizes
@@ -18,36 +17,43 @@ from surefoot.wbc.estimation.estimate import Deviation, Estimate
 from surefoot.wbc.model import RobotTerms
 from surefoot.wbc.types import Array
 
-_THREE, _TWO = np.full(3, math.nan), np.full(2, math.nan)
-_UNKNOWN = Deviation(_THREE, _THREE, _TWO, _TWO, math.nan, math.nan, math.nan)
+_THREE, _TWO = np.full(3, np.nan), np.full(2, np.nan)
+_UNKNOWN = Deviation(_THREE, _THREE, _TWO, _TWO, np.nan, np.nan, np.nan)
 """Of an estimator that does not say how sure it is."""
 
-_TOLD = ("base_pose", "wrench_left", "wrench_right")
-_DEVIATIONS = ("com_deviation", "com_velocity_deviation", "tilt_deviation", "sole_height_deviation")
-_SOLES = ("left_sole", "right_sole")
-_LOAD = ("force_deviation", "moment_deviation")
-_ERRORS = ("com_error", "com_velocity_error", "tilt_error", "sole_height_error", "yaw_error", "place_error")
-_STATES = ("com", "com_velocity", "base_rotation", "true_com", "true_com_velocity", "true_base_rotation", "true_soles")
-_MORE = dict(zip(_STATES, (3, 3, 9, 3, 3, 9, 14), strict=True))
-"""What is not logged here, but needed for what is."""
+PI = math.pi
+
+_TOPIC = "/estimation"
+_VECTORS = (
+    "wrench_left", "wrench_right", "com_deviation", "com_velocity_deviation", "tilt_deviation",
+    "sole_height_deviation", "left_sole", "right_sole",
+)  # fmt: skip
+_DERIVED = (
+    "base_pose", "com_error", "com_velocity_error", "tilt_error", "sole_height_error", "yaw_error", "place_error",
+)  # fmt: skip
 
 
 class EstimationRecorder:
-    """The channels of an estimator that senses, a row each per control tick: readings, estimate, what else it tells."""
+    """The channels of an estimator that senses, a row each per control tick: readings, estimate, what else it tells.
+
+    Args:
+        writer: of the log.
+        sizes: of the channels.
+    """
 
     def __init__(self, writer: LogWriter, sizes: Sizes) -> None:
-        """Open its channels."""
         self._readings = ReadingsRecorder(writer, sizes)
         channel = writer.channel(channels.estimation())
-        vectors = ((channel, (*_TOLD, *_DEVIATIONS, *_SOLES)),)
-        numbers = ((channel, ("contact", *_LOAD)),)
-        derived = ((channel, _ERRORS),)
-        self._row = writer.rows(
-            RowLayout(vectors, numbers, derived, _errors, _MORE, ("stance",), _compiled, standing=True)
-        )
-        # Wrenches and deviations come in other arrays at each tick, and are copied into these.
-        self._given = np.zeros((2, 6)), np.zeros(10)
-        self._seen: tuple[RobotTerms | None, RobotTerms | None] = (None, None)
+        vectors, derived = ((channel, _VECTORS),), ((channel, _DERIVED),)
+        numbers = ((channel, ("contact", "force_deviation", "moment_deviation")),)
+        # What is not logged here, but needed for what is.
+        more = {
+            "q": sizes.nq, "com": 3, "com_velocity": 3, "true_com": 3, "true_com_velocity": 3, "true_soles": 14,
+            "base_rotation": 9, "true_base_rotation": 9,
+        }  # fmt: skip
+        self._row = writer.rows(RowLayout(vectors, numbers, derived, EstimationRows, more, ("stance",)))
+        # Wrenches and deviations come in other arrays at each tick, and rotations by columns: they are copied here.
+        self._wrench, self._deviations, self._rotations = np.zeros((2, 6)), np.zeros(10), np.zeros((2, 3, 3))
         self._writer = writer
         self._told: tuple[str, ...] | None = None
 
@@ -67,21 +73,15 @@ class EstimationRecorder:
             forces: true normal forces on the soles, shape (2,) [N].
         """
         self._readings.tick(time_ns, readings)
-        sure, told = estimate.deviation or _UNKNOWN, estimate.contact or (False, False)
-        felt, deviations = self._given
-        felt[:] = wrench
-        np.concatenate((sure.com, sure.com_velocity, sure.tilt, sure.sole_height), out=deviations)
-        numbers = (*told, sure.force, sure.moment, forces.item(1) > forces.item(0))
-        if self._seen == (terms, truth):
-            self._row.again(time_ns, numbers)
-        else:
-            self._seen = terms, truth
-            # Rotations lie in memory by columns.
-            self._row.append(
-                time_ns, numbers, terms.q[:7], felt, deviations, terms.sole_pose,
-                terms.com, terms.com_velocity, terms.base_rotation.T,
-                truth.com, truth.com_velocity, truth.base_rotation.T, truth.sole_pose,
-            )  # fmt: skip
+        sure, contact = estimate.deviation or _UNKNOWN, estimate.contact or (False, False)
+        self._wrench[...] = wrench
+        np.concatenate((sure.com, sure.com_velocity, sure.tilt, sure.sole_height), out=self._deviations)
+        self._rotations[0], self._rotations[1] = terms.base_rotation, truth.base_rotation
+        numbers = (*contact, sure.force, sure.moment, forces.item(1) > forces.item(0))
+        self._row.append(
+            time_ns, numbers, self._wrench, self._deviations, terms.sole_pose, terms.q, terms.com, terms.com_velocity,
+            truth.com, truth.com_velocity, truth.sole_pose, self._rotations,
+        )  # fmt: skip
         if estimate.channels:
             self._tell(time_ns, estimate.channels)
 
@@ -89,7 +89,7 @@ class EstimationRecorder:
         """Log what else an estimator tells; what it tells at the first tick is what it tells."""
         if self._told is None:
             self._told = tuple(told)
-            fields = tuple(FieldSpec(name, np.shape(value), "", "", "") for name, value in told.items())
+            fields = tuple([FieldSpec(name, np.shape(value), "", "", "") for name, value in told.items()])
             self._more = self._writer.channel(ChannelSpec("/estimator", "Estimator", fields, _OWN))
         self._more.append(time_ns, *[told[name] for name in self._told])
 
@@ -97,40 +97,72 @@ class EstimationRecorder:
 _OWN = "What else the estimator tells, by names of its own, every control tick."
 
 
-def _errors(rows: Rows) -> dict[tuple[str, str], Array]:
+class EstimationRows:
     """By what the estimate is wrong where it counts: from the stance foot, with its heading turned to the true one.
 
     Where the robot is in the world and where it looks no sensor tells; that is in place_error and yaw_error.
+
+    Args:
+        table: of the rows.
     """
-    topic = "/estimation"
-    n, stance = len(rows["stance"]), rows["stance"][:, 0].astype(int)
-    R, true = (np.swapaxes(rows[name].reshape(n, 3, 3), 1, 2) for name in ("base_rotation", "true_base_rotation"))
-    soles = rows.span((topic, "left_sole"), (topic, "right_sole")).reshape(n, 2, 7)[:, :, :3]
-    true_soles = rows["true_soles"].reshape(n, 2, 7)[:, :, :3]
-    yaw = np.arctan2(R[:, 1, 0], R[:, 0, 0]) - np.arctan2(true[:, 1, 0], true[:, 0, 0])
-    yaw = (yaw + math.pi) % (2.0 * math.pi) - math.pi
-    back, each = yaw_rotations(-yaw), np.arange(n)
-    com, true_com = rows["com"] - soles[each, stance], rows["true_com"] - true_soles[each, stance]
-    velocity = (back @ rows["com_velocity"][..., None])[..., 0] - rows["true_com_velocity"]
-    tilt = back @ R @ np.swapaxes(true, 1, 2)
-    place = soles[each, stance] - true_soles[each, stance]
-    return {
-        (topic, "com_error"): (back @ com[..., None])[..., 0] - true_com,
-        (topic, "com_velocity_error"): velocity,
-        (topic, "tilt_error"): 0.5 * np.stack((tilt[:, 2, 1] - tilt[:, 1, 2], tilt[:, 0, 2] - tilt[:, 2, 0]), axis=1),
-        (topic, "sole_height_error"): soles[..., 2] - true_soles[..., 2],
-        (topic, "yaw_error"): yaw,
-        (topic, "place_error"): place,
-    }
+
+    def __init__(self, table: Table) -> None:
+        count = len(table.values)
+        self._stance, self._q, self._base_pose = table["stance"], table["q"], table[_TOPIC, "base_pose"]
+        self._com, self._com_velocity = table["com"], table["com_velocity"]
+        self._true_com, self._true_com_velocity = table["true_com"], table["true_com_velocity"]
+        self._soles = table.span((_TOPIC, "left_sole"), (_TOPIC, "right_sole"))
+        self._true_soles = table["true_soles"]
+        self._base = table["base_rotation"].reshape(count, 3, 3)
+        self._true_base = table["true_base_rotation"].reshape(count, 3, 3)
+        self._com_error, self._com_velocity_error = table[_TOPIC, "com_error"], table[_TOPIC, "com_velocity_error"]
+        self._tilt_error, self._yaw_error = table[_TOPIC, "tilt_error"], table[_TOPIC, "yaw_error"]
+        self._sole_height_error = table[_TOPIC, "sole_height_error"]
+        self._place_error = table[_TOPIC, "place_error"]
+        self._back, self._turned = np.zeros((3, 3)), np.zeros((3, 3))
+
+    def derive(self, rows: int) -> None:
+        """See `Derived`."""
+        for n in range(rows):
+            for k in range(7):
+                self._base_pose[n, k] = self._q[n, k]
+            self._turn_back(n)
+            self._err(n, 1 if self._stance[n, 0] > 0.0 else 0)
+            for foot in range(2):
+                self._sole_height_error[n, foot] = self._soles[n, 7 * foot + 2] - self._true_soles[n, 7 * foot + 2]
+
+    def _turn_back(self, n: int) -> None:
+        """Errors of heading and tilt; `_back` is then the rotation about the vertical to the true heading."""
+        R, true = self._base[n], self._true_base[n]
+        yaw = _within_half_turn(math.atan2(R[1, 0], R[0, 0]) - math.atan2(true[1, 0], true[0, 0]))
+        c, s = math.cos(-yaw), math.sin(-yaw)
+        algebra.put_row(self._back, 0, (c, -s, 0.0))
+        algebra.put_row(self._back, 1, (s, c, 0.0))
+        algebra.put_row(self._back, 2, (0.0, 0.0, 1.0))
+        linear.fused_compose(self._back, R, self._turned)
+        self._yaw_error[n, 0] = yaw
+        T = self._turned
+        self._tilt_error[n, 0] = 0.5 * (_rows_product(T, 2, true, 1) - _rows_product(T, 1, true, 2))
+        self._tilt_error[n, 1] = 0.5 * (_rows_product(T, 0, true, 2) - _rows_product(T, 2, true, 0))
+
+    def _err(self, n: int, stance: int) -> None:
+        """Errors of the CoM's place and velocity from a foot, and of that foot's place."""
+        sole, true_sole = algebra.row(self._soles, n, 7 * stance), algebra.row(self._true_soles, n, 7 * stance)
+        com = algebra.rotate(self._back, algebra.subtract(algebra.row(self._com, n), sole))
+        true_com = algebra.subtract(algebra.row(self._true_com, n), true_sole)
+        velocity = algebra.rotate(self._back, algebra.row(self._com_velocity, n))
+        true_velocity = algebra.row(self._true_com_velocity, n)
+        algebra.put_row(self._com_error, n, algebra.subtract(com, true_com))
+        algebra.put_row(self._com_velocity_error, n, algebra.subtract(velocity, true_velocity))
+        algebra.put_row(self._place_error, n, algebra.subtract(sole, true_sole))
 
 
-def _compiled(kernels: Library, part: Callable[..., Array]) -> Callable[[], None]:
-    """The kernel that does what `_errors` does."""
-    topic = "/estimation"
-    row = kernels.fill(
-        "EstimationRow",
-        **{name: part(name, name) for name in ("stance", *_STATES)},
-        soles=part((topic, "left_sole"), (topic, "right_sole")),
-        **{name: part((topic, name), (topic, name)) for name in _ERRORS},
-    )
-    return kernels.bind("estimation_row_derive", row)
+def _rows_product(A: Array, i: int, B: Array, j: int) -> float:
+    """Entry of A B'."""
+    return linear.fused_sum(A[i, 0], B[j, 0], A[i, 1], B[j, 1], A[i, 2], B[j, 2])
+
+
+def _within_half_turn(angle: float) -> float:
+    """The same angle from -pi to pi [rad]."""
+    off = math.fmod(angle + PI, 2.0 * PI)
+    return (off + 2.0 * PI if off < 0.0 else off) - PI

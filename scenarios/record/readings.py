@@ -4,7 +4,7 @@ import numpy as np
 
 from surefoot.readings import Readings
 from surefoot.scenarios.log import LogWriter
-from surefoot.scenarios.log.rows import RowLayout
+from surefoot.scenarios.log.layout import RowLayout
 from surefoot.scenarios.record import channels
 from surefoot.scenarios.record.channels import Sizes
 

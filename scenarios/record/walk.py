@@ -13,7 +13,7 @@ from surefoot.planner.plan import POINT, PlanSample, WalkPlan, in_point
 from surefoot.planner.steps.commands import Command
 from surefoot.planner.types import GRAVITY, CentroidalState, FeetState, Foot, Footstep, SolverStatus
 from surefoot.scenarios.log import LogWriter
-from surefoot.scenarios.log.rows import Place, RowLayout
+from surefoot.scenarios.log.layout import Place, RowLayout
 from surefoot.scenarios.record import channels
 from surefoot.scenarios.record.channels import SUPPORT_VERTICES, Sizes
 from surefoot.scenarios.record.provenance import BEGUN_RECORD, AskedPush
@@ -88,7 +88,7 @@ class WalkRecorder:
         at: dict[Place, slice] = {(reference.spec.topic, name): place for name, place in _REFERENCE.items()}
         numbers = ("omega", "roll", "phase", "stance", "step", "phase_time", "phase_duration", "support_count")
         vectors = ((reference, tuple(_REFERENCE)),)
-        self._reference = writer.rows(RowLayout(vectors, ((reference, numbers),), fresh=True, at=at))
+        self._reference = writer.rows(RowLayout(vectors, ((reference, numbers),), at=at))
         self._state = writer.channel(channels.planner_state(sizes)).filler(_STATE)
         self._plan = writer.channel(channels.plan(sizes)).filler(_PLAN, ("slack", "held", "capture_margin"))
         self._footsteps = writer.channel(channels.footsteps(sizes)).filler({}, _FOOTSTEPS)
@@ -169,7 +169,7 @@ class WalkRecorder:
     def timing(self, time_ns: int, timing: TickTiming) -> None:
         """Wall-clock times of the tick, and once a simulated second the state of the process."""
         state, build, solve, plan, physics, log, tick, busy = timing
-        self._timing.again(
+        self._timing.append(
             time_ns,
             (1e6 * state, 1e6 * build, 1e6 * solve, 1e6 * plan, 1e6 * physics, 1e6 * log, 1e6 * tick, 1e6 * busy),
         )

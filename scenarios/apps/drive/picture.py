@@ -14,7 +14,6 @@ from surefoot.planner.plan import WalkPlan
 from surefoot.planner.types import Foot, Footstep
 from surefoot.scenarios import palette
 from surefoot.scenarios.apps.drive.session import PUSH_TIME, PushInput
-from surefoot.scenarios.record.body import contact_points
 from surefoot.scenarios.run.simulation import Tick
 from surefoot.scenarios.setup.stance import frames_of
 from surefoot.scenarios.setup.walk import Walk
@@ -25,6 +24,7 @@ from surefoot.sim.bodies import BodyPoses
 from surefoot.sim.scene import world_mjcf
 from surefoot.values import dataclass
 from surefoot.wbc.model import RobotTerms
+from surefoot.wbc.zmp import centre_of_pressure, measured_zmp
 
 FOLLOW_TIME = 0.4
 """Time constant with which the camera follows the robot [s]."""
@@ -130,7 +130,8 @@ class Pictures:
         """Marks as in a replay, and the footprints, which come and go here."""
         measurement, plan, now, terms = tick.measurement, tick.plan, tick.reference, self._terms
         assert measurement is not None
-        zmp, cop = contact_points(measurement.wrench[None], terms.sole_position[None], terms.sole_rotation[None])
+        zmp = measured_zmp(measurement.wrench, terms.sole_position, terms.sole_rotation)
+        cop = [centre_of_pressure(wrench) for wrench in measurement.wrench]
         steps = plan.footsteps
         free = 3 - len(steps)
         push, pushed = self._push_at(tick.time)
@@ -138,14 +139,14 @@ class Pictures:
             Facts(
                 com=tick.com[None],
                 dcm=_dcm(tick)[None],
-                zmp=zmp,
+                zmp=np.array([zmp]),
                 planned_com=now.com[None],
                 planned_dcm=now.dcm[None],
                 planned_zmp=now.zmp[None],
                 polygon=_eight(plan.support_polygon)[None],
                 contacts=np.array([now.contacts]),
                 soles=terms.sole_pose[None],
-                cop=cop,
+                cop=np.array([cop]),
                 force=measurement.wrench[None, :, :3],
                 ahead=np.array([[_pose(step) for step in steps] + [_NO_STEP] * free]),
                 ahead_foot=np.array([[int(step.foot) for step in steps] + [-1] * free]),

@@ -34,7 +34,7 @@ from surefoot.planner.plan import WalkPlan
 from surefoot.planner.types import Footstep
 from surefoot.scenarios import palette
 from surefoot.scenarios.log import PublishedSchema
-from surefoot.scenarios.log.spec import NANOS, SECONDS, Template, slot
+from surefoot.scenarios.log.template import NANOS, SECONDS, Template, slot
 from surefoot.sim.shapes import Shape, drawn_shapes
 
 

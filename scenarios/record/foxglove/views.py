@@ -20,7 +20,7 @@ from surefoot.planner.types import SolverStatus
 from surefoot.scenarios.errors import LogError
 from surefoot.scenarios.log import Log as LogFile
 from surefoot.scenarios.log import LogWriter
-from surefoot.scenarios.log.spec import Template
+from surefoot.scenarios.log.template import Template
 from surefoot.scenarios.record.foxglove import drawing as templates
 from surefoot.scenarios.record.foxglove.drawing import NOWHERE, Outlines, force_arrow, published, scene_data
 from surefoot.sim.measurement import Measurement
@@ -45,7 +45,7 @@ class Drawn:
         self, writer: LogWriter, topic: str, schema: type[ProtobufMessage], template: Template, doc: str
     ) -> None:
         self._channel = writer.message_channel(topic, published(schema), doc, sampled=True)
-        self._template = template.fresh()
+        self._template = template
 
     def append(self, time_ns: int, values: ArrayLike) -> None:
         """Write a message with the template's values."""

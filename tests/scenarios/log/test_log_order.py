@@ -7,7 +7,7 @@ from mcap_doctor import complaints
 
 import surefoot
 from surefoot.scenarios.log import AttachedFile, ChannelSpec, FieldSpec, LogWriter, PublishedSchema, read
-from surefoot.scenarios.log.rows import RowLayout
+from surefoot.scenarios.log.layout import RowLayout
 from surefoot.scenarios.log.scan import records_in
 
 pytestmark = pytest.mark.unit

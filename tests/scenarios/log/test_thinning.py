@@ -9,7 +9,7 @@ from surefoot.scenarios.judge.inspection import inspect
 from surefoot.scenarios.judge.metric import RunView, metric
 from surefoot.scenarios.judge.metrics import METRICS, OWN, judged_topics, register
 from surefoot.scenarios.log import ChannelSpec, FieldSpec, LogWriter, PublishedSchema, Thinning, read
-from surefoot.scenarios.log.rows import RowLayout
+from surefoot.scenarios.log.layout import RowLayout
 from surefoot.scenarios.log.thinning import THINNED, Sieve
 from surefoot.scenarios.run.run import run_scenario
 
@@ -39,7 +39,7 @@ def test_each_way_of_writing_is_thinned_and_none_of_the_others(tmp_path):
         rows = []
         for topic in ("/row", "/whole_row"):
             channel = writer.channel(ChannelSpec(topic, "R", (FieldSpec("v", (2,)), FieldSpec("b"))))
-            rows.append(writer.rows(RowLayout(((channel, ("v",)),), ((channel, ("b",)),), standing=True)))
+            rows.append(writer.rows(RowLayout(((channel, ("v",)),), ((channel, ("b",)),))))
         schema = PublishedSchema("text", b"")
         sampled, said = (writer.message_channel(f"/{name}", schema, "words", name == "s") for name in ("s", "t"))
         values = np.zeros(2)
@@ -49,10 +49,7 @@ def test_each_way_of_writing_is_thinned_and_none_of_the_others(tmp_path):
             appended.put(time, a=tick)
             fill(time, None, tick)
             for row in rows:
-                if tick:
-                    row.again(time, (tick,))
-                else:
-                    row.append(time, (tick,), values)
+                row.append(time, (tick,), values)
             sampled.append(time, b"%d" % tick)
             said.append(time, b"%d" % tick)
     log = read(tmp_path / "log.mcap")

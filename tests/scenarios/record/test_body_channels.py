@@ -79,3 +79,57 @@ def test_derived_fields_follow_their_definitions(tmp_path):
         assert row["normal_force"] == pytest.approx(measurement.wrench[:, 2])
         for foot, side in enumerate(("left", "right")):
             assert row[f"cop_{side}"] == pytest.approx(centre_of_pressure(measurement.wrench[foot]))
+
+
+def logged(tmp_path, change):
+    """What is derived of a tick that is changed before it is recorded, by topic and field."""
+    given = tick(np.random.default_rng(6), SolveStatus.SOLVED)
+    change(*given)
+    with LogWriter(tmp_path / "log.mcap", {}) as writer:
+        Recorder(writer, Sizes(nj=NJ, nq=NJ + 7, nv=NJ + 6, horizon=50), LIMIT).tick(0, *given)
+    log = read(tmp_path / "log.mcap")
+    fields = {"/contact": ("zmp", "cop_left", "cop_right"), "/torque": ("limit_ratio_max",), "/truth": ("torso_tilt",)}
+    fields["/estimate"] = ("base_position", "base_velocity")
+    return given, {name: log[topic].field(name)[0] for topic, names in fields.items() for name in names}
+
+
+@pytest.mark.parametrize("foot", [0, 1])
+def test_a_foot_without_load_has_no_centre_of_pressure_and_the_zmp_is_of_the_other(tmp_path, foot):
+    def lift(measurement, *_):
+        measurement.wrench[foot] = 0.0
+
+    (measurement, truth, *_), row = logged(tmp_path, lift)
+    sides = ("left", "right")
+    assert np.isnan(row[f"cop_{sides[foot]}"]).all()
+    assert np.isfinite(row[f"cop_{sides[1 - foot]}"]).all()
+    assert row["zmp"] == pytest.approx(measured_zmp(measurement.wrench, truth.sole_position, truth.sole_rotation))
+
+
+def test_in_flight_there_is_no_zmp(tmp_path):
+    def fly(measurement, *_):
+        measurement.wrench[:] = 0.0
+
+    row = logged(tmp_path, fly)[1]
+    assert np.isnan(row["zmp"]).all()
+
+
+@pytest.mark.parametrize("joint", range(NJ))
+def test_a_torque_that_is_no_number_has_no_ratio(tmp_path, joint):
+    def spoil(*given):
+        given[-1][joint] = np.nan
+
+    assert np.isnan(logged(tmp_path, spoil)[1]["limit_ratio_max"])
+
+
+@pytest.mark.parametrize(("upright", "tilt"), [(1.0 + 1e-15, 0.0), (-1.0 - 1e-15, np.pi)])
+def test_a_rotation_that_is_rounded_has_a_tilt(tmp_path, upright, tilt):
+    def turn(measurement, truth, *_):
+        truth.torso_rotation[2, 2] = upright
+
+    assert logged(tmp_path, turn)[1]["torso_tilt"] == tilt
+
+
+def test_the_base_is_that_of_the_state_that_the_controller_was_given(tmp_path):
+    (_, _, terms, *_), row = logged(tmp_path, lambda *_: None)
+    np.testing.assert_array_equal(row["base_position"], terms.q[:3])
+    np.testing.assert_array_equal(row["base_velocity"], terms.v[:6])

@@ -6,7 +6,6 @@ import numpy as np
 import pinocchio as pin
 import pytest
 
-from surefoot.native.library import VARIABLE
 from surefoot.readings import Reading, Readings
 from surefoot.scenarios.log import LogWriter, read
 from surefoot.scenarios.record.channels import Sizes
@@ -64,9 +63,7 @@ def errors(terms, truth, stance):
     }
 
 
-@pytest.mark.parametrize("switch", ["1", "0"])
-def test_the_log_has_what_was_told_at_each_tick(tmp_path, monkeypatch, switch):
-    monkeypatch.setenv(VARIABLE, switch)
+def test_the_log_has_what_was_told_at_each_tick(tmp_path):
     rng, terms, truth, wanted, wrong, biases = np.random.default_rng(0), Terms(), Terms(), [], [], []
     with LogWriter(tmp_path / "log.mcap", {}) as writer:
         recorder = EstimationRecorder(writer, SIZES)

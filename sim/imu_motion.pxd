@@ -1,0 +1,34 @@
+cimport cython
+cimport libc.math as math
+from surefoot cimport algebra, linear
+from surefoot.algebra cimport vector3
+from surefoot.models cimport convert
+
+cdef double SMALL
+
+cdef class ImuMotion:
+    cdef readonly double[:, ::1] rotation
+    cdef readonly vector3 velocity, angular_velocity
+
+cdef class Link:
+    cdef Py_ssize_t joint
+    cdef bint beside
+    cdef double[:, ::1] rotation, lever, twist, square
+    cdef vector3 axis, point
+
+    @cython.locals(i=Py_ssize_t, j=Py_ssize_t)
+    cdef void turn(self, double angle, double[:, ::1] out) noexcept nogil
+
+cdef class ImuChain:
+    cdef list _links
+    cdef double[:, ::1] _mount, _lever, _R, _E, _turn, _product
+
+    @cython.locals(at=ImuMotion, link=Link)
+    cpdef ImuMotion motion(self, const double[:] q, const double[:] v)
+    cdef void _pass(self, Link link, double angle, double speed, ImuMotion at) noexcept
+    @cython.locals(i=Py_ssize_t, j=Py_ssize_t)
+    cdef vector3 _moved_beside(self, Link link, vector3 rate) noexcept
+
+cpdef vector3 turn_between(const double[:, :] before, const double[:, :] after) noexcept nogil
+cdef double _along(const double[:, :] before, Py_ssize_t i, const double[:, :] after, Py_ssize_t j) noexcept nogil
+cdef void put_skew(double[:, :] out, vector3 a) noexcept nogil

@@ -5,9 +5,9 @@ from dataclasses import fields, replace
 
 import numpy as np
 import pytest
+from surefoot.planner.plan_kernel import POINT
 
 from surefoot.planner.plan import PlanSample
-from surefoot.planner.plan_kernel import POINT
 from surefoot.wbc.types import WbcReference
 
 pytestmark = pytest.mark.unit

@@ -43,9 +43,39 @@ def inner(a: Vector, b: Vector) -> float:
     return a[0] * b[0] + a[1] * b[1] + a[2] * b[2]
 
 
+def add(a: Vector, b: Vector) -> Vector:
+    """A + b."""
+    return a[0] + b[0], a[1] + b[1], a[2] + b[2]
+
+
+def subtract(a: Vector, b: Vector) -> Vector:
+    """A - b."""
+    return a[0] - b[0], a[1] - b[1], a[2] - b[2]
+
+
+def scale(factor: float, a: Vector) -> Vector:
+    """A multiple of a."""
+    return factor * a[0], factor * a[1], factor * a[2]
+
+
 def vector(values: Array) -> Vector:
     """An array of three numbers as a vector."""
     return values[0], values[1], values[2]
+
+
+def row(A: Array, i: int) -> Vector:
+    """Row of a matrix of three columns."""
+    return A[i, 0], A[i, 1], A[i, 2]
+
+
+def column(A: Array, j: int) -> Vector:
+    """Column of a matrix, its first three numbers."""
+    return A[0, j], A[1, j], A[2, j]
+
+
+def column_below(A: Array, j: int) -> Vector:
+    """Column of a matrix, its next three numbers."""
+    return A[3, j], A[4, j], A[5, j]
 
 
 def put(out: Array, a: Vector) -> None:
@@ -102,11 +132,59 @@ def rotation_of(a: Vector, R: Array) -> None:
 
 def rotation_vector(R: Array) -> Vector:
     """Rotation vector of a rotation, as `pinocchio.log3` has it for angles below pi."""
-    x, y, z = R[2, 1] - R[1, 2], R[0, 2] - R[2, 0], R[1, 0] - R[0, 1]
-    sine = 0.5 * math.sqrt(x * x + y * y + z * z)
-    cosine = 0.5 * (R[0, 0] + R[1, 1] + R[2, 2] - 1.0)
-    scale = 0.5 if sine < 1e-8 else 0.5 * math.atan2(sine, cosine) / sine
-    return scale * x, scale * y, scale * z
+    return _logarithm((R[2, 1] - R[1, 2], R[0, 2] - R[2, 0], R[1, 0] - R[0, 1]), R[0, 0] + R[1, 1] + R[2, 2])
+
+
+def turn_between(A: Array, B: Array) -> Vector:
+    """Rotation vector of A' B: how B is turned from A, in the frame of A."""
+    axis = (
+        columns_inner(A, 2, B, 1) - columns_inner(A, 1, B, 2),
+        columns_inner(A, 0, B, 2) - columns_inner(A, 2, B, 0),
+        columns_inner(A, 1, B, 0) - columns_inner(A, 0, B, 1),
+    )
+    return _logarithm(axis, columns_inner(A, 0, B, 0) + columns_inner(A, 1, B, 1) + columns_inner(A, 2, B, 2))
+
+
+def columns_inner(A: Array, i: int, B: Array, j: int) -> float:
+    """Inner product of a column of one rotation with a column of another one."""
+    found: float = A[0, i] * B[0, j] + A[1, i] * B[1, j] + A[2, i] * B[2, j]
+    return found
+
+
+def _logarithm(axis: Vector, trace: float) -> Vector:
+    """Rotation vector of a rotation R, from the vector of R - R' and its trace."""
+    sine = 0.5 * math.sqrt(inner(axis, axis))
+    cosine = 0.5 * (trace - 1.0)
+    factor = 0.5 if sine < 1e-8 else 0.5 * math.atan2(sine, cosine) / sine
+    return scale(factor, axis)
+
+
+def see_motion(R: Array, p: Vector, linear: Vector, angular: Vector) -> tuple[Vector, Vector]:
+    """A motion as seen from a frame with rotation R and origin p: R' (v - p x ω) and R' ω."""
+    return rotate_back(R, subtract(linear, cross(p, angular))), rotate_back(R, angular)
+
+
+def see_columns(R: Array, p: Vector, motions: Array, columns: NDArray[np.int64], out: Array) -> None:
+    """Write columns of a Jacobian, shape (6, n): those of another one, as `see_motion` has them."""
+    for n in range(columns.shape[0]):
+        j = columns[n]
+        v, w = see_motion(R, p, column(motions, j), column_below(motions, j))
+        out[0, j], out[1, j], out[2, j] = v[0], v[1], v[2]
+        out[3, j], out[4, j], out[5, j] = w[0], w[1], w[2]
+
+
+def see_wrench(R: Array, p: Vector, out: Array) -> None:
+    """Write the map of a wrench in a frame to force and moment about the origin into an array, shape (6, 6).
+
+    It is [R, 0; [p]x R, R], with rotation R and origin p of the frame.
+    """
+    for j in range(3):
+        axis = column(R, j)
+        lever = cross(p, axis)
+        out[0, j], out[1, j], out[2, j] = axis[0], axis[1], axis[2]
+        out[0, 3 + j], out[1, 3 + j], out[2, 3 + j] = 0.0, 0.0, 0.0
+        out[3, j], out[4, j], out[5, j] = lever[0], lever[1], lever[2]
+        out[3, 3 + j], out[4, 3 + j], out[5, 3 + j] = axis[0], axis[1], axis[2]
 
 
 def quaternion(R: Array, out: Array) -> None:

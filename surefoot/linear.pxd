@@ -6,4 +6,10 @@ cpdef void forward_solve(const double[:, :] U, double[:, :] B) noexcept nogil
 cpdef void forward_solve_one(const double[:, :] U, double[:] b) noexcept nogil
 cpdef void backward_solve(const double[:, :] U, double[:] x) noexcept nogil
 cpdef void subtract_products(double[:, :] S, const double[:, :] Y) noexcept nogil
+cpdef void copy_rows(double[:, :] out, Py_ssize_t i, const double[:, :] A, Py_ssize_t k, Py_ssize_t count) noexcept nogil
+cpdef void scale_rows(double[:, :] out, Py_ssize_t first, double factor, const double[:] scale, const double[:, :] A, Py_ssize_t k) noexcept nogil
+cpdef void add_row(double[:, :] out, Py_ssize_t i, double factor, const double[:, :] A, Py_ssize_t k) noexcept nogil
+cpdef void put_transposed(double[:, :] out, Py_ssize_t i, Py_ssize_t j, double factor, const double[:, :] A) noexcept nogil
+cpdef void gram(const double[:, :] T, double[:, :] H) noexcept nogil
+cpdef void transposed_product(const double[:, :] T, const double[:] t, double[:] g) noexcept nogil
 cpdef double fused_sum(double a, double x, double b, double y, double c, double z) noexcept nogil

@@ -61,6 +61,38 @@ def subtract_products(S: Array, Y: Array) -> None:
     S -= np.triu(Y[:, : len(S)].T @ Y)
 
 
+def copy_rows(out: Array, i: int, A: Array, k: int, count: int) -> None:
+    """Put so many rows of A from row k on, shape (m, n), into the first columns of another matrix from row i on."""
+    out[i : i + count, : A.shape[1]] = A[k : k + count]
+
+
+def scale_rows(out: Array, first: int, factor: float, scale: Array, A: Array, k: int) -> None:
+    """Put rows of A from row k on, shape (m, n), each times its scale and a factor, into a matrix from a column on."""
+    rows = A[k : k + len(scale)]
+    np.multiply(rows, (scale * factor)[:, None], out=out[: len(scale), first : first + A.shape[1]])
+
+
+def add_row(out: Array, i: int, factor: float, A: Array, k: int) -> None:
+    """Add a multiple of row k of A, shape (m, n), to the first columns of row i of another matrix."""
+    out[i, : A.shape[1]] += factor * A[k]
+
+
+def put_transposed(out: Array, i: int, j: int, factor: float, A: Array) -> None:
+    """Put a multiple of A', for A of shape (m, n), into another matrix, from row i and column j on."""
+    m, n = A.shape
+    np.multiply(A.T, factor, out=out[i : i + n, j : j + m])
+
+
+def gram(T: Array, H: Array) -> None:
+    """H = T' T, for T of shape (m, n)."""
+    np.matmul(T.T, T, out=H)
+
+
+def transposed_product(T: Array, t: Array, g: Array) -> None:
+    """Write T' t into g, for T of shape (m, n)."""
+    np.matmul(t, T, out=g)
+
+
 def fused_sum(a: float, x: float, b: float, y: float, c: float, z: float) -> float:
     """Sum a x + b y + c z, rounded once a term, as numpy's library sums on processors that fuse."""
     return float(np.array([a, b, c]) @ np.array([x, y, z]))

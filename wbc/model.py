@@ -301,23 +301,10 @@ class RobotTerms:
         c, s = math.cos(pitch), math.sin(pitch)
         R, p = np.array([[c, 0.0, -s], [0.0, 1.0, 0.0], [s, 0.0, c]]), np.array([forward, 0.0, 0.0])
         if self.leaning is not None:
-            return self._shift_leaning(k, line_frame(k, self.sole_rotation[k], self.leaning) * pin.SE3(R, p))
+            line = line_frame(k, self.sole_rotation[k], self.leaning)
+            R, p = line.rotation @ R, line.act(p)
         self._shift(k, R, p)
         return self._to_sole.copy()
-
-    def _shift_leaning(self, k: int, turned: pin.SE3) -> Array:
-        action = turned.toActionMatrixInverse()
-        spin = self.sole_velocity[k, 3:]
-        centripetal = cross(spin, cross(spin, turned.translation))
-        self.sole_jacobian[k] = action @ self.sole_jacobian[k]
-        self.sole_velocity[k] = action @ self.sole_velocity[k]
-        self.sole_bias[k] = action @ self.sole_bias[k]
-        self.sole_bias[k, :3] += turned.rotation.T @ centripetal
-        placement = pin.SE3(self.sole_rotation[k], self.sole_position[k]) * turned
-        self.contact_position[k], self.contact_rotation[k] = placement.translation, placement.rotation
-        self.sole_wrench_map[:, 6 * k : 6 * k + 6] = placement.toDualActionMatrix()
-        to_sole: Array = turned.toDualActionMatrix()
-        return to_sole
 
     def _shift(self, k: int, R: Array, p: Array) -> None:
         """See a foot from a frame with rotation R and origin p in that of its sole."""

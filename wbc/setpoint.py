@@ -45,7 +45,7 @@ class Setpoint:
         self.omega, self.stiffness, self.heading, self.heading_rate = rest[0], rest[1], rest[2], rest[3]
         self.load_left, self.load_right = rest[4], rest[5]
         self.roll_rate, self.roll_acceleration = rest[7], rest[8]
-        self.swing_foot, self.rolling_foot, self.catching = int(rest[9]), int(rest[10]), rest[11] != 0.0
+        self.swing_foot, self.rolling_foot, self.catching = int(rest[9]), int(rest[10]), bool(rest[11] != 0.0)
 
 
 _SIZE = 55

@@ -30,10 +30,6 @@ cpdef vector3 turn_between(const double[:, :] A, const double[:, :] B) noexcept 
 cpdef double columns_inner(const double[:, :] A, Py_ssize_t i, const double[:, :] B, Py_ssize_t j) noexcept nogil
 cdef vector3 _logarithm(vector3 axis, double trace) noexcept nogil
 cpdef (vector3, vector3) see_motion(const double[:, :] R, vector3 p, vector3 linear, vector3 angular) noexcept nogil
-@cython.locals(n=Py_ssize_t, j=Py_ssize_t)
-cpdef void see_columns(
-    const double[:, :] R, vector3 p, const double[:, :] motions, const long long[:] columns, double[:, :] out
-) noexcept nogil
 @cython.locals(j=Py_ssize_t)
 cpdef void see_wrench(const double[:, :] R, vector3 p, double[:, :] out) noexcept nogil
 @cython.locals(i=Py_ssize_t, j=Py_ssize_t, k=Py_ssize_t)

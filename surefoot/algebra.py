@@ -164,15 +164,6 @@ def see_motion(R: Array, p: Vector, linear: Vector, angular: Vector) -> tuple[Ve
     return rotate_back(R, subtract(linear, cross(p, angular))), rotate_back(R, angular)
 
 
-def see_columns(R: Array, p: Vector, motions: Array, columns: NDArray[np.int64], out: Array) -> None:
-    """Write columns of a Jacobian, shape (6, n): those of another one, as `see_motion` has them."""
-    for n in range(columns.shape[0]):
-        j = columns[n]
-        v, w = see_motion(R, p, column(motions, j), column_below(motions, j))
-        out[0, j], out[1, j], out[2, j] = v[0], v[1], v[2]
-        out[3, j], out[4, j], out[5, j] = w[0], w[1], w[2]
-
-
 def see_wrench(R: Array, p: Vector, out: Array) -> None:
     """Write the map of a wrench in a frame to force and moment about the origin into an array, shape (6, 6).
 

@@ -83,6 +83,23 @@ def put_transposed(out: Array, i: int, j: int, factor: float, A: Array) -> None:
     np.multiply(A.T, factor, out=out[i : i + n, j : j + m])
 
 
+def see_columns(R: Array, p: Array, motions: Array, columns: NDArray[np.int64], out: Array) -> None:
+    """Write some columns of a Jacobian, shape (6, n): those of another one, as `algebra.see_motion` sees each.
+
+    That is R' (v - p x ω) and R' ω, with rotation R and origin p, shape (3,), of the frame from which they are seen.
+    """
+    x, y, z = p
+    cross = np.array([[0.0, -z, y], [z, 0.0, -x], [-y, x, 0.0]])
+    linear, angular = motions[:3, columns], motions[3:, columns]
+    out[:3, columns], out[3:, columns] = R.T @ (linear - cross @ angular), R.T @ angular
+
+
+def distance_squared(A: Array, B: Array, C: Array) -> float:
+    """Sum of the squares of A' B - C, of matrices of shape (3, 3)."""
+    difference = (A.T @ B - C).ravel()
+    return float(difference @ difference)
+
+
 def gram(T: Array, H: Array) -> None:
     """H = T' T, for T of shape (m, n)."""
     np.matmul(T.T, T, out=H)

@@ -159,6 +159,34 @@ cpdef void put_transposed(
             row[k] = factor * A[k, l]
 
 
+cpdef void see_columns(
+    const double[:, :] R, const double[:] p, const double[:, :] motions, const long long[:] columns, double[:, :] out
+) noexcept nogil:
+    cdef Py_ssize_t n, i, j
+    cdef double[3] v
+    cdef double[3] w
+    for n in range(columns.shape[0]):
+        j = columns[n]
+        for i in range(3):
+            w[i] = motions[3 + i, j]
+        v[0] = motions[0, j] - (p[1] * w[2] - p[2] * w[1])
+        v[1] = motions[1, j] - (p[2] * w[0] - p[0] * w[2])
+        v[2] = motions[2, j] - (p[0] * w[1] - p[1] * w[0])
+        for i in range(3):
+            out[i, j] = R[0, i] * v[0] + R[1, i] * v[1] + R[2, i] * v[2]
+            out[3 + i, j] = R[0, i] * w[0] + R[1, i] * w[1] + R[2, i] * w[2]
+
+
+cpdef double distance_squared(const double[:, :] A, const double[:, :] B, const double[:, :] C) noexcept nogil:
+    cdef Py_ssize_t i, j
+    cdef double total = 0.0, change
+    for i in range(3):
+        for j in range(3):
+            change = A[0, i] * B[0, j] + A[1, i] * B[1, j] + A[2, i] * B[2, j] - C[i, j]
+            total += change * change
+    return total
+
+
 cdef (Py_ssize_t, Py_ssize_t) _span(const double *row, Py_ssize_t count) noexcept nogil:
     """First entry that is not zero, and the end of those: most rows are those of a motion or of the wrenches alone."""
     cdef Py_ssize_t first = 0, end = count

@@ -1,5 +1,5 @@
 cimport cython
-from surefoot cimport algebra
+from surefoot cimport algebra, linear
 from surefoot.algebra cimport vector3
 
 cdef class Frame:
@@ -12,7 +12,8 @@ cdef class Frame:
 
     cdef void place(self) noexcept nogil
     cdef void update(self) noexcept nogil
-    cdef void shift(self, double[:, :] R, vector3 p) noexcept nogil
+    @cython.locals(p=vector3)
+    cdef void shift(self, double[:, :] R, double[:] origin) noexcept nogil
 
 cdef vector3 _linear(const double[:] motion) noexcept nogil
 cdef vector3 _angular(const double[:] motion) noexcept nogil

@@ -3,7 +3,7 @@
 import numpy as np
 import pinocchio as pin
 
-from surefoot import algebra
+from surefoot import algebra, linear
 from surefoot.wbc.types import Array
 
 
@@ -49,18 +49,16 @@ class Frame:
         a, alpha = algebra.see_motion(R, p, _linear(self._joint_acceleration), _angular(self._joint_acceleration))
         _put(self.velocity, v, w)
         _put(self.bias, algebra.add(a, algebra.cross(w, v)), alpha)
-        algebra.see_columns(
-            self.rotation, algebra.vector(self.position), self._joint_jacobian, self._columns, self.jacobian
-        )
+        linear.see_columns(self.rotation, self.position, self._joint_jacobian, self._columns, self.jacobian)
 
-    def shift(self, R: Array, p: algebra.Vector) -> None:
-        """See its motion from elsewhere on the body: from a frame with rotation R and origin p in this one.
+    def shift(self, R: Array, origin: Array) -> None:
+        """See its motion from elsewhere on the body: from a frame with rotation R and that origin in this one.
 
         The acceleration of that origin has ω x (ω x p) more.
         """
-        spin = _angular(self.velocity)
+        p, spin = algebra.vector(origin), _angular(self.velocity)
         centripetal = algebra.cross(spin, algebra.cross(spin, p))
-        algebra.see_columns(R, p, self.jacobian, self._columns, self.jacobian)
+        linear.see_columns(R, origin, self.jacobian, self._columns, self.jacobian)
         v, w = algebra.see_motion(R, p, _linear(self.velocity), spin)
         a, alpha = algebra.see_motion(R, p, _linear(self.bias), _angular(self.bias))
         _put(self.velocity, v, w)

@@ -309,7 +309,7 @@ class RobotTerms:
     def _shift(self, k: int, R: Array, p: Array) -> None:
         """See a foot from a frame with rotation R and origin p in that of its sole."""
         there, R_sole = algebra.vector(p), self._R_sole[k]
-        self._sole(k).shift(R, there)
+        self._sole(k).shift(R, p)
         at = algebra.add(algebra.rotate(R_sole, there), algebra.vector(self._p_sole[k]))
         algebra.put(self._p_contact[k], at)
         algebra.compose(R_sole, R, self._R_contact[k])

@@ -27,9 +27,8 @@ cdef class Pair:
     cdef double[:, ::1] _R
     cdef const long long[::1] _columns_1, _columns_2
 
-    @cython.locals(i=Py_ssize_t, j=Py_ssize_t, moved=vector3, now=vector3, turned=double, most=double, change=double)
+    @cython.locals(moved=vector3, now=vector3, turned=double, most=double)
     cpdef bint is_due(self, double attention) noexcept
-    cdef double _turned(self, Py_ssize_t i, Py_ssize_t j) noexcept nogil
     cdef vector3 _seen(self) noexcept nogil
     cdef double _lever(self, Py_ssize_t i) noexcept nogil
     cpdef double rate(

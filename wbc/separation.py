@@ -138,28 +138,15 @@ class Pair:
 
     def is_due(self, attention: float) -> bool:
         """Whether the distance may be less than that [m]; what is due is taken as measured in this place."""
-        turned = 0.0
-        for i in range(3):
-            for j in range(3):
-                change = self._turned(i, j) - self._R[i, j]
-                turned += change * change
+        turned = linear.distance_squared(self._R_1, self._R_2, self._R)
         now = self._seen()
         moved = algebra.subtract(now, self._p)
         most = math.sqrt(algebra.inner(moved, moved)) + self._radius * math.sqrt(0.5 * turned)
         if self.distance - most > attention:
             return False
-        for i in range(3):
-            for j in range(3):
-                self._R[i, j] = self._turned(i, j)
+        algebra.compose_back(self._R_1, self._R_2, self._R)
         self._p = now
         return True
-
-    def _turned(self, i: int, j: int) -> float:
-        """Entry of the second body's rotation R_1' R_2, as seen from the first one."""
-        entry: float = (
-            self._R_1[0, i] * self._R_2[0, j] + self._R_1[1, i] * self._R_2[1, j] + self._R_1[2, i] * self._R_2[2, j]
-        )
-        return entry
 
     def _seen(self) -> algebra.Vector:
         """Centre of the second shape as seen from the first body, R_1' (p_2 - p_1 + R_2 c) [m]."""

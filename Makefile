@@ -4,7 +4,7 @@ PYTHON ?= $(shell for p in python3.14 python3.13 python3.12 python3.11 python3; 
 VENV := .venv
 BIN := $(VENV)/bin
 
-.PHONY: walk test tests unit physics check long gate format coverage mutants bench docs dist dist-test scenario changelog clean
+.PHONY: walk test tests unit interpreted physics check long gate format coverage mutants bench docs dist dist-test scenario changelog clean
 
 walk: $(VENV)/.installed
 	$(BIN)/surefoot run diagonal-walk
@@ -29,6 +29,15 @@ tests: $(VENV)/.installed-dev
 # make unit AREA=planner runs the unit tests of one folder, make unit those of all.
 unit: $(VENV)/.installed-dev
 	$(BIN)/pytest -m "unit and not long" -n auto --dist loadscope tests/$(AREA)
+
+# The same modules without compiling, in a clone of their own.
+interpreted: $(VENV)/.installed-dev
+	rm -rf build/interpreted && mkdir -p build
+	git clone --quiet . build/interpreted
+	cd build/interpreted && export PYTHONPATH=$$PWD PATH=$(CURDIR)/$(BIN):$$PATH && \
+	python -m surefoot.native --interpreted && \
+	python -m pytest -q -p no:cacheprovider -m "unit and not long" -n auto --dist loadscope tests/$(AREA) && \
+	python -m surefoot check --out runs walk control-push
 
 physics: $(VENV)/.installed-dev
 	$(BIN)/pytest -m "physics and not long" -n auto --dist loadscope

@@ -1,31 +1,44 @@
-"""Compiles the kernels when the package is installed or its wheel is built, see `surefoot/native`.
+"""Compiles the modules that hold the laws when the package is installed or its wheel is built.
 
-A wheel with the library in it is tied to the platform, on Linux to a version of glibc, and to no version of Python.
-Where there is no compiler the
-package is whole without it, and runs on plain Python.
+Such a wheel is of one version of Python and one platform, on Linux of a version of glibc. Where nothing can be compiled
+the package is whole without, and the same modules run interpreted.
 """
 
 import importlib.util
+import sys
 from pathlib import Path
 from typing import Any
 
 from hatchling.builders.hooks.plugin.interface import BuildHookInterface
 
 
-class KernelHook(BuildHookInterface):
-    """Makes the library beside its sources and takes it along."""
+class CompiledModules(BuildHookInterface):
+    """Makes the extension modules beside their sources and takes them along."""
 
-    def initialize(self, version: str, build_data: dict[str, Any]) -> None:
-        """See hatchling; the library of the same sources is not made again."""
-        spec = importlib.util.spec_from_file_location("kernel_build", Path(self.root, "surefoot", "native", "build.py"))
+    def _modules(self) -> Any:
+        """`surefoot.native.modules`, by its path: nothing is installed yet."""
+        path = Path(self.root, "surefoot", "native", "modules.py")
+        spec = importlib.util.spec_from_file_location("surefoot_modules", path)
         assert spec is not None
         assert spec.loader is not None
-        native = importlib.util.module_from_spec(spec)
-        spec.loader.exec_module(native)
-        why = "" if native.is_built() else native.build()
-        if why:
-            self.app.display_warning(f"Surefoot runs on plain Python, slower, since there is {why}")
+        modules = importlib.util.module_from_spec(spec)
+        sys.modules[spec.name] = modules
+        spec.loader.exec_module(modules)
+        return modules
+
+    def dependencies(self) -> list[str]:
+        """What the build needs beside Cython: a C compiler as a wheel where the machine has none."""
+        return [] if self._modules().has_compiler() else ["ziglang>=0.15"]
+
+    def initialize(self, version: str, build_data: dict[str, Any]) -> None:
+        """See hatchling; what is of the same sources is not compiled again."""
+        modules = self._modules()
+        try:
+            modules.build(modules.stale())
+        except modules.NothingCompilesError as error:
+            modules.interpret(str(error))
+            self.app.display_warning(f"Surefoot runs interpreted, slower: {error}")
             return
-        build_data["artifacts"].append(f"/surefoot/native/{native.LIBRARY.name}")
+        build_data["artifacts"] += [f"/{path.as_posix()}" for path in modules.built()]
         build_data["pure_python"] = False
-        build_data["tag"] = f"py3-none-{native.platform_tag()}"
+        build_data["tag"] = modules.tag()

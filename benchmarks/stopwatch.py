@@ -5,6 +5,7 @@ from collections import defaultdict
 from collections.abc import Callable, Iterator, Sequence
 from contextlib import ExitStack
 from pathlib import Path
+from types import ModuleType
 from typing import Any
 from unittest.mock import patch
 
@@ -13,7 +14,7 @@ from surefoot.scenarios.log import LogWriter
 from surefoot.scenarios.record.body import Recorder
 from surefoot.scenarios.record.foxglove.views import BodyView
 from surefoot.scenarios.record.walk import WalkRecorder
-from surefoot.scenarios.run.reference import ReferenceMaker
+from surefoot.scenarios.run import controller
 from surefoot.scenarios.run.run import closed_loop, one_thread
 from surefoot.scenarios.run.skeleton import ClosedLoop
 from surefoot.scenarios.setup.load import load
@@ -23,20 +24,20 @@ from surefoot.sim.world import World
 from surefoot.wbc.controller import WholeBodyController
 from surefoot.wbc.estimation.estimator import SensedState
 
-PARTS: dict[str, tuple[tuple[type, str], ...]] = {
+PARTS: dict[str, tuple[tuple[type | ModuleType, str], ...]] = {
     "measure": ((World, "measure"),),
     "sensors": ((SensorSuite, "read"),),
     "estimator": ((SensedState, "sense"),),
     "Pinocchio terms": ((WholeBodyController, "observe"),),
     "planner": ((WalkingPlanner, "update"),),
     "logging of plans": ((WalkRecorder, "plan"),),
-    "plan sampled": ((ReferenceMaker, "tick"),),
+    "plan sampled": ((controller, "planned"),),
     "whole-body QP": ((WholeBodyController, "update"),),
     "logging": ((Recorder, "tick"), (WalkRecorder, "reference")),
     "viewers' channels": ((BodyView, "events"), (BodyView, "picture")),
     "physics steps": ((World, "advance"),),
 }
-"""Methods of the loop by what they do; one that compiled code goes past takes no time here."""
+"""Methods and functions of the loop by what they do; one that compiled code goes past takes no time here."""
 
 
 class TimedWalk:

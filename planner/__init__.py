@@ -21,9 +21,10 @@ if TYPE_CHECKING:
     from surefoot.planner.laws.profiles import PROFILES, Profile
     from surefoot.planner.laws.qp import Qp, QpSolution, solve
     from surefoot.planner.parameters import LegInertia, PlannerParameters, StepAdaptation
-    from surefoot.planner.plan import Planner, PlanSample, PlanSampler, WalkPlan
+    from surefoot.planner.plan import Planner, PlanSample, WalkPlan
     from surefoot.planner.planner import WalkingPlanner
     from surefoot.planner.plants import IdealFeet, Pendulum
+    from surefoot.planner.sampling import PlanSampler
     from surefoot.planner.steps.commands import Command, velocity_bouts, walk_of
     from surefoot.planner.steps.gait import Bout, GaitParameters
     from surefoot.planner.types import CentroidalState, FeetState, Foot, Footstep, PhaseKind, Twist
@@ -74,7 +75,8 @@ if not TYPE_CHECKING:  # a type checker shall still refuse names that are not th
             "laws.profiles": ("PROFILES", "Profile"),
             "laws.qp": ("Qp", "QpSolution", "solve"),
             "parameters": ("LegInertia", "PlannerParameters", "StepAdaptation"),
-            "plan": ("PlanSample", "PlanSampler", "Planner", "WalkPlan"),
+            "plan": ("PlanSample", "Planner", "WalkPlan"),
+            "sampling": ("PlanSampler",),
             "planner": ("WalkingPlanner",),
             "plants": ("IdealFeet", "Pendulum"),
             "types": ("CentroidalState", "FeetState", "Foot", "Footstep", "PhaseKind", "Twist"),

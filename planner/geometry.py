@@ -1,15 +1,14 @@
-"""Planar frames, the orientation of soles, one or many, convex polygons on the ground, and quintic curves.
+"""Planar frames, soles that lie flat on ground, one or many, convex polygons on the ground, and quintic curves.
 
-The sole's frame is turned by yaw about the vertical, then by pitch about its new lateral axis, then by roll about its
-new forward axis: R = R_z(yaw) R_y(pitch) R_x(roll). Yaw is the heading of its forward axis seen from above, whatever
-the tilt; uphill, pitch is negative.
+Angles of soles are those of `planner.orientation`.
 """
 
 import math
-from collections.abc import Sequence
 
 import numpy as np
 
+from surefoot.planner.orientation import sole_rotation as sole_rotation
+from surefoot.planner.quintic import between
 from surefoot.planner.types import Array, Footstep
 
 
@@ -49,41 +48,6 @@ def sole_angles(normal: Array, yaw: float) -> tuple[float, float]:
 def sole_pose(position: Array, yaw: float, normal: Array) -> Array:
     """Position, yaw, pitch and roll of a sole flat on ground of a normal, shape (6,) [m, rad]."""
     return np.array([*position.tolist(), yaw, *sole_angles(normal, yaw)])
-
-
-def sole_rotation(yaw: float, pitch: float, roll: float) -> Array:
-    """Rotation from the sole's frame to the world, shape (3, 3)."""
-    cy, cp, cr = math.cos(yaw), math.cos(pitch), math.cos(roll)
-    sy, sp, sr = math.sin(yaw), math.sin(pitch), math.sin(roll)
-    return np.array(
-        (
-            cy * cp, cy * sp * sr - sy * cr, cy * sp * cr + sy * sr,
-            sy * cp, sy * sp * sr + cy * cr, sy * sp * cr - cy * sr,
-            -sp, cp * sr, cp * cr,
-        )
-    ).reshape(3, 3)  # fmt: skip
-
-
-def sole_rates(angles: Array, rates: Array, accelerations: Array) -> tuple[Array, Array]:
-    """Angular velocity and acceleration of a sole in the world frame, shape (3,) each [rad/s, rad/s^2].
-
-    With the axes z of the world, j = (-sin yaw, cos yaw, 0) of the pitch and k of the roll, the sole's forward axis,
-    ω = yaw' z + pitch' j + roll' k.
-
-    Args:
-        angles: yaw, pitch, roll, shape (3,) [rad].
-        rates: their rates, shape (3,) [rad/s].
-        accelerations: their second derivatives, shape (3,) [rad/s^2].
-    """
-    yaw, pitch, _ = angles.tolist()
-    (turn, tilt, lean), (turn2, tilt2, lean2) = rates.tolist(), accelerations.tolist()
-    c, s, cp, sp = math.cos(yaw), math.sin(yaw), math.cos(pitch), math.sin(pitch)
-    velocity = (lean * cp * c - tilt * s, lean * cp * s + tilt * c, turn - lean * sp)
-    # Axis j turns with yaw', axis k with yaw' and pitch'.
-    across, along = tilt2 + lean * turn * cp, lean2 * cp - lean * tilt * sp - tilt * turn
-    return np.array(velocity), np.array(
-        (along * c - across * s, along * s + across * c, turn2 - lean2 * sp - lean * tilt * cp)
-    )
 
 
 CORNERS = np.array([[1.0, 1.0], [-1.0, 1.0], [-1.0, -1.0], [1.0, -1.0]])
@@ -206,19 +170,9 @@ def quintic(start: Array, end: Array, duration: float) -> Array:
     Returns:
         Coefficients of 1, t, ..., t^5, shape (6, k).
     """
-    if start.shape[1] == 1:
-        return np.array(one_quintic(start[:, 0].tolist(), end[:, 0].tolist(), duration))[:, None]
-    columns = zip(start.T.tolist(), end.T.tolist(), strict=True)
-    return np.array([*zip(*(one_quintic(*ends, duration) for ends in columns), strict=True)])
-
-
-def one_quintic(start: Sequence[float], end: Sequence[float], t: float) -> tuple[float, ...]:
-    """The coefficients of a single quintic as `quintic` tells them, in plain numbers, which are fast."""
-    (x, v, a), (y, w, b) = start, end
-    gap = y - x - t * v - 0.5 * t * t * a
-    speed, bend = t * (w - v - t * a), t * t * (b - a)
-    third, fourth = (10.0 * gap - 4.0 * speed + 0.5 * bend) / t**3, (-15.0 * gap + 7.0 * speed - bend) / t**4
-    return x, v, 0.5 * a, third, fourth, (6.0 * gap - 3.0 * speed + 0.5 * bend) / t**5
+    ends = zip(start.T.tolist(), end.T.tolist(), strict=True)
+    ways = (between(tuple(one), tuple(other), duration) for one, other in ends)
+    return np.array([*zip(*ways, strict=True)])
 
 
 greatest = np.maximum.reduce

@@ -8,16 +8,15 @@ from functools import partial
 import numpy as np
 
 from surefoot.errors import ParameterError
-from surefoot.native.library import library
 from surefoot.planner.check import check_durations, check_height
 from surefoot.planner.ground.terrain import Terrain, flat
 from surefoot.planner.laws.law import Motion, MotionProblem, StepContext
 from surefoot.planner.laws.profiles import PROFILES, Profile
-from surefoot.planner.model.jerk import WorldMotion
+from surefoot.planner.model.world_motion import WorldMotion
 from surefoot.planner.parameters import PlannerParameters
 from surefoot.planner.plan import WalkPlan
 from surefoot.planner.recovery.recovery import Recovery, Sight, falling
-from surefoot.planner.recovery.step_adjustment import StepBounds, StepProblem
+from surefoot.planner.recovery.step_problem import StepBounds, StepProblem
 from surefoot.planner.references.com_height import HeightProfile, SmoothHeight
 from surefoot.planner.references.window import ReferencePreview, Window
 from surefoot.planner.references.zmp_reference import Support
@@ -91,9 +90,6 @@ class WalkingPlanner:
         region: StepRegion | None = None,
         legs: LegReach | None = None,
     ) -> None:
-        if library() is None:  # here, so that the first tick does not wait for it: its time is recorded
-            import scipy.linalg  # noqa: F401
-
         self.gait = gait
         self.parameters = parameters or profile.parameters
         p = self.parameters

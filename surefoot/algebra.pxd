@@ -7,16 +7,19 @@ cdef double INFINITY
 cpdef double between(double value, double low, double high) noexcept nogil
 cpdef double clamp(double value, double low, double high) noexcept nogil
 cpdef double square(double value) noexcept nogil
-cpdef vector3 cross(vector3 a, vector3 b) noexcept nogil
-cpdef double inner(vector3 a, vector3 b) noexcept nogil
 cpdef vector3 add(vector3 a, vector3 b) noexcept nogil
 cpdef vector3 subtract(vector3 a, vector3 b) noexcept nogil
 cpdef vector3 scale(double factor, vector3 a) noexcept nogil
+cpdef vector3 squares(vector3 a) noexcept nogil
+cpdef vector3 cross(vector3 a, vector3 b) noexcept nogil
+cpdef double inner(vector3 a, vector3 b) noexcept nogil
 cpdef vector3 vector(const double[:] values) noexcept nogil
-cpdef vector3 row(const double[:, :] A, Py_ssize_t i) noexcept nogil
-cpdef vector3 column(const double[:, :] A, Py_ssize_t j) noexcept nogil
-cpdef vector3 column_below(const double[:, :] A, Py_ssize_t j) noexcept nogil
 cpdef void put(double[:] out, vector3 a) noexcept nogil
+cpdef vector3 row(const double[:, :] A, Py_ssize_t i, Py_ssize_t first=*) noexcept nogil
+cpdef void put_row(double[:, :] A, Py_ssize_t i, vector3 a, Py_ssize_t first=*) noexcept nogil
+cpdef vector3 column(const double[:, :] A, Py_ssize_t j, Py_ssize_t first=*) noexcept nogil
+cpdef void put_column(double[:, :] A, Py_ssize_t j, vector3 a, Py_ssize_t first=*) noexcept nogil
+cpdef void put_cross(double[:, :] out, vector3 a) noexcept nogil
 cpdef vector3 rotate(const double[:, :] R, vector3 a) noexcept nogil
 cpdef vector3 rotate_back(const double[:, :] R, vector3 a) noexcept nogil
 @cython.locals(i=Py_ssize_t, j=Py_ssize_t)

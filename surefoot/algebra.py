@@ -33,6 +33,26 @@ def square(value: float) -> float:
     return value * value
 
 
+def add(a: Vector, b: Vector) -> Vector:
+    """Sum a + b."""
+    return a[0] + b[0], a[1] + b[1], a[2] + b[2]
+
+
+def subtract(a: Vector, b: Vector) -> Vector:
+    """Difference a - b."""
+    return a[0] - b[0], a[1] - b[1], a[2] - b[2]
+
+
+def scale(factor: float, a: Vector) -> Vector:
+    """A factor times a."""
+    return factor * a[0], factor * a[1], factor * a[2]
+
+
+def squares(a: Vector) -> Vector:
+    """The square of each number."""
+    return a[0] * a[0], a[1] * a[1], a[2] * a[2]
+
+
 def cross(a: Vector, b: Vector) -> Vector:
     """Cross product a x b."""
     return a[1] * b[2] - a[2] * b[1], a[2] * b[0] - a[0] * b[2], a[0] * b[1] - a[1] * b[0]
@@ -43,44 +63,41 @@ def inner(a: Vector, b: Vector) -> float:
     return a[0] * b[0] + a[1] * b[1] + a[2] * b[2]
 
 
-def add(a: Vector, b: Vector) -> Vector:
-    """A + b."""
-    return a[0] + b[0], a[1] + b[1], a[2] + b[2]
-
-
-def subtract(a: Vector, b: Vector) -> Vector:
-    """A - b."""
-    return a[0] - b[0], a[1] - b[1], a[2] - b[2]
-
-
-def scale(factor: float, a: Vector) -> Vector:
-    """A multiple of a."""
-    return factor * a[0], factor * a[1], factor * a[2]
-
-
 def vector(values: Array) -> Vector:
     """An array of three numbers as a vector."""
     return values[0], values[1], values[2]
 
 
-def row(A: Array, i: int) -> Vector:
-    """Row of a matrix of three columns."""
-    return A[i, 0], A[i, 1], A[i, 2]
-
-
-def column(A: Array, j: int) -> Vector:
-    """Column of a matrix, its first three numbers."""
-    return A[0, j], A[1, j], A[2, j]
-
-
-def column_below(A: Array, j: int) -> Vector:
-    """Column of a matrix, its next three numbers."""
-    return A[3, j], A[4, j], A[5, j]
-
-
 def put(out: Array, a: Vector) -> None:
     """Write a vector into an array, shape (3,)."""
     out[0], out[1], out[2] = a[0], a[1], a[2]
+
+
+def row(A: Array, i: int, first: int = 0) -> Vector:
+    """Three numbers of a row of a matrix, from a column on."""
+    return A[i, first], A[i, first + 1], A[i, first + 2]
+
+
+def put_row(A: Array, i: int, a: Vector, first: int = 0) -> None:
+    """Write a vector into a row of a matrix, from a column on."""
+    A[i, first], A[i, first + 1], A[i, first + 2] = a[0], a[1], a[2]
+
+
+def column(A: Array, j: int, first: int = 0) -> Vector:
+    """Three numbers of a column of a matrix, from a row on."""
+    return A[first, j], A[first + 1, j], A[first + 2, j]
+
+
+def put_column(A: Array, j: int, a: Vector, first: int = 0) -> None:
+    """Write a vector into a column of a matrix, from a row on."""
+    A[first, j], A[first + 1, j], A[first + 2, j] = a[0], a[1], a[2]
+
+
+def put_cross(out: Array, a: Vector) -> None:
+    """Write hat(a) into an array, shape (3, 3): hat(a) b is a x b."""
+    out[0, 0], out[0, 1], out[0, 2] = 0.0, -a[2], a[1]
+    out[1, 0], out[1, 1], out[1, 2] = a[2], 0.0, -a[0]
+    out[2, 0], out[2, 1], out[2, 2] = -a[1], a[0], 0.0
 
 
 def rotate(R: Array, a: Vector) -> Vector:

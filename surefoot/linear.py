@@ -6,7 +6,7 @@ Arguments are arrays whose last axis is contiguous. Sizes are those of the array
 
 import numpy as np
 from numpy.typing import NDArray
-from scipy.linalg import lapack, solve_triangular
+from scipy.linalg import blas, lapack
 
 Array = NDArray[np.float64]
 
@@ -19,6 +19,16 @@ def dot(a: Array, b: Array) -> float:
 def row_dot(A: Array, i: int, x: Array) -> float:
     """A row of a matrix, of shape (m, n), times a vector, shape (n,)."""
     return float(A[i] @ x)
+
+
+def multiply(A: Array, x: Array, out: Array) -> None:
+    """A x into `out`, shape (m,), for A of shape (m, n)."""
+    np.matmul(A, x, out=out)
+
+
+def quadratic(A: Array, x: Array) -> float:
+    """Form x' A x, for A of shape (n, n) and x of shape (n,), much of which may be zeros."""
+    return float(x @ A @ x)
 
 
 def rows_dot(A: Array, i: int, B: Array, j: int) -> float:
@@ -35,25 +45,33 @@ def factor(A: Array) -> bool:
     U, info = lapack.dpotrf(A, lower=0, clean=1)
     if info:
         return True
-    upper = np.triu_indices(len(A))
-    A[upper] = U[upper]
+    A[:] = np.tril(A, -1) + U
     np.fill_diagonal(A, 1.0 / np.diag(U))
     return False
 
 
 def forward_solve(U: Array, B: Array) -> None:
     """Solve U' Y = B in place, of a factor of `factor`, for right sides that are the columns of B, shape (n, k)."""
-    B[:] = solve_triangular(_whole(U), B, trans="T", check_finite=False)
+    B[:] = blas.dtrsm(1.0, _whole(U), B, trans_a=1)
 
 
 def forward_solve_one(U: Array, b: Array) -> None:
     """The same for one right side, shape (n,)."""
-    b[:] = solve_triangular(_whole(U), b, trans="T", check_finite=False)
+    b[:] = blas.dtrsv(_whole(U), b, trans=1)
 
 
 def backward_solve(U: Array, x: Array) -> None:
     """Solve U x = b in place, shape (n,)."""
-    x[:] = solve_triangular(_whole(U), x, check_finite=False)
+    x[:] = blas.dtrsv(_whole(U), x)
+
+
+def solve_tridiagonal(lower: Array, diagonal: Array, upper: Array, X: Array) -> None:
+    """Solve a tridiagonal system in place, for right sides that are the columns of X, shape (n, k).
+
+    Row i is lower_i x_{i-1} + diagonal_i x_i + upper_i x_{i+1}, and its diagonal the largest of the row: there are no
+    pivots. The three bands, shape (n,) each, are of no use afterwards.
+    """
+    X[:] = lapack.dgtsv(lower[1:], diagonal, upper[:-1], X)[3]
 
 
 def subtract_products(S: Array, Y: Array) -> None:
@@ -110,13 +128,92 @@ def transposed_product(T: Array, t: Array, g: Array) -> None:
     np.matmul(t, T, out=g)
 
 
+def nearest(value: float) -> float:
+    """The nearest whole number, of two the even one."""
+    return float(round(value))
+
+
+def copy(A: Array, out: Array) -> None:
+    """A into `out`, of any shape."""
+    out[:] = A
+
+
+def product(A: Array, B: Array, out: Array) -> None:
+    """A B into `out`, shape (m, k), for A of shape (m, n) and B of shape (n, k); axes may lie in any order."""
+    out[:] = A @ B
+
+
+def accumulate(S: Array, A: Array, B: Array) -> None:
+    """S += A B, term by term, for A of shape (m, n) and B of shape (n, k); axes may lie in any order."""
+    S += A @ B
+
+
+def add_multiple(S: Array, a: float, A: Array) -> None:
+    """S += a A, of any shape; axes may lie in any order."""
+    S += a * A
+
+
+def add_multiples(S: Array, a: float, A: Array, b: float, B: Array) -> None:
+    """S += a A + b B, likewise."""
+    S += a * A + b * B
+
+
+def differences(A: Array, one: NDArray[np.intp], other: NDArray[np.intp], out: Array) -> None:
+    """Some columns of A, shape (m, n), less others, into `out`, shape (m, k); axes may lie in any order."""
+    np.subtract(A[:, one], A[:, other], out=out)
+
+
+def row_products(A: Array, B: Array, out: Array) -> None:
+    """A B' into `out`, for A of shape (m, n) and B of shape (k, n)."""
+    np.matmul(A, B.T, out=out)
+
+
+def downdate(P: Array, Y: Array) -> None:
+    """P made symmetric, and P -= Y' Y, shape (n, n), for Y of shape (k, n)."""
+    P[:] = 0.5 * (P + P.T) - Y.T @ Y
+
+
+def inverse(U: Array, out: Array) -> None:
+    """A⁻¹ into `out`, shape (n, n), of a factor of `factor`."""
+    half = blas.dtrsm(1.0, _whole(U), np.eye(len(U)), trans_a=1)
+    np.matmul(half.T, half, out=out)
+
+
+def add_products(P: Array, A: Array, B: Array) -> None:
+    """Add A' B to the upper triangle of the first n rows and columns of P, for A and B of shape (m, n) each."""
+    n = A.shape[1]
+    P[:n, :n] += np.triu(A.T @ B)
+
+
+def add_transposed_product(scale: float, A: Array, y: Array, out: Array) -> None:
+    """Add scale A' y to `out`, row by row, for A of shape (m, n)."""
+    out += scale * (y @ A)
+
+
+def evaluate_polynomials(C: Array, t: float, out: Array) -> None:
+    """Write values of polynomials at t into the first n numbers of `out`.
+
+    Coefficients of 1, t, ... are the rows of C, shape (m, n), a polynomial a column.
+    """
+    values = out[: C.shape[1]]
+    values[:] = C[-1]
+    for row in C[-2::-1]:
+        values *= t
+        values += row
+
+
+def fused_pair(a: float, x: float, b: float, y: float) -> float:
+    """Sum a x + b y, rounded once a term, as numpy's library sums on processors that fuse."""
+    return float(np.array([a, b]) @ np.array([x, y]))
+
+
 def fused_sum(a: float, x: float, b: float, y: float, c: float, z: float) -> float:
     """Sum a x + b y + c z, rounded once a term, as numpy's library sums on processors that fuse."""
     return float(np.array([a, b, c]) @ np.array([x, y, z]))
 
 
 def _whole(U: Array) -> Array:
-    """The factor with its diagonal itself."""
-    whole = np.triu(U)
+    """The factor with its diagonal itself, in the upper triangle."""
+    whole = U.copy()
     np.fill_diagonal(whole, 1.0 / np.diag(U))
     return whole

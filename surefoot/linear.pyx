@@ -3,25 +3,27 @@
 Sums go in an order of their own, the same on every machine.
 """
 
-from libc.math cimport fma, sqrt
+from libc.math cimport fma, rint, sqrt
 from libc.string cimport memcpy, memset
 
 
 cdef inline double _dot(const double *a, const double *b, Py_ssize_t count) noexcept nogil:
     """Four sums beside each other: one alone would wait for itself at each term."""
-    cdef double[4] sums
-    cdef Py_ssize_t i = 0, lane
-    for lane in range(4):
-        sums[lane] = 0.0
+    cdef double first = 0.0, second = 0.0, third = 0.0, fourth = 0.0
+    cdef Py_ssize_t i = 0
     while i + 4 <= count:
-        for lane in range(4):
-            sums[lane] += a[i + lane] * b[i + lane]
+        first += a[i] * b[i]
+        second += a[i + 1] * b[i + 1]
+        third += a[i + 2] * b[i + 2]
+        fourth += a[i + 3] * b[i + 3]
         i += 4
-    lane = 0
-    while i + lane < count:
-        sums[lane] += a[i + lane] * b[i + lane]
-        lane += 1
-    return (sums[0] + sums[1]) + (sums[2] + sums[3])
+    if i < count:
+        first += a[i] * b[i]
+    if i + 1 < count:
+        second += a[i + 1] * b[i + 1]
+    if i + 2 < count:
+        third += a[i + 2] * b[i + 2]
+    return (first + second) + (third + fourth)
 
 
 cdef void _subtract_rows(
@@ -68,6 +70,21 @@ cpdef double row_dot(const double[:, :] A, Py_ssize_t i, const double[:] x) noex
     return _dot(&A[i, 0], &x[0], A.shape[1])
 
 
+cpdef void multiply(const double[:, :] A, const double[:] x, double[:] out) noexcept nogil:
+    cdef Py_ssize_t i
+    for i in range(A.shape[0]):
+        out[i] = _dot(&A[i, 0], &x[0], A.shape[1])
+
+
+cpdef double quadratic(const double[:, :] A, const double[:] x) noexcept nogil:
+    cdef Py_ssize_t i, n = A.shape[1]
+    cdef double found = 0.0
+    for i in range(A.shape[0]):
+        if x[i] != 0.0:
+            found += x[i] * _dot(&A[i, 0], &x[0], n)
+    return found
+
+
 cpdef double rows_dot(const double[:, :] A, Py_ssize_t i, const double[:, :] B, Py_ssize_t j) noexcept nogil:
     return _dot(&A[i, 0], &B[j, 0], A.shape[1])
 
@@ -87,22 +104,24 @@ cpdef bint factor(double[:, :] A) noexcept nogil:
     return False
 
 
-cdef void _forward(const double *U, Py_ssize_t size, Py_ssize_t stride, double *B, Py_ssize_t width) noexcept nogil:
+cdef void _forward(
+    const double *U, Py_ssize_t size, Py_ssize_t stride, double *B, Py_ssize_t width, Py_ssize_t apart
+) noexcept nogil:
     cdef Py_ssize_t i, c
     cdef double *y
     for i in range(size):
-        y = B + width * i
-        _subtract_rows(y, width, U + i, stride, B, width, i)
+        y = B + apart * i
+        _subtract_rows(y, width, U + i, stride, B, apart, i)
         for c in range(width):
             y[c] *= U[stride * i + i]
 
 
 cpdef void forward_solve(const double[:, :] U, double[:, :] B) noexcept nogil:
-    _forward(&U[0, 0], U.shape[0], _stride(U), &B[0, 0], _stride(B))
+    _forward(&U[0, 0], U.shape[0], _stride(U), &B[0, 0], B.shape[1], _stride(B))
 
 
 cpdef void forward_solve_one(const double[:, :] U, double[:] b) noexcept nogil:
-    _forward(&U[0, 0], U.shape[0], _stride(U), &b[0], 1)
+    _forward(&U[0, 0], U.shape[0], _stride(U), &b[0], 1, 1)
 
 
 cpdef void backward_solve(const double[:, :] U, double[:] x) noexcept nogil:
@@ -111,6 +130,19 @@ cpdef void backward_solve(const double[:, :] U, double[:] x) noexcept nogil:
     for i in range(size - 1, -1, -1):
         row = &U[0, 0] + stride * i
         x[i] = (x[i] - _dot(row + i + 1, &x[0] + i + 1, size - i - 1)) * row[i]
+
+
+cpdef void solve_tridiagonal(double[::1] lower, double[::1] diagonal, double[::1] upper, double[:, ::1] X) noexcept nogil:
+    cdef Py_ssize_t n = X.shape[0], width = X.shape[1], i, c
+    cdef double pivot
+    for i in range(n):
+        pivot = 1.0 / (diagonal[i] - lower[i] * upper[i - 1] if i else diagonal[i])
+        upper[i] *= pivot
+        for c in range(width):
+            X[i, c] = (X[i, c] - lower[i] * X[i - 1, c] if i else X[i, c]) * pivot
+    for i in range(n - 2, -1, -1):
+        for c in range(width):
+            X[i, c] -= upper[i] * X[i + 1, c]
 
 
 cpdef void subtract_products(double[:, :] S, const double[:, :] Y) noexcept nogil:
@@ -235,5 +267,148 @@ cpdef void transposed_product(const double[:, :] T, const double[:] t, double[:]
             out[j] += factor * row[j]
 
 
+cdef inline void _add_row(
+    double *out, Py_ssize_t step, double factor, const double *row, Py_ssize_t row_step, Py_ssize_t count
+) noexcept nogil:
+    """out += factor row, of numbers that are steps apart."""
+    cdef Py_ssize_t c
+    if step == 1 and row_step == 1:
+        for c in range(count):
+            out[c] += factor * row[c]
+    else:
+        for c in range(count):
+            out[step * c] += factor * row[row_step * c]
+
+
+cdef inline Py_ssize_t _step(const double[:, :] A) noexcept nogil:
+    return A.strides[1] // <Py_ssize_t>sizeof(double)
+
+
+cpdef void copy(const double[:, :] A, double[:, :] out) noexcept nogil:
+    cdef Py_ssize_t i, c
+    for i in range(A.shape[0]):
+        for c in range(A.shape[1]):
+            out[i, c] = A[i, c]
+
+
+cpdef void product(const double[:, :] A, const double[:, :] B, double[:, :] out) noexcept nogil:
+    cdef Py_ssize_t i, c, step = _step(out)
+    cdef double *row
+    for i in range(out.shape[0]):
+        row = &out[i, 0]
+        for c in range(out.shape[1]):
+            row[step * c] = 0.0
+    accumulate(out, A, B)
+
+
+cpdef void accumulate(double[:, :] S, const double[:, :] A, const double[:, :] B) noexcept nogil:
+    cdef Py_ssize_t i, j, step = _step(S), row_step = _step(B), count = S.shape[1]
+    for i in range(S.shape[0]):
+        for j in range(B.shape[0]):
+            _add_row(&S[i, 0], step, A[i, j], &B[j, 0], row_step, count)
+
+
+cpdef void add_multiple(double[:, :] S, double a, const double[:, :] A) noexcept nogil:
+    cdef Py_ssize_t i
+    for i in range(S.shape[0]):
+        _add_row(&S[i, 0], _step(S), a, &A[i, 0], _step(A), S.shape[1])
+
+
+cpdef void add_multiples(
+    double[:, :] S, double a, const double[:, :] A, double b, const double[:, :] B
+) noexcept nogil:
+    cdef Py_ssize_t i, c
+    for i in range(S.shape[0]):
+        for c in range(S.shape[1]):
+            S[i, c] += a * A[i, c] + b * B[i, c]
+
+
+cpdef void differences(
+    const double[:, :] A, const Py_ssize_t[:] one, const Py_ssize_t[:] other, double[:, :] out
+) noexcept nogil:
+    cdef Py_ssize_t i, c
+    for i in range(A.shape[0]):
+        for c in range(one.shape[0]):
+            out[i, c] = A[i, one[c]] - A[i, other[c]]
+
+
+cpdef void row_products(const double[:, :] A, const double[:, :] B, double[:, :] out) noexcept nogil:
+    cdef Py_ssize_t i, j
+    for i in range(A.shape[0]):
+        for j in range(B.shape[0]):
+            out[i, j] = _dot(&A[i, 0], &B[j, 0], A.shape[1])
+
+
+cpdef void downdate(double[:, :] P, const double[:, :] Y) noexcept nogil:
+    cdef Py_ssize_t n = P.shape[0], i, j, r
+    cdef double *row
+    for i in range(n):
+        row = &P[i, 0]
+        for j in range(i + 1, n):
+            row[j] = 0.5 * (row[j] + P[j, i])
+        for r in range(Y.shape[0]):
+            _add_row(row + i, 1, -Y[r, i], &Y[r, i], 1, n - i)
+    for i in range(n):
+        for j in range(i + 1, n):
+            P[j, i] = P[i, j]
+
+
+cpdef void inverse(const double[:, :] U, double[:, :] out) noexcept nogil:
+    cdef Py_ssize_t n = U.shape[0], r, s, a
+    cdef double total
+    for r in range(n):
+        for s in range(n):
+            out[r, s] = 1.0 if r == s else 0.0
+    forward_solve(U, out)
+    # Row r of the product reads columns from r on alone: it may be written over what is left of them.
+    for r in range(n):
+        for s in range(r, n):
+            total = 0.0
+            for a in range(s, n):
+                total += out[a, r] * out[a, s]
+            out[r, s] = total
+    for r in range(n):
+        for s in range(r + 1, n):
+            out[s, r] = out[r, s]
+
+
+cpdef void add_products(double[:, ::1] P, const double[:, ::1] A, const double[:, ::1] B) noexcept nogil:
+    cdef Py_ssize_t k, i, j, n = A.shape[1]
+    cdef double a
+    for k in range(A.shape[0]):
+        for i in range(n):
+            a = A[k, i]
+            for j in range(i, n):
+                P[i, j] += a * B[k, j]
+
+
+cpdef void add_transposed_product(double scale, const double[:, :] A, const double[:] y, double[:] out) noexcept nogil:
+    cdef Py_ssize_t i, j
+    cdef double factor
+    cdef double *sums = &out[0]
+    cdef const double *row
+    for i in range(A.shape[0]):
+        factor, row = scale * y[i], &A[i, 0]
+        for j in range(A.shape[1]):
+            sums[j] += factor * row[j]
+
+
+cpdef void evaluate_polynomials(const double[:, ::1] C, double t, double[::1] out) noexcept nogil:
+    cdef Py_ssize_t k, i, last = C.shape[0] - 1
+    for i in range(C.shape[1]):
+        out[i] = C[last, i]
+    for k in range(last - 1, -1, -1):
+        for i in range(C.shape[1]):
+            out[i] = out[i] * t + C[k, i]
+
+
+cpdef double fused_pair(double a, double x, double b, double y) noexcept nogil:
+    return fma(b, y, a * x)
+
+
 cpdef double fused_sum(double a, double x, double b, double y, double c, double z) noexcept nogil:
     return fma(c, z, fma(b, y, a * x))
+
+
+cpdef double nearest(double value) noexcept nogil:
+    return rint(value)

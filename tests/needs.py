@@ -19,7 +19,7 @@ from pathlib import Path
 import pytest
 from browser import Browser
 
-from surefoot.native.library import library
+from surefoot.native import modules
 from surefoot.sim import gl
 
 
@@ -100,7 +100,7 @@ def _lacks_compiler() -> str:
 
 
 def _lacks_kernels() -> str:
-    return "" if library() is not None else _lacks_compiler() or "plain Python was asked for"
+    return modules.missing()
 
 
 def _lacks_modules(right: str, *names: str) -> str:

@@ -5,12 +5,11 @@ from dataclasses import dataclass
 import numpy as np
 
 from surefoot.forces import Push
-from surefoot.native.library import library
 from surefoot.planner.geometry import signed_distance
-from surefoot.planner.plan import PlanSampler, WalkPlan
-from surefoot.planner.plan_kernel import PlanKernel
+from surefoot.planner.plan import WalkPlan
 from surefoot.planner.planner import WalkingPlanner
 from surefoot.planner.plants import IdealFeet, Pendulum
+from surefoot.planner.sampling import PlanSampler
 from surefoot.planner.swing.leg_reach import LegReach
 from surefoot.planner.types import Array, CentroidalState, FeetState
 
@@ -77,8 +76,7 @@ def walk_pendulum(
         feedback: k of the DCM feedback, 0 for none [-].
         substeps: control steps per planner tick.
     """
-    t, kernels = planner.parameters.sample_time, library()
-    kernel = PlanKernel(kernels) if kernels else None
+    t = planner.parameters.sample_time
     pendulum, ideal = Pendulum(MASS, com[:2], np.zeros(2)), IdealFeet(feet)
     state = CentroidalState(0.0, np.array(com), np.zeros(3))
     rows: list[tuple[float, Array, Array, Array, float]] = []
@@ -86,7 +84,7 @@ def walk_pendulum(
     fall_time = None
     while fall_time is None and len(rows) < round(duration / t):
         plans.append(planner.update(state, ideal.state))
-        sampler = PlanSampler(plans[-1], kernel)
+        sampler = PlanSampler(plans[-1])
         margin = _run_tick(pendulum, sampler, pushes, state.time, t / substeps, substeps, feedback)
         now = (len(rows) + 1) * t
         end = sampler.sample(now)

@@ -105,6 +105,12 @@ _IN_NUMBERS: Mapping[str, tuple[int, tuple[int, ...]]] = {
 """Where the fields of a reference are in its numbers, and their shapes; arrays first, then plain numbers."""
 
 
+def in_numbers(name: str) -> slice:
+    """Where a field of a reference is in its numbers."""
+    start, shape = _IN_NUMBERS[name]
+    return slice(start, start + math.prod(shape))
+
+
 @dataclass(frozen=True, slots=True)
 class WbcReference:
     """What the whole-body controller shall do until its next tick; world frame.

@@ -4,8 +4,8 @@ import math
 
 import numpy as np
 
-from surefoot.planner.geometry import sole_rotation
 from surefoot.planner.ground.terrain import DEEPER, HALF_WIDTH, Box, Site, Terrain
+from surefoot.planner.orientation import sole_rotation
 from surefoot.values import dataclass
 
 

@@ -4,7 +4,7 @@ import numpy as np
 
 from surefoot.planner.laws.law import Motion, MotionProblem
 from surefoot.planner.model.dcm import nominal_dcm
-from surefoot.planner.model.jerk import advanced
+from surefoot.planner.model.world_motion import advanced
 from surefoot.planner.parameters import PlannerParameters
 from surefoot.planner.types import Array
 
@@ -70,10 +70,10 @@ class DcmFeedback:
         x, v, a = problem.state[axis].tolist()
         last, jerk = float(problem.last_jerk[axis]), []
         for g, d, i, w, zr, dr, low, high in np.column_stack(columns).tolist():
-            coasted, speed, _ = advanced(x, v, a, 0.0, t)
+            coasted, speed, _ = advanced((x, v, a), 0.0, t)
             free = coasted - i * a
             wanted = free + zr * (d + g * (coasted + w * speed) - free) / (zr - g * dr)
             last = limited((min(max(wanted, low), high) - free) / zr, last, p)
             jerk.append(last)
-            x, v, a = advanced(x, v, a, last, t)
+            x, v, a = advanced((x, v, a), last, t)
         return jerk

@@ -4,7 +4,8 @@ import numpy as np
 
 from surefoot.planner.laws.dcm_feedback import limited
 from surefoot.planner.laws.law import Motion, MotionProblem
-from surefoot.planner.model.jerk import advanced, jerk_model
+from surefoot.planner.model.jerk import jerk_model
+from surefoot.planner.model.world_motion import advanced
 from surefoot.planner.parameters import PlannerParameters
 from surefoot.planner.references.leg_offset import softening
 from surefoot.planner.types import GRAVITY, Array
@@ -106,5 +107,5 @@ class ZmpPreview:
             summed += x - i * a - r
             last = limited(-gain * summed - gx * x - gv * v - ga * a - f, last, p)
             jerk.append(last)
-            x, v, a = advanced(x, v, a, last, t)
+            x, v, a = advanced((x, v, a), last, t)
         return jerk

@@ -11,12 +11,10 @@ The Δu form Y = S_x x(0) + S_u1 u(-1) + S_u ΔU is eq. (10) and eq. (11) of the
 """
 
 from functools import lru_cache
-from typing import Any
 
 import numpy as np
 
 from surefoot.errors import ParameterError
-from surefoot.native.library import Block, library
 from surefoot.planner.types import Array
 from surefoot.values import dataclass
 
@@ -41,11 +39,6 @@ def jerk_model(sample_time: float) -> tuple[Array, Array]:
         np.array([[1.0, t, 0.5 * t * t], [0.0, 1.0, t], [0.0, 0.0, 1.0]]),
         np.array([t**3 / 6.0, 0.5 * t * t, t]),
     )
-
-
-def advanced(x: float, v: float, a: float, jerk: float, t: float) -> tuple[float, float, float]:
-    """The same of one axis in plain numbers, which are fast: position, velocity and acceleration a time t later."""
-    return x + t * v + 0.5 * t * t * a + jerk * t**3 / 6.0, v + t * a + jerk * t**2 / 2.0, a + jerk * t
 
 
 def block_moves(starts: tuple[int, ...], horizon: int) -> Array:
@@ -131,114 +124,6 @@ def _predict(sample_time: float, shape: tuple[int, int], numbers: bytes) -> Pred
     for array in (state, moves, samples):
         array.flags.writeable = False
     return Prediction(state, moves, samples, basis)
-
-
-def trajectory(prediction: Prediction, state: Array, stiffness: Array, jerk: Array) -> tuple[Array, Array]:
-    """Motion under a jerk sequence, in the plan frame.
-
-    Args:
-        prediction: prediction matrices.
-        state: CoM position, velocity, acceleration per axis, shape (2, 3).
-        stiffness: λ at samples 0..N, shape (N + 1,) [1/s^2].
-        jerk: shape (N, 2) [m/s^3].
-
-    Returns:
-        CoM position, velocity, acceleration at samples 0..N, shape (3, N + 1, 2), and the ZMP, shape (N + 1, 2) [m].
-    """
-    com = prediction.state @ state.T + prediction.samples @ jerk
-    return com, zmp_response(com, stiffness)
-
-
-Ahead = tuple[Array, Array, Array, Array, Array]
-"""What is known of samples 0..N, in the plan frame.
-
-λ, shape (N + 1,) [1/s^2]; CoM height and its derivatives, shape (3, N + 1) [m, m/s, m/s^2]; what legs and lasting
-forces add to the ZMP, and the ZMP reference with nominal footsteps, shape (N + 1, 2) each [m]; its sensitivity to the
-shifts of the next two, shape (N + 1, 2) [-].
-"""
-
-Frame = tuple[Array, Array]
-"""A plan frame: its rotation to the world, shape (2, 2), and origin, shape (2,) [m]."""
-
-
-class WorldMotion:
-    """Says in the world frame what a jerk sequence does, and in the plan frame what it begins from.
-
-    Args:
-        sample_time: T [s].
-        horizon: N.
-    """
-
-    def __init__(self, sample_time: float, horizon: int) -> None:
-        n, kernels, self._run = horizon + 1, library(), None
-        self._prediction = predict(sample_time, np.eye(horizon))
-        if kernels is not None:
-            names = ("state", "jerk", "shifts", "stiffness", "height", "offset", "point", "gain", "rotation", "origin")
-            shapes = (2, 3), (horizon, 2), (2, 2), (n,), (3, n), (n, 2), (n, 2), (n, 2), (2, 2), (2,)
-            self._given = [np.empty(shape) for shape in shapes]
-            self._block = Block((3, n, 3), (horizon, 2), (n, 2), (n, 2), (n, 2))
-            made = dict(zip(("com", "world_jerk", "zmp", "world_offset", "reference"), self._block.arrays, strict=True))
-            given: dict[str, Any] = dict(zip(names, self._given, strict=True)) | made
-            bound = kernels.fill("MotionInWorld", sample_time=sample_time, samples=horizon, **given)
-            self._run, self._place = (kernels.bind(name, bound) for name in ("motion_in_world", "state_in_frame"))
-        self._turn: Frame | None = None
-
-    def local(self, com: Array, velocity: Array, acceleration: Array, frame: Frame) -> Array:
-        """Horizontal position, velocity and acceleration per axis of the plan frame, shape (2, 3).
-
-        Args:
-            com: CoM position in the world frame, shape (2 or more,) [m].
-            velocity: likewise [m/s].
-            acceleration: likewise [m/s^2].
-            frame: the plan frame.
-        """
-        (x, y, *_), (v, w, *_), (a, b, *_) = com.tolist(), velocity.tolist(), acceleration.tolist()
-        if self._run is not None:
-            self._turn_to(frame)
-            self._place(x, y, v, w, a, b)
-            return self._given[0].copy()
-        (rotation, origin) = frame
-        u, o = origin.tolist()
-        return np.ascontiguousarray((np.array([[x - u, y - o], [v, w], [a, b]]) @ rotation).T)
-
-    def _turn_to(self, frame: Frame) -> None:
-        """Let the kernels know of a plan frame."""
-        if self._turn is None or frame[0] is not self._turn[0] or frame[1] is not self._turn[1]:
-            self._turn, (self._given[-2][:], self._given[-1][:]) = frame, frame
-
-    def of(self, state: Array, jerk: Array, shifts: Array, ahead: Ahead, frame: Frame) -> list[Array]:
-        """CoM position, velocity and acceleration, jerk, ZMP, its offset and its reference, as of a `WalkPlan`.
-
-        Args:
-            state: CoM position, velocity, acceleration per axis, shape (2, 3).
-            jerk: shape (N, 2) [m/s^3].
-            shifts: of the next two footsteps, shape (step, axis) = (2, 2) [m].
-            ahead: what is known of the samples.
-            frame: the plan frame.
-        """
-        if self._run is None:
-            return self._plain(state, jerk, shifts, ahead, frame)
-        self._turn_to(frame)
-        for own, value in zip(self._given[:-2], (state, jerk, shifts, *ahead), strict=True):
-            own[:] = value
-        self._run()
-        return self._block.copied()
-
-    def _plain(self, state: Array, jerk: Array, shifts: Array, ahead: Ahead, frame: Frame) -> list[Array]:
-        (stiffness, height, offset, point, gain), (rotation, origin) = ahead, frame
-        moved, zmp = trajectory(self._prediction, state, stiffness, jerk)
-        com, to_world = np.empty((3, len(stiffness), 3)), rotation.T
-        com[:, :, :2] = moved @ to_world
-        com[0, :, :2] += origin
-        com[:, :, 2] = height
-        point = point + gain @ shifts
-        return [
-            com,
-            jerk @ to_world,
-            (zmp + offset) @ to_world + origin,
-            offset @ to_world,
-            point @ to_world + origin,
-        ]
 
 
 def zmp_response(response: Array, stiffness: Array) -> Array:

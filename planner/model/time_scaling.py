@@ -9,7 +9,9 @@ from itertools import product
 
 import numpy as np
 
-from surefoot.planner.geometry import quintic
+from surefoot import algebra
+from surefoot.planner import geometry, quintic
+from surefoot.planner.quintic import Quintic
 from surefoot.planner.types import Array
 from surefoot.values import dataclass, maker
 
@@ -67,12 +69,15 @@ class TimeScaling:
         """The clock, its rate and the derivative of that by samples, so many samples from now, shape (n,) each."""
         if self.steady:
             return self.now + ahead, np.ones_like(ahead), np.zeros_like(ahead)
-        way, rate, bend = self._followed(self.elapsed + ahead)
-        return self.begun + way, rate, bend
+        (a, b, c, d, e, f), told = self.coefficients, np.empty((3, len(ahead)))
+        follow((a, b, c, d, e, f), self.length, self.begun, self.elapsed + ahead, told)
+        return told[0], told[1], told[2]
 
     def after(self, samples: float) -> float:
         """What the clock shows so many samples from now [samples]."""
-        return self.now + samples if self.steady else float(self.at(np.array([samples]))[0][0])
+        if self.steady:
+            return self.now + samples
+        return float((self.begun + self._followed(np.array([self.elapsed + samples]))[0])[0])
 
     def until(self, instant: float) -> float:
         """Time until the clock shows an instant that is not within the quintic [samples]."""
@@ -100,12 +105,14 @@ class TimeScaling:
         Where it would stand still or go back it takes the nearest length in which it does not. A clock that is slow and
         slows down may have none: it stops to slow down at once.
         """
-        _, rates, bends = self.at(np.zeros(1))
-        rate, bend = float(rates[0]), float(bends[0])
+        rate, bend = 1.0, 0.0
+        if not self.steady:
+            _, rates, bends = self._followed(np.array([self.elapsed]))
+            rate, bend = float(rates[0]), float(bends[0])
         for slowing, factor in product((bend, max(bend, 0.0)), _LENGTHS):
             start, end = np.array([[0.0], [rate], [slowing]]), np.array([[way], [1.0], [0.0]])
             lasting = factor * length
-            course = tuple(quintic(start, end, lasting)[:, 0].tolist())
+            course = tuple(geometry.quintic(start, end, lasting)[:, 0].tolist())
             scaling = replace(self, begun=self.now, elapsed=0.0, way=way, length=lasting, coefficients=course)
             if scaling._followed(np.linspace(0.0, lasting, _LOOKED_AT))[1].min() > _SLOWEST:
                 break
@@ -113,8 +120,8 @@ class TimeScaling:
 
     def advanced(self) -> "TimeScaling":
         """The clock one tick later."""
-        quintic = self.way, self.length, self.coefficients
-        return _a_scaling(self.sample_time, self.after(1.0), self.ticks + 1, self.begun, self.elapsed + 1.0, *quintic)
+        course = self.way, self.length, self.coefficients
+        return _a_scaling(self.sample_time, self.after(1.0), self.ticks + 1, self.begun, self.elapsed + 1.0, *course)
 
     def showing(self, instant: float) -> "TimeScaling":
         """The clock that shows an instant and goes on from there at its own rate [samples]; its course is another."""
@@ -130,6 +137,24 @@ class TimeScaling:
         way, rate, bend = (powers[:, : 6 - k] @ c for k, c in enumerate(ways))
         over = time > self.length
         return way + (time - inside), np.where(over, 1.0, rate), np.where(over, 0.0, bend)
+
+
+def follow(course: Quintic, length: float, begun: float, time: Array, told: Array) -> None:
+    """The clock that follows a quintic, and after it goes at its own rate.
+
+    Args:
+        course: coefficients of its way.
+        length: time that this takes [samples].
+        begun: what the clock showed when it began [samples].
+        time: since then, shape (n,) [samples].
+        told: where the clock, its rate and the derivative of that by samples are written, shape (3, n).
+    """
+    for k in range(time.shape[0]):
+        t = algebra.clamp(time[k], 0.0, length)
+        over = time[k] > length
+        told[0, k] = begun + quintic.value(course, t) + (time[k] - t)
+        told[1, k] = 1.0 if over else quintic.slope(course, t)
+        told[2, k] = 0.0 if over else quintic.bend(course, t)
 
 
 _a_scaling = maker(TimeScaling)

@@ -16,62 +16,21 @@ import math
 
 import numpy as np
 
-from surefoot.native.library import library
-from surefoot.planner.model.dcm import nominal_dcm, viability_weights
+from surefoot import algebra
 from surefoot.planner.parameters import PlannerParameters
-from surefoot.planner.recovery.compiled import CompiledMargins, CompiledOutlook
-from surefoot.planner.recovery.step_adjustment import StepProblem
-from surefoot.planner.references.window import Window
+from surefoot.planner.recovery.reach import StepReach
+from surefoot.planner.recovery.step_problem import StepProblem
 from surefoot.planner.swing.leg_reach import ANYWHERE, LegReach
 from surefoot.planner.swing.quintics import PEAK
 from surefoot.planner.types import Array
 
+EDGES = 4
+"""Of a box: forward, left, backward and right, each as a distance in its direction from the stance foot [m]."""
+
 
 def _edges(low: Array, high: Array) -> Array:
-    """Forward, left, backward and right edges of boxes, as distances in these directions, shape (..., 4) [m]."""
-    return np.concatenate((high, -low), axis=-1)
-
-
-def planned_margin(dcm: Array, window: Window, sample_time: float, foot_margin: float) -> float:
-    """How far the DCM is inside what the CoP captures with the steps as planned: Σ w (p ± a) of all that is in sight.
-
-    Args:
-        dcm: now in the plan frame, shape (2,) [m].
-        window: references.
-        sample_time: theirs [s].
-        foot_margin: share of the feet that the boxes of the reference take [-].
-    """
-    weights, reference = viability_weights(window.stiffness, window.omega, sample_time), window.driving
-    half = weights @ reference.half_size / foot_margin
-    return float((half - np.abs(dcm - weights @ reference.point)).min())
-
-
-class PlannedMargin:
-    """`planned_margin` of the windows of a planner.
-
-    Args:
-        parameters: of the planner.
-
-    Attributes:
-        outlook: where kernels are told of windows; None without kernels.
-    """
-
-    def __init__(self, parameters: PlannerParameters) -> None:
-        self._sample_time, self._foot_margin, kernels = parameters.sample_time, parameters.foot_margin, library()
-        self.outlook = None if kernels is None else CompiledOutlook(kernels, parameters)
-
-    def margin(self, dcm: Array, window: Window) -> float:
-        """See `planned_margin`."""
-        if self.outlook is None or self.outlook.count != len(window.stiffness):
-            return planned_margin(dcm, window, self._sample_time, self._foot_margin)
-        return self.outlook.margin(dcm, window, self._foot_margin)
-
-    def nominal(self, window: Window) -> Array:
-        """The DCM now that a window's ZMP keeps bounded, shape (2,) [m]."""
-        if self.outlook is None or self.outlook.count != len(window.stiffness):
-            nominal = nominal_dcm(window.stiffness, window.omega, window.driving.point, self._sample_time)
-            return np.asarray(nominal[0])
-        return self.outlook.nominal(window)
+    """The edges of a box, shape (4,) [m]."""
+    return np.concatenate((high, -low))
 
 
 class CaptureMargin:
@@ -84,7 +43,6 @@ class CaptureMargin:
 
     Attributes:
         cycle: shortest time from a landing to the next one, in which a foot is swung as far as legs reach [s].
-        told: where kernels are told of steps; None of plain Python.
     """
 
     def __init__(self, legs: LegReach, parameters: PlannerParameters, half_size: Array) -> None:
@@ -92,15 +50,14 @@ class CaptureMargin:
         near, far = np.array([-legs.stride, legs.near]), legs.allowed(1.0, ANYWHERE, False)[0, 1]
         swung = np.sqrt(PEAK * (far - near) / legs.acceleration * (0.5, 1.0)).max()
         self.cycle = numbers.least_double + max(numbers.least_single, parameters.touchdown_lead + float(swung))
-        self._legs, self._timing, self._numbers = legs, parameters.step_adaptation.timing, numbers
-        # Columns of four edges each.
-        self._half = _edges(-half_size, half_size)[:, None]
-        self._hip = _edges(*2 * (np.array([0.0, 0.5 * legs.hip_width]),))[:, None]
-        self._apart = 0.5 * _edges(near - far, far - near)[:, None]
-        self._middle = 0.5 * _edges(near + far, near + far)[:, None]
-        kernels, edges = library(), (self._half, self._apart, self._middle)
-        self._compiled = None if kernels is None else CompiledMargins(kernels, legs, parameters, self.cycle, edges)
-        self.told = None if self._compiled is None else self._compiled.step
+        self._timing, self._shares = parameters.step_adaptation.timing, np.array(numbers.margin_times)
+        self._least_double, self._least_single = numbers.least_double, numbers.least_single
+        self._longer = numbers.longer
+        self._half = _edges(-half_size, half_size)
+        self._apart, self._middle = 0.5 * _edges(near - far, far - near), 0.5 * _edges(near + far, near + far)
+        self._reach = StepReach(legs)
+        self._captured, self._margins = np.zeros((numbers.most_steps, EDGES)), np.zeros(numbers.most_steps)
+        self._ahead, self._spanned, self._near, self._over = (np.zeros(EDGES) for _ in range(4))
 
     def landed(self, growth: float, side: float, count: int) -> Array:
         """Edges of what one that has just landed captures, from its last foot, with 0, ... count - 1 steps more.
@@ -113,9 +70,23 @@ class CaptureMargin:
         Returns:
             Shape (4, count) [m].
         """
-        k, steps = 1.0 / growth, np.arange(float(count))
-        wide, off = k / (1.0 - k) * (1.0 - k**steps), side * k / (1.0 + k) * (1.0 - (-k) ** steps)
-        return np.asarray(self._half + wide * self._apart + off * self._middle)
+        self._make_room(count)
+        self._land(growth, side, count)
+        return np.array(self._captured)[:count].T
+
+    def _make_room(self, steps: int) -> None:
+        if steps > len(self._margins):
+            self._captured, self._margins = np.zeros((steps, EDGES)), np.zeros(steps)
+
+    def _land(self, growth: float, side: float, count: int) -> None:
+        k = 1.0 / growth
+        for m in range(count):
+            power = math.pow(k, m)
+            turned = -power if m % 2 else power
+            wide = k / (1.0 - k) * (1.0 - power)
+            off = side * k / (1.0 + k) * (1.0 - turned)
+            for e in range(EDGES):
+                self._captured[m, e] = self._half[e] + wide * self._apart[e] + off * self._middle[e]
 
     def margins(
         self, com: Array, dcm: Array, omega: float, step: StepProblem, steps: int, fixed: bool = False
@@ -126,59 +97,88 @@ class CaptureMargin:
 
         Args:
             com: now, in the plan frame, shape (2,) [m].
-            dcm: now, likewise.
+            dcm: now in the plan frame, shape (2,) [m].
             omega: of the DCM now [1/s].
             step: as scheduled.
             steps: how many there are, at least 1.
             fixed: the present step is not moved any more.
         """
-        if self._compiled is not None and steps <= self._numbers.most_steps:
-            return self._compiled.margins(com, dcm, omega, step, steps, fixed)
-        half, here, com = self._half, _edges(dcm, dcm)[:, None], _edges(com, com)[:, None]
-        doubles, singles = self._times(step, fixed)
-        single = np.exp(omega * singles)
-        # DCM and CoM at the landing are linear in the DCM here: away + growth here, com + by here.
-        growth, away = single, (1.0 - single) * half
-        com = com + 0.5 * (single - 1.0) * away
-        if step.double:
-            behind = step.swing[0]
-            double, both = np.exp(omega * doubles), _edges(np.minimum(behind, 0.0), np.maximum(behind, 0.0))
-            first, growth = half + both[:, None], double * single
-            com = com + 0.5 * (double - 1.0) * ((single - 1.0) * away - (growth * single - 1.0) * first)
-            away = away + single * (1.0 - double) * first
-        com, shrunk = com / growth, 1.0 / growth
+        self._make_room(steps)
+        self._reach.see(step)
+        self._com, self._dcm, self._omega = com, dcm, omega
+        self._find(steps, fixed)
+        return np.array(self._margins[:steps])
+
+    def _find(self, steps: int, fixed: bool) -> None:
+        """Set `_margins`: at the best of some times of double and single support."""
+        step = self._reach
         cycle = min(self.cycle, step.cycle) if self._timing else step.cycle
-        captured = self.landed(math.exp(omega * cycle), -step.place.foot.side, steps)[:, None]
-        places, alone = self._places(step, singles, fixed), ((half - away) * shrunk - here)[:, :, None]
-        ahead = (((places - away[:, :, None]) * shrunk[:, None]) - here[:, :, None])[..., None]
-        ahead = ahead + (captured * shrunk[:, None])[:, :, None]
-        if not fixed:
+        self._land(math.exp(self._omega * cycle), -step.side, steps)
+        for m in range(steps):
+            self._margins[m] = -algebra.INFINITY
+        chosen = self._timing and not fixed
+        least = min(step.single, max(self._least_single, step.shortest))
+        most = step.single + self._longer
+        for shorter in range(1 if chosen and step.double != 0.0 else 0, -1, -1):
+            double = min(step.double, self._least_double) if shorter else step.double
+            if chosen:
+                for k in range(len(self._shares)):
+                    self._catch(double, least + self._shares[k] * (most - least), steps, fixed)
+            self._catch(double, step.single, steps, fixed)
+        for m in range(1, steps):
+            self._margins[m] = max(self._margins[m], self._margins[m - 1])
+
+    def _catch(self, double: float, single: float, steps: int, fixed: bool) -> None:
+        """Let `_margins` grow to what a landing at one time captures, in the best of its boxes."""
+        for box in range(1 if fixed else self._reach.boxes):
+            self._limit(double, single, box, fixed)
+            growth = self._growth(double, single)
+            shrunk = 1.0 / growth
             spread = 2.0 / (growth + shrunk)
-            under = com + step.place.foot.side * self._hip
-            spanned = ((self._legs.radius + under - away) * spread - here)[..., None] + captured * spread[:, None]
-            by = 2.0 / np.maximum(growth - shrunk, 1e-9)
-            near = (places + (self._legs.radius - under)[:, :, None]) * by[:, None] - here[:, :, None]
-            ahead = np.minimum(np.minimum(ahead, spanned[:, :, None]), near[..., None])
-        ahead[..., 0] = np.maximum(ahead[..., 0], alone)
-        return np.asarray(np.maximum.accumulate(ahead.min(axis=0).reshape(-1, steps).max(axis=0)))
+            for m in range(steps):
+                least = algebra.INFINITY
+                for e in range(EDGES):
+                    captured = self._captured[m, e]
+                    margin = self._ahead[e] + captured * shrunk
+                    if not fixed:
+                        margin = min(min(margin, self._spanned[e] + captured * spread), self._near[e])
+                    if m == 0:
+                        margin = max(margin, self._over[e])
+                    least = min(least, margin)
+                self._margins[m] = max(self._margins[m], least)
 
-    def _times(self, step: StepProblem, fixed: bool) -> tuple[Array, Array]:
-        """Pairs of times of double and single support, the present one last, shape (n,) each [s]."""
-        if fixed or not self._timing:
-            return np.array([step.double]), np.array([step.single])
-        numbers = self._numbers
-        least, most = min(step.single, max(numbers.least_single, step.shortest)), step.single + numbers.longer
-        singles = [least + share * (most - least) for share in numbers.margin_times] + [step.single]
-        if not step.double:
-            return np.zeros(len(singles)), np.array(singles)
-        doubles = (min(step.double, numbers.least_double), step.double)
-        return np.repeat(doubles, len(singles)), np.array(2 * singles)
+    def _growth(self, double: float, single: float) -> float:
+        """e^{ωt} until the landing [-]."""
+        grown = math.exp(self._omega * single)
+        return math.exp(self._omega * double) * grown if self._reach.double != 0.0 else grown
 
-    def _places(self, step: StepProblem, singles: Array, fixed: bool) -> Array:
-        """Edges of where the step may land in times, shape (4, n, boxes) [m]."""
-        if fixed:
-            return _edges(step.nominal, step.nominal)[:, None, None]
-        legs = self._legs.turned(step.place.yaw)
-        boxes = legs.allowed(step.place.foot.side, step.face, step.crosses)
-        swung = legs.edges(step.swing, step.nominal, singles)
-        return np.minimum(_edges(boxes[:, 0], boxes[:, 1]).T[:, None], swung[..., None])
+    def _limit(self, double: float, single: float, box: int, fixed: bool) -> None:
+        """Set how far each edge of what the landing foot captures lets the DCM be, before what that foot captures.
+
+        DCM and CoM at the landing are linear in the DCM here: away + growth here, com + by here. The DCM is held by
+        a landing at the place (`_ahead`), by legs that span the feet then (`_spanned`, `_near`), and by the stance foot
+        without it (`_over`).
+        """
+        step, growth = self._reach, self._growth(double, single)
+        grown, doubled, shrunk = math.exp(self._omega * single), math.exp(self._omega * double), 1.0 / growth
+        spread, by = 2.0 / (growth + shrunk), 2.0 / max(growth - shrunk, 1e-9)
+        for e in range(EDGES):
+            axis = e % 2
+            sign = 1.0 if e < 2 else -1.0
+            half, here = self._half[e], sign * self._dcm[axis]
+            away = (1.0 - grown) * half
+            there = sign * self._com[axis] + 0.5 * (grown - 1.0) * away
+            if step.double != 0.0:
+                first = half + max(sign * step.at[axis], 0.0)
+                there += 0.5 * (doubled - 1.0) * ((grown - 1.0) * away - (growth * grown - 1.0) * first)
+                away += grown * (1.0 - doubled) * first
+            under = there / growth + step.side * (sign * 0.5 * step.hip_width if axis else 0.0)
+            if fixed:
+                place = sign * step.place[axis]
+            else:
+                edge = step.high[box, axis] if e < 2 else -step.low[box, axis]
+                place = min(edge, step.swung(axis, sign, single))
+            self._ahead[e] = (place - away) * shrunk - here
+            self._spanned[e] = (step.radius + under - away) * spread - here
+            self._near[e] = (place + (step.radius - under)) * by - here
+            self._over[e] = (half - away) * shrunk - here

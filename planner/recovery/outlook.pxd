@@ -7,8 +7,8 @@ cdef Py_ssize_t COLUMNS
 cdef class Outlook:
     cdef double sample_time, _foot_margin
     cdef Py_ssize_t count
-    cdef const double[::1] stiffness, omega
-    cdef const double[:, ::1] point, gain, half_size
+    cdef const double[:] stiffness, omega
+    cdef const double[:, :] point, gain, half_size
     cdef double[::1] decay, _ahead, _next
     cdef double[:, ::1] bounded
 
@@ -16,7 +16,7 @@ cdef class Outlook:
     cpdef see(self, window)
     cdef double weight(self, Py_ssize_t k) noexcept
     @cython.locals(k=Py_ssize_t, axis=Py_ssize_t, margin=double)
-    cpdef double margin(self, const double[::1] dcm, window)
+    cpdef double margin(self, const double[:] dcm, window)
     @cython.locals(k=Py_ssize_t, axis=Py_ssize_t)
     cpdef nominal(self, window)
     cdef void look(self, Py_ssize_t lift, Py_ssize_t lands) noexcept

@@ -57,7 +57,8 @@ class Outlook:
     def weight(self, k: int) -> float:
         """Weight of a sample [-]."""
         before = 0.5 * (self.decay[k - 1] - self.decay[k]) if k > 0 else 0.0
-        return before + (0.5 * (self.decay[k] - self.decay[k + 1]) if k < self.count - 1 else self.decay[k])
+        after = 0.5 * (self.decay[k] - self.decay[k + 1]) if k < self.count - 1 else self.decay[k]
+        return float(before + after)
 
     def margin(self, dcm: Array, window: Window) -> float:
         """How far the DCM is inside what the CoP captures with the steps as planned: Σ w (p ± a) of all in sight.
@@ -75,7 +76,7 @@ class Outlook:
                 point += weight * self.point[k, axis]
                 half += weight * self.half_size[k, axis]
             margin = min(margin, half / self._foot_margin - abs(dcm[axis] - point))
-        return margin
+        return float(margin)
 
     def nominal(self, window: Window) -> Array:
         """The DCM now that a window's ZMP keeps bounded, shape (2,) [m]."""
@@ -116,10 +117,10 @@ class Outlook:
 
     def _driving(self, k: int, column: int, lift: int) -> float:
         if column < 2:
-            return self.point[k, column]
+            return float(self.point[k, column])
         if column == 2:
-            return self.gain[k, 0]
-        return self.half_size[k, column - 3] - self.half_size[lift, column - 3] if k < lift else 0.0
+            return float(self.gain[k, 0])
+        return float(self.half_size[k, column - 3] - self.half_size[lift, column - 3]) if k < lift else 0.0
 
     def _note(self, row: int, k: int) -> None:
         for column in range(COLUMNS):

@@ -8,8 +8,10 @@ import numpy as np
 from surefoot.planner.geometry import frame_rotation, signed_distance
 from surefoot.planner.parameters import RecoveryParameters
 from surefoot.planner.plan import WalkPlan
-from surefoot.planner.recovery.capture_margin import CaptureMargin, PlannedMargin
-from surefoot.planner.recovery.step_adjustment import StepAdjustment, StepBounds, StepProblem
+from surefoot.planner.recovery.capture_margin import CaptureMargin
+from surefoot.planner.recovery.outlook import Outlook
+from surefoot.planner.recovery.step_adjustment import StepAdjustment
+from surefoot.planner.recovery.step_problem import StepBounds, StepProblem
 from surefoot.planner.references.window import Window
 from surefoot.planner.references.zmp_reference import Support
 from surefoot.planner.steps.adaptation import Dcm, with_step_in_place, with_steps_repeated
@@ -67,10 +69,9 @@ class Recovery:
     def __init__(self, execution: Execution, half_size: Array) -> None:
         self._execution, legs = execution, execution.legs
         self._parameters = p = execution.schedule.ground.parameters
-        self._planned = PlannedMargin(p)
-        self.adjustment, self._movable = None, None if legs is None else CaptureMargin(legs, p, half_size)
-        if legs is not None and self._movable is not None:
-            self.adjustment = StepAdjustment(legs, p, self._planned.outlook, self._movable.told)
+        self._planned = Outlook(p)
+        self._movable = None if legs is None else CaptureMargin(legs, p, half_size)
+        self.adjustment = None if legs is None else StepAdjustment(legs, p)
         self._seen: tuple[Array, Window, Array, Array] | None = None
 
     def planned(self, local: Array, window: Window) -> float:

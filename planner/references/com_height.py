@@ -12,6 +12,8 @@ from typing import Protocol
 
 import numpy as np
 
+from surefoot import algebra
+from surefoot.algebra import Vector
 from surefoot.planner.steps.gait import GaitParameters
 from surefoot.planner.steps.phases import PhaseSamples
 from surefoot.planner.types import GRAVITY, Array, PhaseKind
@@ -35,6 +37,9 @@ of a climb and at the end of a descent [-]."""
 
 BENT_KNEES = 0.08
 """How much lower than stretched knees carry it bent ones carry the reference robot's CoM, as crouched gaits do [m]."""
+
+
+_DOUBLE, _SINGLE, _PI = int(PhaseKind.DOUBLE), int(PhaseKind.SINGLE), float(np.pi)
 
 
 class Rise(Enum):
@@ -98,9 +103,13 @@ class SmoothHeight:
 
     def height(self, gait: GaitParameters, samples: PhaseSamples, support_height: Array) -> Array:
         """See `HeightProfile`."""
-        bump = _sine_cubed(samples, samples.per_phase(self.apexes(gait)))
-        bump[0] += self.standing(gait)
-        return _on_levels(self.rise, samples, bump, support_height)
+        height = np.empty((3, len(samples.clock)))
+        levels = np.asarray(support_height, dtype=np.float64)
+        _fill(samples, self.apexes(gait), self.standing(gait), levels, self.rise is Rise.SINGLE, height)
+        if samples.rate is not None:
+            rate, bend = samples.rate
+            _in_time(rate, bend, height)
+        return height
 
 
 @dataclass(frozen=True, slots=True)
@@ -157,16 +166,14 @@ class PaperHeight:
 
 def _differences(values: Array, sample_time: float) -> Array:
     """Values and their first and second central differences, at rest beyond both ends, shape (3, n)."""
-    padded = np.pad(values, 1, mode="edge")
-    slope = (padded[2:] - padded[:-2]) / (2.0 * sample_time)
-    return np.stack((values, slope, (padded[2:] - 2.0 * values + padded[:-2]) / sample_time**2))
+    padded, n = np.pad(values, 1, mode="edge"), len(values)
+    before, after = padded[:n], padded[2:]
+    return np.stack((values, (after - before) / (2.0 * sample_time), (after - 2.0 * values + before) / sample_time**2))
 
 
 def _changes(levels: Array) -> Array:
     """From each level to the next one, and none after the last, shape (m,) [m]."""
-    change = np.zeros_like(levels)
-    np.subtract(levels[1:], levels[:-1], out=change[:-1])
-    return change
+    return np.append(np.diff(levels), 0.0)
 
 
 def _lifted(bump: Array, rise: Array, change: Array, level: Array) -> Array:
@@ -183,44 +190,79 @@ def _lifted(bump: Array, rise: Array, change: Array, level: Array) -> Array:
     return np.asarray(height)
 
 
-def _on_levels(place: Rise, samples: PhaseSamples, bump: Array, support_height: Array) -> Array:
-    """A height with quintic changes of level at a place; the bump is by the clock."""
-    if place is Rise.DOUBLE:
-        rise, index = quintic_rise(samples.fraction, samples.fraction_rate), samples.index
-        return samples.in_time(_lifted(bump, rise, _changes(support_height)[index], support_height[index]))
-    swinging = samples.kind == PhaseKind.SINGLE
-    index = np.maximum(samples.index - (swinging | samples.last_stand), 0)
-    length = np.where(swinging, samples.length, np.inf)
-    # The lower foot of each double support, and the last one again.
-    lower = support_height.copy()
-    np.minimum(support_height[:-1], support_height[1:], out=lower[:-1])
-    change = _changes(lower)[index]
-    rise = _early_rise(samples, np.where(change < 0.0, DESCENT_SHARE, CLIMB_SHARE) * length)
-    return samples.in_time(_lifted(bump, rise, change, lower[index]))
-
-
-def _early_rise(samples: PhaseSamples, length: Array) -> Array:
-    """Quintic rise within the first so many samples of each phase and rest at 1 after it, shape (3, n)."""
-    fraction = samples.elapsed / length
-    rate = np.where(fraction < 1.0, 1.0 / (length * samples.sample_time), 0.0)
-    return quintic_rise(np.minimum(fraction, 1.0), rate)
-
-
-def quintic_rise(fraction: Array, rate: Array) -> Array:
-    """Quintic from 0 to 1 with zero first and second derivative at both ends.
+def _fill(samples: PhaseSamples, apexes: Vector, standing: float, levels: Array, early: bool, height: Array) -> None:
+    """Write a smooth height by the clock, shape (3, n).
 
     Args:
-        fraction: argument in [0, 1], shape (K,).
-        rate: its time derivative, shape (K,) [1/s].
-
-    Returns:
-        Value and first and second time derivative, shape (3, K).
+        samples: the phases.
+        apexes: A in each kind of phase [m].
+        standing: height over the feet at which the robot stands [m].
+        levels: heights of the support points, shape (m,) [m].
+        early: whether the level changes in single support, see `Rise`.
+        height: where it is written.
     """
-    s, left, square, rise = fraction, 1.0 - fraction, fraction**2, np.empty((3, len(fraction)))
-    rise[0] = s**3 * (10.0 - 15.0 * s + 6.0 * square)
-    rise[1] = 30.0 * square * left**2 * rate
-    rise[2] = 60.0 * s * left * (1.0 - 2.0 * s) * rate**2
-    return rise
+    elapsed, length, fraction, rate = samples.elapsed, samples.length, samples.fraction, samples.fraction_rate
+    kind, index, t = samples.kind, samples.index, samples.sample_time
+    climb, descent = CLIMB_SHARE, DESCENT_SHARE
+    for k in range(height.shape[1]):
+        swings, at = kind[k] == _SINGLE, index[k]
+        apex = apexes[2] if swings else apexes[1] if kind[k] == _DOUBLE else apexes[0]
+        if early and at > 0 and (swings or math.isinf(length[k])):
+            at -= 1
+        low = _level(levels, at, early)
+        change = _level(levels, at + 1, early) - low if at + 1 < levels.shape[0] else 0.0
+        if not early:
+            rise = quintic_rise(fraction[k], rate[k])
+        else:
+            within = (descent if change < 0.0 else climb) * length[k] if swings else algebra.INFINITY
+            share = elapsed[k] / within
+            rise = quintic_rise(min(share, 1.0), 1.0 / (within * t) if share < 1.0 else 0.0)
+        bump = sine_cubed(apex, elapsed[k], length[k], t)
+        height[0, k] = bump[0] + rise[0] * change + (standing + low)
+        height[1, k] = bump[1] + rise[1] * change
+        height[2, k] = bump[2] + rise[2] * change
+
+
+def _level(levels: Array, at: int, early: bool) -> float:
+    """Base level at a support point; where it changes early that of the lower foot of each double support."""
+    level: float = levels[at]
+    return min(level, levels[at + 1]) if early and at + 1 < levels.shape[0] else level
+
+
+def _in_time(rate: Array, bend: Array, height: Array) -> None:
+    """Turn derivatives by a clock of this rate into those by time."""
+    for k in range(height.shape[1]):
+        height[2, k] = height[2, k] * rate[k] * rate[k] + height[1, k] * bend[k]
+        height[1, k] *= rate[k]
+
+
+def quintic_rise(s: float, rate: float) -> Vector:
+    """Quintic from 0 to 1 with zero first and second derivative at both ends, and its derivatives by time.
+
+    Args:
+        s: argument in [0, 1].
+        rate: its time derivative [1/s].
+    """
+    left = 1.0 - s
+    return (
+        s * s * s * (10.0 - 15.0 * s + 6.0 * s * s),
+        30.0 * s * s * left * left * rate,
+        60.0 * s * left * (1.0 - 2.0 * s) * rate * rate,
+    )
+
+
+def sine_cubed(apex: float, elapsed: float, length: float, sample_time: float) -> Vector:
+    """A sin³ over a phase, and its derivatives by time.
+
+    Args:
+        apex: A [m].
+        elapsed: since the phase began [samples].
+        length: of the phase [samples].
+        sample_time: [s].
+    """
+    w, angle = _PI / (length * sample_time), _PI * elapsed / length
+    s, c = math.sin(angle), math.cos(angle)
+    return apex * s * s * s, apex * 3.0 * w * s * s * c, apex * 3.0 * w * w * s * (2.0 * c * c - s * s)
 
 
 def highest_apex(duration: float) -> float:
@@ -231,22 +273,12 @@ def highest_apex(duration: float) -> float:
     Args:
         duration: T of the phase [s].
     """
-    return STEEPEST_FALL / 3.0 * (duration / math.pi) ** 2
+    return STEEPEST_FALL / 3.0 * (duration / _PI) ** 2
 
 
 def shortest_support(apex: float) -> float:
     """The duration of a support phase for which an apex [m] is the highest [s]."""
-    return math.pi * math.sqrt(3.0 * apex / STEEPEST_FALL)
-
-
-def _sine_cubed(samples: PhaseSamples, amplitude: Array) -> Array:
-    w = np.pi / (samples.length * samples.sample_time)
-    angle = np.pi * samples.elapsed / samples.length
-    s, c, bump = np.sin(angle), np.cos(angle), np.empty((3, len(angle)))
-    square = s**2
-    bump[0], bump[1], bump[2] = s**3, 3.0 * w * square * c, 3.0 * w**2 * s * (2.0 * c**2 - square)
-    bump *= amplitude
-    return bump
+    return _PI * math.sqrt(3.0 * apex / STEEPEST_FALL)
 
 
 @dataclass(frozen=True, slots=True)
@@ -289,11 +321,19 @@ def preview_height(
         length: size of the robot (see `surefoot.similarity`) [-].
         transition: what takes the place of the law's height, None where that stays; it always stays by default.
     """
-    height = profile.height(gait, samples, support_height)[:, 1:-1]
+    height, stiffness = np.empty((3, len(zmp_height))), np.empty(len(zmp_height))
+    height[...] = profile.height(gait, samples, support_height)[:, 1:-1]
     moved = None if transition is None else transition(height)
     height = height if moved is None else moved
     pressing, over = preview_limits(profile, length)
-    return HeightPreview(height, np.maximum(GRAVITY + height[2], pressing) / np.maximum(height[0] - zmp_height, over))
+    _stiffen(height, zmp_height, pressing, over, stiffness)
+    return HeightPreview(height, stiffness)
+
+
+def _stiffen(height: Array, ground: Array, pressing: float, over: float, stiffness: Array) -> None:
+    """Write λ over a ground, shape (n,), which counts with no less than these, see `preview_limits`."""
+    for k in range(stiffness.shape[0]):
+        stiffness[k] = max(GRAVITY + height[2, k], pressing) / max(height[0, k] - ground[k], over)
 
 
 def preview_limits(profile: HeightProfile, length: float) -> tuple[float, float]:

@@ -1,11 +1,12 @@
 """Height transition: the CoM height from where it is to its law, where a step that is adapted leaves that."""
 
-import math
-from collections.abc import Callable
+from math import ceil
 
 import numpy as np
 
-from surefoot.planner.geometry import quintic
+from surefoot import algebra
+from surefoot.algebra import Vector
+from surefoot.planner import quintic
 from surefoot.planner.model.time_scaling import CLOCK_ROUNDING
 from surefoot.planner.types import Array
 from surefoot.values import dataclass
@@ -13,8 +14,8 @@ from surefoot.values import dataclass
 _ROUNDING = 1e-9
 """Accelerations are compared with this tolerance, since they are sums of rounded products [m/s^2]."""
 
-LOOKED_AT = np.linspace(0.0, 1.0, 21)
-"""Shares of a height transition at which its acceleration is looked at [-]."""
+_LOOKED_AT = 21
+"""Instants of a height transition at which its acceleration is looked at [-]."""
 
 
 @dataclass(frozen=True, slots=True)
@@ -40,14 +41,7 @@ class HeightTransition:
 
     @classmethod
     def onto(
-        cls,
-        height: Array,
-        state: Array,
-        start: int,
-        left: float,
-        sample_time: float,
-        lifting: float,
-        soonest_calm: Callable[..., int] | None = None,
+        cls, height: Array, state: Array, start: int, left: float, sample_time: float, lifting: float
     ) -> "HeightTransition":
         """That from a state onto a law.
 
@@ -58,23 +52,12 @@ class HeightTransition:
             left: until the phase ends [samples].
             sample_time: length of a sample [s].
             lifting: bound of its vertical acceleration, up or down [m/s^2].
-            soonest_calm: kernel of this search in the height; None for plain Python.
         """
-        bound, least = max(lifting, abs(float(state[2]))), math.inf
-        soonest, last = max(math.ceil(left - CLOCK_ROUNDING), 1), height.shape[1] - 1
-        if soonest_calm is not None:
-            samples = soonest_calm(soonest, bound + _ROUNDING, *state.tolist())
-            end = height[:, samples : samples + 1]
-            return cls(start, samples, quintic(state[:, None], end, samples * sample_time), sample_time)
-        for samples in range(min(soonest, last), last + 1):
-            end = height[:, samples : samples + 1]
-            way = cls(start, samples, quintic(state[:, None], end, samples * sample_time), sample_time)
-            hardest = float(np.abs(way._at(samples * LOOKED_AT)[2]).max())
-            if hardest < least:
-                least, best = hardest, way
-            if hardest <= bound + _ROUNDING:
-                break
-        return best
+        now, bound = tuple(state.tolist()), max(lifting, abs(float(state[2])))
+        soonest = max(ceil(left - CLOCK_ROUNDING), 1)
+        samples = soonest_calm(height, now, soonest, bound + _ROUNDING, sample_time)
+        way = quintic.between(now, tuple(height[:, samples].tolist()), samples * sample_time)
+        return cls(start, samples, np.array(way)[:, None], sample_time)
 
     def _at(self, samples: Array) -> Array:
         """z, z', z'' so many samples after the start, shape (3, n)."""
@@ -87,3 +70,32 @@ class HeightTransition:
         """The law at the samples from a tick on with what is left of the transition over it, shape (3, n)."""
         ahead = np.arange(tick - self.start, self.samples)[: height.shape[1]]
         return np.concatenate((self._at(ahead.astype(np.float64)), height[:, len(ahead) :]), axis=1)
+
+
+def soonest_calm(height: Array, now: Vector, soonest: int, bound: float, sample_time: float) -> int:
+    """After how many samples a transition onto a law ends that is not accelerated beyond a bound.
+
+    Args:
+        height: the law, see `HeightTransition.onto`.
+        now: z, z', z'' now.
+        soonest: no sooner than after so many samples, or than the law's last one.
+        bound: of its acceleration [m/s^2].
+        sample_time: length of a sample [s].
+
+    Returns:
+        The soonest of those that keep the bound, or else the calmest.
+    """
+    last = height.shape[1] - 1
+    best: int = last
+    least = algebra.INFINITY
+    for samples in range(min(soonest, last), last + 1):
+        end = (height[0, samples], height[1, samples], height[2, samples])
+        lasting, hardest = samples * sample_time, 0.0
+        way = quintic.between(now, end, lasting)
+        for i in range(_LOOKED_AT):
+            hardest = max(hardest, abs(quintic.bend(way, lasting * i / (_LOOKED_AT - 1))))
+        if hardest < least:
+            least, best = hardest, samples
+        if hardest <= bound:
+            break
+    return best

@@ -19,13 +19,11 @@ Takanishi et al., 1988; Sato, Sakaino and Tsuji, ICRA 2010.)
 
 import numpy as np
 
-from surefoot.native.library import Library, library
-from surefoot.planner.model.dcm import NominalMotion, bind_motion, nominal_motion
-from surefoot.planner.model.leg_chain import LegChain, bind_chain
+from surefoot.planner.model.leg_chain import Body
+from surefoot.planner.model.nominal import NominalMotion
 from surefoot.planner.parameters import LegInertia
 from surefoot.planner.references.com_height import HeightPreview
-from surefoot.planner.references.nominal_feet import CompiledFeet, Feet, Moving, nominal_feet
-from surefoot.planner.steps.schedule import Schedule
+from surefoot.planner.references.nominal_feet import Moving, NominalFeet
 from surefoot.planner.types import GRAVITY, Array
 
 
@@ -34,55 +32,23 @@ def softening(leg: LegInertia) -> float:
     return 1.0 / (1.0 + 2.0 * leg.mass_ratio)
 
 
-def zmp_offset(
-    chain: LegChain, feet: Feet, toe: float, motion: NominalMotion, height: HeightPreview, softened: Array
-) -> Array:
-    """Offset o of the module's equation over a window, in the plan frame.
-
-    Args:
-        chain: the body.
-        feet: at the sample before the window, at its n samples, and maybe more.
-        toe: toe edge from the sole's centre [m].
-        motion: horizontal CoM motion, near the one to be planned.
-        height: CoM height.
-        softened: λ', shape (n,) [1/s^2].
-
-    Returns:
-        Shape (n, 2) [m].
-    """
-    n, t, com = len(softened), motion.sample_time, np.empty((len(softened) + 1, 3))
-    com[1:, :2], com[1:, 2] = motion.com[0], height.height[0]
-    com[0, :2] = _before(motion.com[:, 0], t) - motion.jerk[0] * t**3 / 6.0
-    com[0, 2] = _before(height.height[:, 0], t)
-    soles, heading, pitch = (motion_of[:, : n + 1] for motion_of in feet)
-    rate = chain.momentum_rate(com, soles, heading, t, pitch, toe)
-    pressing = GRAVITY + height.height[2]
-    offset = (1.0 / softened - 1.0 / height.stiffness)[:, None] * motion.com[2]
-    offset[:-1] += rate[:, [1, 0]] * (np.array([-1.0, 1.0]) / pressing[:-1, None])
-    offset[-1] = offset[-2]
-    return np.asarray(offset)
-
-
 class LegOffset:
     """The offset that a plan counts with: that of a CoM on the nominal motion, which itself depends on it.
 
     Args:
-        leg: inertia of the legs.
+        leg: inertia of the legs, which have a chain.
         toe: toe edge from the sole's centre [m].
         sample_time: T [s].
-        most: samples that it may be wanted of.
+        count: samples that it may be wanted of.
     """
 
-    def __init__(self, leg: LegInertia, toe: float, sample_time: float, most: int) -> None:
-        self._softening, self._toe, self._sample_time = softening(leg), toe, sample_time
-        kernels, self._chain = library(), leg.chain
-        compiled = None if leg.chain is None or kernels is None else (kernels, leg.chain)
-        self._compiled = compiled and _CompiledOffset(*compiled, toe, sample_time, most)
-
-    def foresee(self, schedule: Schedule, frame: tuple[Array, Array]) -> None:
-        """Make now what takes no more than the steps and the plan frame of the next tick."""
-        if self._compiled is not None:
-            self._compiled.feet.turn_to(schedule.phases, schedule, frame)
+    def __init__(self, leg: LegInertia, toe: float, sample_time: float, count: int) -> None:
+        assert leg.chain is not None
+        self._softening, self._sample_time = softening(leg), sample_time
+        # With the sample before.
+        self._body, self._feet = Body(leg.chain, toe, count + 1), NominalFeet(count + 1)
+        self._com = np.zeros((count + 1, 3))
+        self._motion = NominalMotion(sample_time, count)
 
     def made(
         self,
@@ -95,72 +61,46 @@ class LegOffset:
         """What the legs add to the ZMP, shape (n, 2) [m]; two passes, or one from a guess, leave a millimetre.
 
         Args:
-            moving: what `nominal_feet` makes the feet of.
+            moving: what `NominalFeet.move` moves the feet by.
             point: ZMP that drives the pendulum but for it, shape (n, 2) [m].
             height: CoM height over the n samples.
             position: CoM now, shape (2,) [m].
             guess: about what it will be, shape (n, 2) [m].
         """
-        stiffness = self._softening * height.stiffness
-        passes, offset = (2, np.zeros_like(point)) if guess is None else (1, guess)
-        if self._chain is None:
-            return offset
-        if self._compiled is not None:
-            return self._compiled.made(moving, point, height, stiffness, position, offset, passes)
-        feet = nominal_feet(*moving)
+        n, body, feet, stiffness = len(point), self._body, self._feet, self._softening * height.stiffness
+        passes, offset = (2, np.zeros((n, 2))) if guess is None else (1, guess)
+        if self._motion.count != n:
+            self._motion = NominalMotion(self._sample_time, n)
+        samples, schedule, frame, flown = moving
+        feet.move(n + 1, samples, schedule, frame, flown)
+        body.turn_legs(feet.heading, feet.pitch, n + 1)
         for _ in range(passes):
-            motion = nominal_motion(position, point - offset, stiffness, self._sample_time)
-            offset = zmp_offset(self._chain, feet, self._toe, motion, height, stiffness)
+            self._motion.follow(position, point - offset, stiffness)
+            self._place_com(height.height, n)
+            body.place(self._com, feet.soles, n + 1)
+            body.turn_momentum(n + 1, self._sample_time, 2)
+            offset = np.empty((n, 2))
+            self._tell(height.height, height.stiffness, stiffness, offset)
         return offset
 
+    def _place_com(self, height: Array, n: int) -> None:
+        """The CoM at n samples and at the one before them."""
+        t, motion, com = self._sample_time, self._motion, self._com
+        for axis in range(2):
+            c, v, a, u = motion.c[0, axis], motion.v[0, axis], motion.a[0, axis], motion.u[0, axis]
+            com[0, axis] = c - v * t + 0.5 * a * t * t - u * t * t * t / 6.0
+        com[0, 2] = height[0, 0] - height[1, 0] * t + 0.5 * height[2, 0] * t * t
+        for k in range(n):
+            com[k + 1, 0], com[k + 1, 1], com[k + 1, 2] = motion.c[k, 0], motion.c[k, 1], height[0, k]
 
-class _CompiledOffset:
-    """Arrays of the kernel that does what `LegOffset.made` does, and `feet`, the kernel that moves them."""
-
-    def __init__(self, kernels: Library, chain: LegChain, toe: float, sample_time: float, most: int) -> None:
-        (bound, points), stride = bind_chain(kernels, chain), most + 9
-        (self._point, self._offset), self._stiffness = np.empty((2, most, 2)), np.empty(most)
-        self._height, self.feet = np.empty((3, most)), CompiledFeet(kernels, sample_time, most + 1)
-        motion, own = bind_motion(kernels, sample_time, most)
-        self._position, self._softened = own["position"], own["stiffness"]
-        self._run = kernels.bind(
-            "leg_offset_make",
-            chain=bound,
-            motion=motion,
-            most=most,
-            stride=stride,
-            toe=toe,
-            gravity=GRAVITY,
-            point=self._point,
-            stiffness=self._stiffness,
-            height=self._height,
-            **self.feet.arrays,
-            zmp=own["zmp"],
-            com=np.empty((most + 1, 3)),
-            scratch=np.empty((23, stride)),
-            points=np.empty((points, 3, stride)),
-            bends=np.empty((points, 3, stride)),
-            offset=self._offset,
-        )
-
-    def made(
-        self,
-        moving: Moving,
-        point: Array,
-        height: HeightPreview,
-        softened: Array,
-        position: Array,
-        offset: Array,
-        passes: int,
-    ) -> Array:
-        n = len(point)
-        self.feet.move(n + 1, *moving)
-        self._position[:], self._point[:n], self._offset[:n] = position, point, offset
-        self._softened[:n], self._stiffness[:n], self._height[:, :n] = softened, height.stiffness, height.height
-        self._run(n, passes)
-        return self._offset[:n].copy()
-
-
-def _before(state: Array, time: float) -> Array:
-    """Position some time before a state of position, velocity and acceleration."""
-    return np.asarray(state[0] - state[1] * time + 0.5 * state[2] * time**2)
+    def _tell(self, height: Array, stiffness: Array, softened: Array, offset: Array) -> None:
+        """Write the offset of the module's equation; the last sample, whose momentum is not known, has that before."""
+        last, rate, a = stiffness.shape[0] - 1, self._body.rate, self._motion.a
+        for k in range(last + 1):
+            pull = 1.0 / softened[k] - 1.0 / stiffness[k]
+            offset[k, 0], offset[k, 1] = pull * a[k, 0], pull * a[k, 1]
+        for k in range(last):
+            pressing = GRAVITY + height[2, k]
+            offset[k, 0] -= rate[1, k] / pressing
+            offset[k, 1] += rate[0, k] / pressing
+        offset[last, 0], offset[last, 1] = offset[last - 1, 0], offset[last - 1, 1]

@@ -1,30 +1,25 @@
 """What is known of horizon and preview before the motion is planned."""
 
 import math
-from collections.abc import Callable
 from functools import partial
 
 import numpy as np
 from numpy.typing import NDArray
 
 from surefoot.forces import ExternalLoad
-from surefoot.native.library import library
 from surefoot.planner.geometry import greatest
 from surefoot.planner.model.dcm import natural_frequency
 from surefoot.planner.model.time_scaling import Course, TimeScaling
 from surefoot.planner.parameters import PlannerParameters
 from surefoot.planner.references.com_height import HeightPreview, HeightProfile, preview_height
-from surefoot.planner.references.compiled import CompiledPreview
 from surefoot.planner.references.height_transition import HeightTransition
 from surefoot.planner.references.leg_offset import LegOffset, softening
 from surefoot.planner.references.zmp_reference import (
     Support,
     SupportKey,
     ZmpReference,
-    hulls_of,
     load_left,
     present_support,
-    support_table,
     zmp_reference,
 )
 from surefoot.planner.steps.execution import Execution
@@ -110,12 +105,6 @@ _a_window, _a_reference = maker(Window), maker(ZmpReference)
 Beyond = tuple[PhaseSamples, Array, HeightPreview]
 """The walk at all samples that are looked at: phases, with a sample before and one after, ZMP [m], and CoM height."""
 
-Sight = tuple[ZmpReference, HeightPreview, Array, Array, Array, NDArray[np.bool_], Callable[[], Beyond]]
-"""What the walk ahead looks like over the window, and what tells it at all samples that are looked at.
-
-ZMP reference, CoM height, softened λ [1/s^2], ω [1/s], planned share of the weight on the left foot [-] and contacts.
-"""
-
 
 def lean(lasting: ExternalLoad, rotation: Array, height: HeightPreview) -> Array:
     """What a lasting force adds to the ZMP, by which the body has to lean into it, in the plan frame.
@@ -159,14 +148,13 @@ class ReferencePreview:
         self._numbers = parameters.recovery
         self._support: Support | None = None
         self._offsets: OffsetTable | None = None
-        self._legs = LegOffset(self._leg, float(half_size[0]), parameters.sample_time, self.reach)
+        self._legs: LegOffset | None = None
+        if self._leg.chain is not None:
+            self._legs = LegOffset(self._leg, float(half_size[0]), parameters.sample_time, self.reach)
         # Of the last plan its tick, the course of the clock, the height, and how much lower than by its law that is.
         self._transition: HeightTransition | None = None
         self._before: tuple[int, Course, Array, float] | None = None
-        self._softening, self._compiled, kernels = softening(self._leg), None, library()
-        if kernels is not None:
-            counts = self._count, self.reach
-            self._compiled = CompiledPreview(kernels, gait, profile, parameters, counts, self._softening)
+        self._softening = softening(self._leg)
 
     @property
     def reach(self) -> int:
@@ -175,19 +163,12 @@ class ReferencePreview:
 
     def support(self, execution: Execution) -> Support:
         """What carries the robot now."""
-        kernels = (support_table, hulls_of)
-        if self._compiled is not None:
-            kernels = self._compiled.support_table, self._compiled.sole_hulls
-        last, half_size = self._support, self._half_size
-        self._support = present_support(last, execution, half_size, self._margin, self._room, *kernels)
+        self._support = present_support(self._support, execution, self._half_size, self._margin, self._room)
         return self._support
 
     def foresee(self, execution: Execution) -> None:
         """Make now what the next tick makes of its support, if the execution then is this one."""
-        support = self.support(execution)
-        if self._compiled is not None:
-            self._compiled.turn_to(execution.schedule, support)
-        self._legs.foresee(execution.schedule, support.frame)
+        self.support(execution)
 
     def window(
         self,
@@ -206,9 +187,14 @@ class ReferencePreview:
             time: now [s].
             lasting: force that goes on acting on the body.
         """
-        look = self._sight if self._compiled is None else self._compiled.sight
-        reference, height, stiffness, omega, load, contacts, tell = look(execution, support, self._transferred)
-        offset = self._offset(execution, tell, support, position, time, lasting)
+        samples, count = execution.samples(self.reach), self._count
+        # The paper's ZMP planner, and its vertical motion planner with the varying dynamics.
+        whole = zmp_reference(samples, support.table).part(slice(1, self.reach + 1))
+        on = partial(self._transferred, execution)
+        high = preview_height(self._profile, self._gait, samples, support.heights, whole.height, self._length, on)
+        offset = self._offset(execution, (samples, whole.point, high), support, position, time, lasting)
+        reference, height, window = whole.part(slice(count)), high.part(count), slice(1, count + 1)
+        stiffness = self._softening * height.stiffness
         if lasting is not None:
             offset = offset + lean(lasting, support.rotation, height)
         return _a_window(
@@ -217,23 +203,10 @@ class ReferencePreview:
             offset=offset,
             height=height,
             stiffness=stiffness,
-            omega=omega,
-            load_left=load,
-            contacts=contacts,
+            omega=natural_frequency(stiffness, self._sample_time),
+            load_left=load_left(samples, support.on_left)[window],
+            contacts=samples.contacts[window],
         )
-
-    def _sight(
-        self, execution: Execution, support: Support, moved: Callable[[Execution, Array], Array | None]
-    ) -> Sight:
-        """What the walk ahead looks like, where `moved` says what takes the place of the height that its law gives."""
-        samples, count = execution.samples(self.reach), self._count
-        # The paper's ZMP planner, and its vertical motion planner with the varying dynamics.
-        reference, on = zmp_reference(samples, support.table).part(slice(1, -1)), partial(moved, execution)
-        height = preview_height(self._profile, self._gait, samples, support.heights, reference.height, self._length, on)
-        stiffness, window = self._softening * height.stiffness[:count], slice(1, count + 1)
-        omega, load = natural_frequency(stiffness, self._sample_time), load_left(samples, support)[window]
-        seen, part = reference.part(slice(count)), height.part(count)
-        return seen, part, stiffness, omega, load, samples.contacts[window], lambda: (samples, reference.point, height)
 
     def _transferred(self, execution: Execution, height: Array) -> Array | None:
         """The height where a step that is adapted has changed how the clock goes or set it, or is too long for it.
@@ -256,9 +229,8 @@ class ReferencePreview:
             height[0] -= lower
         if leaves:
             state = before[:, min(clock.ticks - tick, 1)]
-            kernel = None if self._compiled is None else self._compiled.soonest_calm
             left, t = execution.left, self._sample_time
-            transition = HeightTransition.onto(height, state, clock.ticks, left, t, numbers.lifting, kernel)
+            transition = HeightTransition.onto(height, state, clock.ticks, left, t, numbers.lifting)
             self._transition = transition
         if self._transition is not None:
             if clock.ticks >= self._transition.start + self._transition.samples:
@@ -271,15 +243,15 @@ class ReferencePreview:
     def _offset(
         self,
         execution: Execution,
-        tell: Callable[[], Beyond],
+        beyond: Beyond,
         support: Support,
         position: Array,
         time: float,
         lasting: ExternalLoad | None,
     ) -> Array:
-        """What the legs add to the ZMP, shape (n, 2) [m]; other arguments as of `window`."""
+        """What the legs add to the ZMP, shape (n, 2) [m]; `beyond` is the walk ahead, others are those of `window`."""
         count, clock = self._count, execution.clock
-        if self._leg.chain is None:
+        if self._legs is None:
             return np.zeros((count, 2))
         last, table, key, aim = execution.schedule.phases[-1], self._offsets, support.key, execution.aim
         # In the final standing, where the walk's clock does not matter, none serves: its values go on with time.
@@ -289,7 +261,7 @@ class ReferencePreview:
         if table is None or not serves or not table.holds(clock, key, aim, self._numbers.same_swing):
             # No longer than until the robot stands will they serve.
             count += int(min(self._numbers.offset_ticks - 1, max(left, 0.0) + 1))
-            samples, point, height = tell()
+            samples, point, height = beyond
             point = point if lasting is None else point - lean(lasting, support.rotation, height)
             frame = support.rotation, support.origin
             flown = None if execution.swing is None or aim is None else (execution.swing, time)

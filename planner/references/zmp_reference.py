@@ -1,10 +1,12 @@
 """ZMP planner: the present support, and the ZMP reference over a window, linear in the next two footsteps."""
 
-from collections.abc import Callable
+import math
 from typing import NamedTuple
 
 import numpy as np
+from numpy.typing import NDArray
 
+from surefoot import algebra
 from surefoot.planner.geometry import CORNERS, frame_rotation, points_of_sole
 from surefoot.planner.steps.execution import Execution
 from surefoot.planner.steps.phases import PhaseSamples
@@ -37,6 +39,12 @@ class ZmpReference:
         return ZmpReference(self.point[samples], self.gain[samples], self.half_size[samples], self.height[samples])
 
 
+_a_reference = maker(ZmpReference)
+
+Box = tuple[float, float]
+"""Half sizes of a box [m]."""
+
+
 def support_table(
     schedule: Schedule, landed: int, free: tuple[bool, bool], half_size: Array, stay: bool = False
 ) -> Array:
@@ -58,21 +66,77 @@ def support_table(
         Columns x, y [m], gain of the next two footstep shifts [-], box half sizes x, y [m], height [m], and their
         differences to the next row, zero in the last one, shape (2, m, 7).
     """
-    stance, points = schedule.index(landed), schedule.support_points
-    position, yaw = schedule.positions, schedule.yaws
-    rotation = frame_rotation(float(yaw[stance]))
-    values = np.empty((len(points), 7))
-    values[:, :2] = (points[:, :2] - position[stance, :2]) @ rotation
-    moves, rows = np.equal if stay else np.greater_equal, np.arange(len(position))
-    shifted = np.where(moves(rows[:, None], stance + np.arange(1, 3)), np.array(free, dtype=np.float64), 0.0)
-    values[:, 2:4] = schedule.at_supports(shifted)
-    values[:, 4:6] = schedule.at_supports(_inscribed_boxes(yaw - yaw[stance], half_size))
-    one, other = schedule.supports.T
-    between = one != other
-    apart = (position[other[between], :2] - position[one[between], :2]) @ rotation
-    values[between, 4:6] = _joint_boxes(values[between, 4:6], 0.5 * np.abs(apart))
-    values[:, 6] = points[:, 2]
-    return np.stack((values, np.diff(values, axis=0, append=values[-1:])))
+    table = np.zeros((2, len(schedule.supports), 7))
+    values, stance = table[0], schedule.index(landed)
+    _place_supports(schedule.positions, schedule.yaws, schedule.supports, stance, values)
+    _move_supports(schedule.supports, stance, np.array(free, dtype=np.float64), stay, values)
+    _box_supports(schedule.positions, schedule.yaws, schedule.supports, stance, half_size, values)
+    table[1, : len(values) - 1] = values[1:] - values[: len(values) - 1]
+    return table
+
+
+def _place_supports(position: Array, yaw: Array, supports: NDArray[np.intp], stance: int, values: Array) -> None:
+    """Place and height of support points, midway between two feet each."""
+    c, s = math.cos(yaw[stance]), math.sin(yaw[stance])
+    for row in range(supports.shape[0]):
+        one, other = supports[row, 0], supports[row, 1]
+        x = 0.5 * (position[one, 0] + position[other, 0]) - position[stance, 0]
+        y = 0.5 * (position[one, 1] + position[other, 1]) - position[stance, 1]
+        values[row, 0], values[row, 1] = x * c + y * s, y * c - x * s
+        values[row, 6] = 0.5 * (position[one, 2] + position[other, 2])
+
+
+def _move_supports(supports: NDArray[np.intp], stance: int, free: Array, stay: bool, values: Array) -> None:
+    """Gain of the next two footstep shifts at support points."""
+    for row in range(supports.shape[0]):
+        for shift in range(2):
+            gain, moved = 0.0, stance + 1 + shift
+            for end in range(2):
+                foot = supports[row, end]
+                gain += free[shift] if (foot == moved if stay else foot >= moved) else 0.0
+            values[row, 2 + shift] = 0.5 * gain
+
+
+def _box_supports(
+    position: Array, yaw: Array, supports: NDArray[np.intp], stance: int, half_size: Array, values: Array
+) -> None:
+    """Half sizes of the boxes at support points."""
+    c, s = math.cos(yaw[stance]), math.sin(yaw[stance])
+    for row in range(supports.shape[0]):
+        one, other = supports[row, 0], supports[row, 1]
+        first = inscribed_box(half_size[0], half_size[1], yaw[one] - yaw[stance])
+        second = inscribed_box(half_size[0], half_size[1], yaw[other] - yaw[stance])
+        box = (0.5 * (first[0] + second[0]), 0.5 * (first[1] + second[1]))
+        if one != other:
+            x, y = position[other, 0] - position[one, 0], position[other, 1] - position[one, 1]
+            box = joint_box(box, 0.5 * abs(x * c + y * s), 0.5 * abs(y * c - x * s))
+        values[row, 4], values[row, 5] = box[0], box[1]
+
+
+def inscribed_box(a: float, b: float, yaw: float) -> Box:
+    """Half sizes of the largest box of a foot's proportions, a and b [m], in that foot turned by a yaw [rad]."""
+    c, s = abs(math.cos(yaw)), abs(math.sin(yaw))
+    scale = min(a / (a * c + b * s), b / (a * s + b * c))
+    return scale * a, scale * b
+
+
+def joint_box(box: Box, x: float, y: float) -> Box:
+    """The largest box midway between two feet, within the hull of both.
+
+    A box of half sizes (a, b) that is moved by up to ±s (x, y), s in [0, 1], holds one of half sizes (a - s x, b + s y)
+    between its extremes; s is that of the greatest area.
+
+    Args:
+        box: half sizes of that of one foot [m].
+        x: half of the distance of the feet along the box's first side [m].
+        y: along its second one [m].
+    """
+    a, b, most = box[0], box[1], max(2.0 * x * y, 1e-12)
+    sideways = algebra.clamp((a * y - b * x) / most, 0.0, 1.0)
+    ahead = algebra.clamp((b * x - a * y) / most, 0.0, 1.0)
+    wide = (a - sideways * x, b + sideways * y)
+    long = (a + ahead * x, b - ahead * y)
+    return wide if wide[0] * wide[1] >= long[0] * long[1] else long
 
 
 def zmp_reference(samples: PhaseSamples, table: Array) -> ZmpReference:
@@ -84,34 +148,21 @@ def zmp_reference(samples: PhaseSamples, table: Array) -> ZmpReference:
         samples: the phases over the window.
         table: support points in sight, as of `support_table`.
     """
-    index, (values, steps) = samples.index, table
-    rows = values.take(index, axis=0) + samples.fraction[:, None] * steps.take(index, axis=0)
-    return ZmpReference(rows[:, :2], rows[:, 2:4], rows[:, 4:6], rows[:, 6])
+    n = len(samples.clock)
+    reference = _a_reference(np.empty((n, 2)), np.empty((n, 2)), np.empty((n, 2)), np.empty(n))
+    _refer(samples, table, reference.point, reference.gain, reference.half_size, reference.height)
+    return reference
 
 
-def _inscribed_boxes(yaw: Array, half_size: Array) -> Array:
-    c, s = np.abs(np.cos(yaw)), np.abs(np.sin(yaw))
-    a, b = half_size
-    scale = np.minimum(a / (a * c + b * s), b / (a * s + b * c))
-    return np.asarray(scale[:, None] * half_size)
-
-
-def _joint_boxes(boxes: Array, apart: Array) -> Array:
-    """Largest boxes midway between two feet, within the hull of both.
-
-    A box of half sizes (a, b) that is moved by up to ±s (x, y), s in [0, 1], holds one of half sizes (a - s x, b + s y)
-    between its extremes; s is that of the greatest area.
-
-    Args:
-        boxes: half sizes of those of one foot, shape (n, 2) [m].
-        apart: half of the distance of the feet, shape (n, 2) [m].
-    """
-    (a, b), (x, y) = boxes.T, apart.T
-    sideways = np.clip((a * y - b * x) / np.maximum(2.0 * x * y, 1e-12), 0.0, 1.0)
-    ahead = np.clip((b * x - a * y) / np.maximum(2.0 * x * y, 1e-12), 0.0, 1.0)
-    wide = np.column_stack((a - sideways * x, b + sideways * y))
-    long = np.column_stack((a + ahead * x, b - ahead * y))
-    return np.where((wide.prod(axis=1) >= long.prod(axis=1))[:, None], wide, long)
+def _refer(samples: PhaseSamples, table: Array, point: Array, gain: Array, half_size: Array, height: Array) -> None:
+    index, fraction = samples.index, samples.fraction
+    for k in range(height.shape[0]):
+        i, share = index[k], fraction[k]
+        for axis in range(2):
+            point[k, axis] = table[0, i, axis] + share * table[1, i, axis]
+            gain[k, axis] = table[0, i, 2 + axis] + share * table[1, i, 2 + axis]
+            half_size[k, axis] = table[0, i, 4 + axis] + share * table[1, i, 4 + axis]
+        height[k] = table[0, i, 6] + share * table[1, i, 6]
 
 
 class SupportKey(NamedTuple):
@@ -201,10 +252,23 @@ class Support:
 _a_support = maker(Support)
 
 
-def load_left(samples: PhaseSamples, support: Support) -> Array:
-    """Planned share of the weight on the left foot over a window, shape (n,) [-]; it goes with the ZMP reference."""
-    index, fraction, share = samples.index, samples.fraction, support.on_left
-    return np.asarray((1.0 - fraction) * share[index] + fraction * share[np.minimum(index + 1, len(share) - 1)])
+def load_left(samples: PhaseSamples, on_left: Array) -> Array:
+    """Planned share of the weight on the left foot over a window, shape (n,) [-]; it goes with the ZMP reference.
+
+    Args:
+        samples: the phases over the window.
+        on_left: that share at the support points in sight, shape (m,) [-].
+    """
+    load = np.empty(len(samples.clock))
+    _share_load(samples, on_left, load)
+    return load
+
+
+def _share_load(samples: PhaseSamples, on_left: Array, load: Array) -> None:
+    index, fraction, last = samples.index, samples.fraction, on_left.shape[0] - 1
+    for k in range(load.shape[0]):
+        i, share = index[k], fraction[k]
+        load[k] = (1.0 - share) * on_left[i] + share * on_left[min(i + 1, last)]
 
 
 def present_support(
@@ -213,8 +277,6 @@ def present_support(
     half_size: Array,
     margin: float,
     room: tuple[float, float],
-    tabulated: Callable[..., Array] = support_table,
-    hulls: Callable[[tuple[Sole, ...]], tuple[Array, Array]] = hulls_of,
 ) -> Support:
     """The support of this tick, the last one while its key stays.
 
@@ -224,8 +286,6 @@ def present_support(
         half_size: half of the sole's length and width, shape (2,) [m].
         margin: share of the sole in which the ZMP must stay [-].
         room: what of the half size the ankles can bear, forward and sideways [m].
-        tabulated: `support_table`, or a kernel in its place.
-        hulls: `hulls_of`, likewise.
     """
     schedule, landed, phase = execution.schedule, execution.landed, execution.phase
     key = SupportKey(schedule, landed, phase.start, execution.free)
@@ -238,9 +298,9 @@ def present_support(
     if last is not None and [*map(id, soles)] == [*map(id, last.soles)]:
         outer, inner = last.outer, last.inner
     else:
-        outer, inner = hulls(soles)
+        outer, inner = hulls_of(soles)
     stay = not schedule.ground.terrain.footholds.follow
-    table = tabulated(schedule, landed, key.free, np.minimum(margin * half_size, room), stay)
+    table = support_table(schedule, landed, key.free, np.minimum(margin * half_size, room), stay)
     return _a_support(
         key=key,
         rotation=frame_rotation(latest.yaw),

@@ -141,7 +141,9 @@ class Execution:
         """The phases at `count` samples from now on, with one more before them and one after."""
         ahead = np.arange(-1.0, count + 1)
         if self.clock.steady:
-            return self.schedule.samples(np.maximum(self.clock.now + ahead, 0.0))
+            clock = self.clock.now + ahead
+            clock[0] = max(clock[0], 0.0)
+            return self.schedule.samples(clock)
         clock, rate, bend = self.clock.at(ahead)
         return self.schedule.samples(clock, (rate, bend / self._parameters.sample_time))
 

@@ -6,11 +6,14 @@ from itertools import pairwise
 import numpy as np
 from numpy.typing import NDArray
 
+from surefoot import algebra
 from surefoot.planner.model.time_scaling import CLOCK_ROUNDING
 from surefoot.planner.steps.step import Step
 from surefoot.planner.swing.heel_off import RollSpan
 from surefoot.planner.types import Array, Foot, PhaseKind
 from surefoot.values import dataclass
+
+_DOUBLE = int(PhaseKind.DOUBLE)
 
 
 @dataclass(frozen=True, slots=True)
@@ -117,7 +120,6 @@ class PhaseTable:
         return cls(phases, kind, start, length, rest, support, np.stack((left, right), axis=1) != 0)
 
 
-@dataclass(frozen=True, slots=True)
 class PhaseSamples:
     """The phases at the n samples of a window.
 
@@ -125,6 +127,10 @@ class PhaseSamples:
     before each bout and at the end, and the stance foot of each step. At sample k it is `fraction[k]` of the
     way from point `index[k]` to the next. It rests while the robot stands, and on the stance foot in single
     support; in every double support it goes on to exactly the next point.
+
+    Args:
+        table: the phases in sight.
+        clock, sample_time, first, rate: see the attributes.
 
     Attributes:
         phases: those in sight, in order, without gaps.
@@ -142,64 +148,55 @@ class PhaseSamples:
         first: support point of the walk from which `index` counts.
     """
 
-    phases: tuple[Phase, ...]
-    which: NDArray[np.intp]
-    kind: NDArray[np.intp]
-    clock: Array
-    rate: tuple[Array, Array] | None
-    elapsed: Array
-    length: Array
-    index: NDArray[np.intp]
-    fraction: Array
-    fraction_rate: Array
-    contacts: NDArray[np.bool_]
-    sample_time: float
-    first: int
-
-    @classmethod
-    def of(
-        cls,
+    def __init__(
+        self,
         table: PhaseTable,
         clock: Array,
         sample_time: float,
         first: int = 0,
         rate: tuple[Array, Array] | None = None,
-    ) -> "PhaseSamples":
-        """Phases where the clock shows some instants, shape (n,) [samples]; other arguments as of the attributes."""
-        which = np.maximum(table.start.searchsorted(clock + CLOCK_ROUNDING, side="right") - 1, 0)
-        kind, support = table.kind[which], table.support[which]
-        start, length, rest = (column[which] for column in (table.start, table.length, table.rest))
-        elapsed = np.maximum(clock - start, 0.0)
-        ramp = np.where(kind == PhaseKind.DOUBLE, length - rest, np.inf)
-        gone = elapsed - rest
-        return cls(
-            phases=table.phases,
-            which=which,
-            kind=kind,
-            clock=clock,
-            rate=rate,
-            elapsed=elapsed,
-            length=length,
-            index=support - first,
-            fraction=np.maximum(gone / ramp, 0.0),
-            fraction_rate=np.where(gone >= 0.0, 1.0 / (ramp * sample_time), 0.0),
-            contacts=table.contacts[which],
-            sample_time=sample_time,
-            first=first,
-        )
+    ) -> None:
+        n = len(clock)
+        self.phases, self.clock, self.sample_time, self.first, self.rate = table.phases, clock, sample_time, first, rate
+        self.which, self.kind, self.index = np.empty(n, np.intp), np.empty(n, np.intp), np.empty(n, np.intp)
+        self.elapsed, self.length = np.empty(n), np.empty(n)
+        self.fraction, self.fraction_rate = np.empty(n), np.empty(n)
+        self._look_up(table.start, clock, self.which)
+        self._measure(self.which, clock, table.start, table.length, table.rest, table.kind, table.support)
+        self.contacts = table.contacts.take(self.which, axis=0)
 
-    @property
-    def last_stand(self) -> NDArray[np.bool_]:
-        """Where the robot stands and no end of it is known, shape (n,)."""
-        return np.isinf(self.length)
+    def _look_up(self, start: Array, clock: Array, which: NDArray[np.intp]) -> None:
+        """The phase at each sample, the first one before it."""
+        here, last = 0, start.shape[0] - 1
+        for k in range(clock.shape[0]):
+            while here > 0 and start[here] > clock[k] + CLOCK_ROUNDING:
+                here -= 1
+            while here < last and start[here + 1] <= clock[k] + CLOCK_ROUNDING:
+                here += 1
+            which[k] = here
+
+    def _measure(
+        self,
+        which: NDArray[np.intp],
+        clock: Array,
+        start: Array,
+        length: Array,
+        rest: Array,
+        kind: NDArray[np.intp],
+        support: NDArray[np.intp],
+    ) -> None:
+        """How far each sample is in its phase, and on the way of the ZMP reference."""
+        elapsed, fraction, fraction_rate = self.elapsed, self.fraction, self.fraction_rate
+        lengths, kinds, index = self.length, self.kind, self.index
+        for k in range(clock.shape[0]):
+            phase = which[k]
+            ramp = length[phase] - rest[phase] if kind[phase] == _DOUBLE else algebra.INFINITY
+            elapsed[k] = max(0.0, clock[k] - start[phase])
+            gone = elapsed[k] - rest[phase]
+            fraction[k] = max(0.0, gone / ramp)
+            fraction_rate[k] = 1.0 / (ramp * self.sample_time) if gone >= 0.0 else 0.0
+            lengths[k], kinds[k], index[k] = length[phase], kind[phase], support[phase] - self.first
 
     def per_phase(self, values: Sequence[float]) -> Array:
         """Values of the kinds of phases at each sample, shape (n,)."""
         return np.array(values, dtype=np.float64)[self.kind]
-
-    def in_time(self, values: Array) -> Array:
-        """Values with their first and second derivatives by the clock, shape (3, n), turned into those by time."""
-        if self.rate is None:
-            return values
-        rate, bend = self.rate
-        return np.stack((values[0], values[1] * rate, values[2] * rate**2 + values[1] * bend))

@@ -180,7 +180,7 @@ class Schedule:
 
     def samples(self, clock: Array, rate: tuple[Array, Array] | None = None) -> PhaseSamples:
         """The phases where the clock shows some instants; arguments as of `PhaseSamples`."""
-        return PhaseSamples.of(self.phase_table, clock, self.ground.parameters.sample_time, self.first_support, rate)
+        return PhaseSamples(self.phase_table, clock, self.ground.parameters.sample_time, self.first_support, rate)
 
     def usual_samples(self, phase: Phase) -> float:
         """How long a phase would last that had not begun [samples]."""

@@ -5,13 +5,13 @@ A rear foot that stays flat is what a long step runs out of: with the heel up th
 front foot can carry it.
 """
 
-import math
 from typing import NamedTuple
 
 import numpy as np
 
-from surefoot.planner.geometry import frame_rotation, sole_rates, sole_rotation
+from surefoot.planner.geometry import frame_rotation
 from surefoot.planner.model.time_scaling import TimeScaling
+from surefoot.planner.orientation import roll_sole
 from surefoot.planner.types import Array, Foot, Footstep
 from surefoot.values import dataclass
 
@@ -87,7 +87,7 @@ class FootRoll:
         span, (clock, rate, change) = self.end - self.start, self._clock(time)
         value, slope, bend = bump((clock - self.start) / span)
         speed = self.angle * slope / span
-        return self.angle * value, speed * rate, self.angle * bend / span**2 * rate**2 + speed * change
+        return self.angle * value, speed * rate, self.angle * bend / (span * span) * (rate * rate) + speed * change
 
     def hardest(self, begin: float, end: float) -> float:
         """Greatest acceleration with which it lifts the sole's centre between two instants [m/s^2]."""
@@ -104,22 +104,18 @@ class FootRoll:
         Returns:
             Position, shape (3,) [m], and velocity, shape (3,) [m/s], in the world frame.
         """
-        pitch, rate, _ = self.evaluate(time)
-        sine, cosine = math.sin(pitch), math.cos(pitch)
-        rotation = sole_rotation(*level[3:].tolist())
-        back = self.toe * rotation @ (1.0 - cosine, 0.0, sine)
-        turning, _ = sole_rates(level[3:], rates[3:], np.zeros(3))
-        rolling = self.toe * rate * rotation @ (sine, 0.0, cosine)
-        (a, b, c), (x, y, z) = turning.tolist(), back.tolist()
-        return level[:3] + back, rates[:3] + rolling + np.array((b * z - c * y, c * x - a * z, a * y - b * x))
+        (pitch, rate, _), centre, velocity = self.evaluate(time), np.empty(3), np.empty(3)
+        pose, moving = np.asarray(level, dtype=np.float64), np.asarray(rates, dtype=np.float64)
+        roll_sole(pose, moving, self.toe, pitch, rate, centre, velocity)
+        return centre, velocity
 
 
 def bump(s: float) -> tuple[float, float, float]:
     """64 s³ (1 - s)³ within 0 to 1, else zero, and its first and second derivative."""
     if not 0.0 < s < 1.0:
         return 0.0, 0.0, 0.0
-    w = s * (1.0 - s)
-    return 64.0 * w**3, 192.0 * w**2 * (1.0 - 2.0 * s), 384.0 * w * ((1.0 - 2.0 * s) ** 2 - w)
+    w, tilt = s * (1.0 - s), 1.0 - 2.0 * s
+    return 64.0 * w**3, 192.0 * (w * w) * tilt, 384.0 * w * (tilt * tilt - w)
 
 
 def stretched(ahead: float, radius: float, length: float = 1.0) -> float:

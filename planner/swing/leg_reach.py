@@ -7,7 +7,7 @@ import numpy as np
 
 from surefoot.planner.geometry import frame_rotation, wrap_angle
 from surefoot.planner.parameters import PlannerParameters
-from surefoot.planner.swing.quintics import BRAKING, PEAK, detour, farthest
+from surefoot.planner.swing.boxes import landing_boxes
 from surefoot.planner.swing.step_region import soles_apart
 from surefoot.planner.swing.trajectory import SwingTrajectory
 from surefoot.planner.types import Array, Footstep
@@ -89,21 +89,11 @@ class LegReach:
         Returns:
             Lower and upper corners, shape (boxes, 2, 2) [m].
         """
-        most = self.stride
-        far = side * (most + self.hip_width)
-        boxes = [_box(-most, most, side * self.near, far)]
-        if crosses and self.across is not None:
-            boxes.append(_box(self.clear, most, -side * self.across, far))
-            boxes.append(_box(-most, -self.clear, -side * self.across, far))
-        found = np.array(boxes)
-        found[:, 0], found[:, 1] = np.maximum(found[:, 0], face[0]), np.minimum(found[:, 1], face[1])
+        count = 3 if crosses and self.across is not None else 1
+        found = np.empty((count, 2, 2))
+        extents = self.stride, self.hip_width, self.near, self.clear
+        landing_boxes(found[:, 0], found[:, 1], extents, self.across or 0.0, side, face, count)
         return found
-
-    def within(self, places: Array, hips: Array) -> Array:
-        """The places nearest to these that legs reach from hips, shape (..., 2) [m]."""
-        way = places - hips
-        share = np.minimum(1.0, self.radius / np.maximum(np.hypot(way[..., 0], way[..., 1]), 1e-9))
-        return np.asarray(hips + share[..., None] * way)
 
     def around(self, place: Array, hip: Array, box: Array, reach: float) -> Array:
         """The part of a box with a place in it whose sides are in reach from a hip, level with the place, (2, 2)."""
@@ -144,66 +134,6 @@ class LegReach:
         span = min(0.5 * stride / self.parameters.recovery.spanned, self.length)
         return max(self.height - math.sqrt(self.length**2 - span**2), 0.0)
 
-    def edges(self, swing: Array, nominal: Array, singles: Array) -> Array:
-        """Where a foot can be swung to in times: front, left, minus back and minus right edge, shape (4, n) [m].
-
-        It may always be swung as hard as it nominally is.
-
-        Args:
-            swing: position and velocity of the foot, from its stance foot, shape (2, 2) [m, m/s].
-            nominal: where it lands nominally, shape (2,) [m].
-            singles: times left of it, the last as planned, shape (n,) [s].
-        """
-        time, edges = self._swing_times(singles), []
-        usual, (here, speeds) = float(time[-1]), swing.tolist()
-        for side in (1.0, -1.0):
-            for at, speed, aim, most in zip(here, speeds, nominal.tolist(), self.acceleration, strict=True):
-                hardest = max(most, abs(PEAK * (aim - at) / (usual * usual) - BRAKING * speed / usual))
-                edges.append((side * at, hardest, side * speed))
-        place, hardest, onward = np.array(edges).T[:, :, None]
-        return np.asarray(place + farthest(hardest, onward, time))
-
-    def _swing_times(self, singles: Array) -> Array:
-        """Times in which a foot swings of single supports, at whose end it has arrived, shape (n,) [s]."""
-        return np.maximum(singles - self.parameters.touchdown_lead, self.parameters.sample_time)
-
-    def shortfall(self, swing: Array, side: float, singles: Array, places: Array) -> Array:
-        """Way that a foot lacks of places in times since it has to pass around the stance leg, shape (boxes, n) [m].
-
-        Asked of legs that are turned as the foot will land.
-
-        It is bent as that of the swing will be (see `around_stance_leg`), here at nine shares of its time, and
-        lacks the share by which the hips cannot swing it so hard.
-
-        Args:
-            swing: position and velocity of the foot, from its stance foot, shape (2, 2) [m, m/s].
-            side: +1 for a left foot, -1 for a right one.
-            singles: times left of it, shape (n,) [s].
-            places: where it lands, shape (boxes, n, 2) [m].
-        """
-        here, speed = swing
-        crossing = np.where(side * here[1] < 0.0, here[0], np.where(side * places[..., 1] < 0.0, places[..., 0], 0.0))
-        lacking = np.zeros(crossing.shape)
-        which = np.nonzero(crossing)
-        if not len(which[0]):
-            return lacking
-        time = self._swing_times(singles)[which[1], None, None]
-        way, onward = (places[which] - here)[:, None], speed * time
-        passed = here + way * AT_REST[0][:, None] + onward * MOVING[0][:, None]
-        met = ((np.abs(passed[..., 0]) < self.clear) & (side * passed[..., 1] < self.near)).any(axis=1)
-        corner = np.stack((np.copysign(self.clear, crossing[which]), np.full(len(met), side * self.near)), axis=1)
-        astray = corner[:, None] - passed
-        rows, best = np.arange(len(met)), np.argmin((astray**2).sum(axis=-1) / DEARER, axis=1)
-        bend = way * AT_REST[1][:, None] + onward * MOVING[1][:, None]
-        bend = bend + astray[rows, best][:, None] * AROUND[best][..., None]
-        hardest = (np.abs(bend) / (time**2 * self.acceleration)).max(axis=(1, 2))
-        lacking[which] = np.where(met, (1.0 - 1.0 / np.maximum(hardest, 1.0)) * np.hypot(*way[:, 0].T), 0.0)
-        return lacking
-
-
-def _box(back: float, ahead: float, near: float, far: float) -> tuple[tuple[float, float], ...]:
-    return (back, min(near, far)), (ahead, max(near, far))
-
 
 STRIDE = 2.6
 """Greatest stride over the reach of a leg: at 2, where both legs span it flat, a body that runs is not caught [-]."""
@@ -242,32 +172,3 @@ def around_stance_leg(
     bent = swing.around(origin + rotation @ corner, sample_time)
     hardest = np.abs(bent.bends(times) @ rotation).max(axis=0)
     return bent if (hardest <= legs.acceleration).all() else swing
-
-
-_SHARES = np.linspace(0.1, 0.9, 9)
-"""Shares of a swing's time at which its way around the stance leg is looked at [-]."""
-
-DEARER = (_SHARES * (1.0 - _SHARES)) ** 5
-"""What a way round at these is divided by to be compared."""
-
-
-def _unit_ways() -> tuple[Array, Array, Array]:
-    """Quintics to rest in a unit of time and their accelerations at `_SHARES`, shape (2, 9) each.
-
-    One goes a unit of way from rest, one has a unit of speed and goes none; of a way round by a unit at each of these
-    shares the accelerations, shape (9, 9).
-    """
-    u = _SHARES
-    rest = np.stack((u**3 * (10.0 - 15.0 * u + 6.0 * u**2), 60.0 * u * (1.0 - u) * (1.0 - 2.0 * u)))
-    moving = np.stack((u - 6.0 * u**3 + 8.0 * u**4 - 3.0 * u**5, -36.0 * u + 96.0 * u**2 - 60.0 * u**3))
-    order = np.arange(6.0)
-    factors = (order * (order - 1.0))[2:]
-    around = []
-    for share in u.tolist():
-        since = np.where(u <= share, u, u - share)[:, None] ** order[:4] * factors
-        before, after = detour(share, 1.0)
-        around.append(np.where(u <= share, since @ before[2:], since @ after[2:]))
-    return rest, moving, np.array(around)
-
-
-AT_REST, MOVING, AROUND = _unit_ways()

@@ -1,11 +1,12 @@
 """What a quintic between two states asks for: its acceleration, its way, and a way round."""
 
 import math
-from collections.abc import Sequence
 
 import numpy as np
 
-from surefoot.planner.geometry import one_quintic, quintic
+from surefoot.algebra import Vector
+from surefoot.planner.geometry import quintic
+from surefoot.planner.quintic import between
 from surefoot.planner.types import Array
 
 PEAK = 5.77
@@ -15,20 +16,14 @@ BRAKING, GAINING = 1.9, 3.9
 """What a speed takes off that at the end of a quintic to rest, and at its begin, over speed / T: its extremes [-]."""
 
 
-def farthest(acceleration: Array | float, speed: Array | float, time: Array | float) -> Array:
+def farthest(acceleration: float, speed: float, time: float) -> float:
     """How far a quintic gets that comes to rest after a time, without more than an acceleration [m].
 
     Args:
-        acceleration: of any shape, as all of them [m/s^2].
+        acceleration: of the hips, say [m/s^2].
         speed: at its begin, negative against its way [m/s].
         time: that it has [s].
     """
-    changed = np.where(np.asarray(speed) > 0.0, BRAKING, GAINING) * speed
-    return np.asarray((acceleration * np.square(time) + changed * time) / PEAK)
-
-
-def farthest_of_one(acceleration: float, speed: float, time: float) -> float:
-    """The same as `farthest` in plain numbers, which are fast [m]."""
     return (acceleration * (time * time) + (BRAKING if speed > 0.0 else GAINING) * speed * time) / PEAK
 
 
@@ -71,7 +66,7 @@ def to_rest(state: Array, target: Array, duration: float) -> Array:
 
 
 def up_and_down(
-    state: Sequence[float],
+    state: Vector,
     apex: float,
     end: tuple[float, float],
     times: tuple[float, float, float],
@@ -98,7 +93,7 @@ def up_and_down(
     up, down, rest = highest - now, touchdown - highest, (low, -sinking, 0.0)
     room = lifting * down**2 / PEAK
     if up <= soon or height - low > room:
-        return None, np.array(one_quintic(state, rest, touchdown - now))[:, None]
-    apex = min(apex, low + room, height + farthest_of_one(lifting, speed, up))
+        return None, np.array(between(state, rest, touchdown - now))[:, None]
+    apex = min(apex, low + room, height + farthest(lifting, speed, up))
     top = apex, 0.0, -4.0 * min((apex - height) / up**2, (apex - low) / down**2)
-    return np.array(one_quintic(state, top, up))[:, None], np.array(one_quintic(top, rest, down))[:, None]
+    return np.array(between(state, top, up))[:, None], np.array(between(top, rest, down))[:, None]

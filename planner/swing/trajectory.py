@@ -6,8 +6,9 @@ from functools import lru_cache
 
 import numpy as np
 
-from surefoot.planner.geometry import one_quintic, shifted
+from surefoot.planner.geometry import shifted
 from surefoot.planner.parameters import GroundSearch, PlannerParameters
+from surefoot.planner.quintic import between
 from surefoot.planner.swing.quintics import detour, straight_time, to_rest, up_and_down
 from surefoot.planner.types import Array, Foot
 from surefoot.values import dataclass, maker
@@ -236,7 +237,7 @@ class SwingTrajectory:
     def _with_height(self, time: float, state: Array, apex: float) -> "SwingTrajectory":
         """Height from a state at `time` on, shape (3, 1), as of `up_and_down`."""
         end, times = (self.target.item(2), self.search.touchdown_speed), (time, self.apex_time, self.touchdown_time)
-        rise, fall = up_and_down(state[:, 0].tolist(), apex, end, times, self.lifting, TOUCHING)
+        rise, fall = up_and_down(tuple(state[:, 0].tolist()), apex, end, times, self.lifting, TOUCHING)
         if rise is None:
             return replace(self, apex_time=min(self.apex_time, time), fall_start=time, fall=fall)
         return replace(self, rise_start=time, rise=rise, fall_start=self.apex_time, fall=fall)
@@ -312,7 +313,7 @@ def start_swing(
         target=target,
         clearance=course.height,
         search=search,
-        level=np.array([*zip(*(one_quintic(*way) for way in ways), strict=True)]),
+        level=np.array([*zip(*(between(*way) for way in ways), strict=True)]),
         rise_start=start,
         rise=np.zeros((6, 1)) if rise is None else rise,
         fall_start=start if falls else apex,

@@ -135,7 +135,7 @@ class RunOptions:
 def run(told: RunOptions) -> None:
     """Run a scenario, write its log and judge it."""
     with importing():
-        from surefoot.native.library import is_missed
+        from surefoot.native import modules
         from surefoot.scenarios.run.run import run_scenario
         from surefoot.scenarios.setup.load import load, locate
         from surefoot.scenarios.show.console import ProgressLine, print_result
@@ -156,8 +156,8 @@ def run(told: RunOptions) -> None:
             typer.echo(json.dumps({**result.verdict.to_json(), "log": str(result.log)}, allow_nan=False))
         else:
             print_result(loaded.name, result.verdict, result.log)
-        if is_missed():
-            typer.echo("run on plain Python, which is slower; `python -m surefoot.native` says why", err=True)
+        if reason := modules.missing():
+            typer.echo(f"run interpreted, about {modules.SLOWER} times slower: {reason}", err=True)
         if result.interrupted:
             typer.echo(f"interrupted; the log up to here is whole: {result.log}", err=True)
             raise typer.Exit(INTERRUPTED)

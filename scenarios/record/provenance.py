@@ -17,7 +17,7 @@ from types import MappingProxyType
 from pydantic import TypeAdapter
 
 from surefoot.forces import Push
-from surefoot.native.library import library
+from surefoot.native import modules
 from surefoot.scenarios.errors import LogError
 from surefoot.similarity import Similarity
 from surefoot.values import dataclass
@@ -344,8 +344,7 @@ def relevant_versions() -> Mapping[str, str]:
     found = {name: _version(name) for name in PACKAGES}
     found["python"] = platform.python_version()
     found["machine"] = f"{platform.system()} {platform.machine()}"
-    kernels = library()
-    found["native"] = "plain Python" if kernels is None else f"compiled kernels, {kernels.made}"
+    found["native"] = modules.made() or "interpreted"
     found["source_digest"] = source_digest(Path(__file__).parents[2])
     return MappingProxyType(found)
 
@@ -357,9 +356,9 @@ def source_digest(root: Path) -> str:
         root: folder that holds the code's folders.
     """
     digest = hashlib.sha256()
-    shared = [path for path in root.glob("*.py") if root.name == "surefoot"]
+    shared = [path for path in root.iterdir() if root.name == "surefoot" and path.is_file()]
     code = (path for folder in CODE for path in (root / folder).rglob("*.[pch]*"))
-    for path in sorted((*shared, *(path for path in code if path.suffix in (".py", ".c", ".h")))):
+    for path in sorted(path for path in (*shared, *code) if path.suffix in (".py", ".pxd", ".pyx", ".c", ".h")):
         name = path.relative_to(root).as_posix()
         if not name.startswith(READERS):
             digest.update(name.encode() + b"\0" + path.read_bytes() + b"\0")

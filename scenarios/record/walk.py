@@ -2,16 +2,14 @@
 
 import math
 import os
-from collections.abc import Callable
 
 import numpy as np
 from numpy.typing import NDArray
 
 from surefoot.forces import Push
-from surefoot.native.library import library
 from surefoot.planner.geometry import frame_rotation
-from surefoot.planner.plan import IN_POINT, PlanSample, WalkPlan
-from surefoot.planner.plan_kernel import POINT
+from surefoot.planner.orientation import roll_sole
+from surefoot.planner.plan import POINT, PlanSample, WalkPlan, in_point
 from surefoot.planner.steps.commands import Command
 from surefoot.planner.types import GRAVITY, CentroidalState, FeetState, Foot, Footstep, SolverStatus
 from surefoot.scenarios.log import LogWriter
@@ -24,20 +22,10 @@ from surefoot.values import dataclass
 Array = NDArray[np.float64]
 
 
-def _in_point(name: str, size: int) -> slice:
-    place = IN_POINT[name]
-    start: int = place if isinstance(place, int) else place.start
-    return slice(start, start + size)
-
-
-_SAMPLED = {
-    **{name: _in_point(name, 3) for name in ("com", "com_velocity", "com_acceleration")},
-    **{name: _in_point(name, 2) for name in ("zmp", "dcm", "zmp_reference")},
-}
-_POSITION, _VELOCITY = _in_point("swing", 3), _in_point("swing_velocity", 3)
-_LEVEL, _RATES = _in_point("swing", 6), _in_point("swing_velocity", 6)
+_POSITION, _VELOCITY = (slice(in_point(name).start, in_point(name).start + 3) for name in ("swing", "swing_velocity"))
+_LEVEL, _RATES = in_point("swing"), in_point("swing_velocity")
 _REFERENCE = {
-    **_SAMPLED,
+    **{name: in_point(name) for name in ("com", "com_velocity", "com_acceleration", "zmp", "dcm", "zmp_reference")},
     "swing_position": _POSITION,
     "swing_velocity": _VELOCITY,
     "support": slice(POINT, POINT + 2 * SUPPORT_VERTICES),
@@ -113,16 +101,6 @@ class WalkRecorder:
         self._looked = -1
         self._support = np.zeros(2 * SUPPORT_VERTICES)
         self._polygon = b""
-        self._roll: Callable[[float, float, float], None] | None = None
-        if kernels := library():
-            self._point = np.zeros(POINT)
-            self._roll = kernels.bind(
-                "roll_centre",
-                level=self._point[_LEVEL],
-                rates=self._point[_RATES],
-                position=self._point[_POSITION],
-                velocity=self._point[_VELOCITY],
-            )
         self._rolls = sizes.nj > 0  # the ideal feet of a point mass stay level
 
     def planner_state(self, time_ns: int, state: PlannerState) -> None:
@@ -182,15 +160,10 @@ class WalkRecorder:
             sample.omega, *pitches, phase.kind, -1 if phase.stance is None else phase.stance, phase.step,
             phase.elapsed + sample.time - plan.time, phase.duration, len(plan.support_polygon),
         )  # fmt: skip
-        point = _point(sample) if sample.point is None else sample.point
+        point = sample.point
         if roll is not None and pitch and roll.foot is sample.swing_foot:
-            if self._roll is None:
-                point = point.copy()
-                point[_POSITION], point[_VELOCITY] = roll.centre(sample.time, sample.swing, sample.swing_velocity)
-            else:
-                self._point[:] = point
-                self._roll(roll.toe, pitch, rate)
-                point = self._point.copy()
+            point = point.copy()
+            roll_sole(point[_LEVEL], point[_RATES], roll.toe, pitch, rate, point[_POSITION], point[_VELOCITY])
         self._reference.append(time_ns, numbers, point, self._support)
 
     def timing(self, time_ns: int, timing: TickTiming) -> None:
@@ -213,15 +186,6 @@ def resident_memory() -> float:
             return float(int(file.read().split()[1]) * os.sysconf("SC_PAGE_SIZE"))
     except (OSError, ValueError, IndexError):
         return math.nan
-
-
-def _point(sample: PlanSample) -> Array:
-    """A sample as a point of the kernel, as far as the reference has it."""
-    point = np.zeros(POINT)
-    for name, place in _SAMPLED.items():
-        point[place] = getattr(sample, name)
-    point[_POSITION], point[_VELOCITY] = sample.swing[:3], sample.swing_velocity[:3]
-    return point
 
 
 def _pose(footstep: Footstep) -> tuple[float, ...]:

@@ -19,7 +19,7 @@ from surefoot.scenarios.run.assembly import Parts, senses_of, walk_of, whole_bod
 from surefoot.scenarios.run.landing import Landing
 from surefoot.scenarios.run.output import Output
 from surefoot.scenarios.run.planning import FaultSchedule, Measured, Planning, RunFault
-from surefoot.scenarios.run.reference import ReferenceMaker
+from surefoot.scenarios.run.reference import planned
 from surefoot.scenarios.run.sensed import foot_sensing, unsure
 from surefoot.scenarios.run.tick import Spent
 from surefoot.scenarios.setup.feasible import made_ready
@@ -99,7 +99,6 @@ class Controller:
         self._torques: TorqueWrench | None = None
         self._command = JointCommand(np.zeros(0))
         self.planning: Planning
-        self._references: ReferenceMaker
         self.state: RobotState
         self.report: WbcReport
 
@@ -129,7 +128,6 @@ class Controller:
 
     def _stand(self, q: Array) -> None:
         self.planning = Planning.of(self.walk, self.walk.planner(feet_at(self.body, q), self._leg))
-        self._references = ReferenceMaker(self.planning.kernel)
 
     @property
     def time(self) -> float:
@@ -192,7 +190,7 @@ class Controller:
         # What is decided now acts until the next command, so that it is to do what is planned for the middle of that;
         # the state is held against that of now, from which on it does so.
         middle = now + 0.5 * self._output.period
-        self.sample, reference = self._references.tick(planning.sampler, now, middle)
+        self.sample, reference = planned(planning.sampler, now, middle)
         if now < self._next:
             self.spent = Spent(state_time, plan_time)
             return self._command

@@ -12,9 +12,8 @@ from numpy.typing import NDArray
 
 from surefoot.errors import ParameterError
 from surefoot.guard import OWN_GUARD, Guard
-from surefoot.native.library import library
-from surefoot.planner.plan import Planner, PlanSampler, WalkPlan
-from surefoot.planner.plan_kernel import PlanKernel
+from surefoot.planner.plan import Planner, WalkPlan
+from surefoot.planner.sampling import PlanSampler
 from surefoot.planner.steps.commands import Command
 from surefoot.planner.types import CentroidalState, FeetState, Foot, Footstep, PhaseKind
 from surefoot.scenarios.file.schema import Fault, Rates
@@ -85,7 +84,6 @@ class Planning:
         plan: the latest plan; there is none before the first `update`.
         due: from when on the next plan is [s].
         sampler: of the latest plan.
-        kernel: of all samplers; None of plain Python.
         recorder: of its channels; None for no record.
     """
 
@@ -105,8 +103,6 @@ class Planning:
         self._made, self.due = 0, -math.inf
         self.plan: WalkPlan
         self.sampler: PlanSampler
-        kernels = library()
-        self.kernel = PlanKernel(kernels) if kernels else None
         self._started = False
         self._commands = deque(sorted(commands, key=lambda command: command.time))
         self._told = False
@@ -176,7 +172,7 @@ class Planning:
             self._tell(tick)
         update: Callable[[CentroidalState, FeetState], WalkPlan] = self._guard.function(self.planner.update, taken_plan)
         self.plan = update(sensed.given, feet)
-        self.sampler = PlanSampler(self.plan, self.kernel)
+        self.sampler = PlanSampler(self.plan)
         self._started = True
         if self.recorder is not None:
             self._record(self.recorder, now_ns, feet)

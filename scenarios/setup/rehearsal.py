@@ -7,8 +7,8 @@ import numpy as np
 
 from surefoot.errors import ParameterError, at_most
 from surefoot.models.facts import ankle_pitch, pitch_joints, shank_outline, yaw_joint
-from surefoot.planner.plan import PlanSampler
 from surefoot.planner.plants import IdealFeet
+from surefoot.planner.sampling import PlanSampler
 from surefoot.planner.types import Array, CentroidalState, FeetState, Foot, PhaseKind
 from surefoot.polygon import convex_hull
 from surefoot.scenarios.setup.walk import Walk

@@ -2,14 +2,16 @@
 
 import sys
 
-from surefoot.native.modules import BuildError, build, interpret, made, stale
+from surefoot.native.modules import BuildError, NothingCompilesError, build, interpret, made, missing, stale
 
 if __name__ == "__main__":
-    if "--interpreted" in sys.argv[1:]:
-        interpret()
-    else:
-        try:
+    try:
+        if "--interpreted" in sys.argv[1:]:
+            interpret("that was asked for; run 'python -m surefoot.native' to compile them")
+        else:
             build(stale())
-        except BuildError as error:
-            sys.exit(f"interpreted, slower, since {error}")
-    print(f"compiled: {made()}" if made() else "interpreted")
+    except NothingCompilesError as error:
+        interpret(str(error))
+    except BuildError as error:
+        sys.exit(str(error))
+    print(f"compiled: {made()}" if made() else f"interpreted, slower: {missing()}")

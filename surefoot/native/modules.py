@@ -42,15 +42,29 @@ DIRECTIVES = {
 }
 """How Cython reads the modules: types by the `.pxd` and by inference, indices and divisors unchecked."""
 
-FLAGS = ("-O3", "-ffp-contract=off", "-fno-math-errno", "-fPIC", "-w")
+FLAGS = ("-O3", "-ffp-contract=off", "-fno-math-errno", "-fPIC", "-w", "--param=vect-max-version-for-alias-checks=200")
+"""The last one lets loops over many rows of an array become vector instructions; GCC tests first
+that the rows are apart."""
+
 BASELINE = {"x86_64": ("-march=x86-64-v2",), "AMD64": ("-march=x86-64-v2",)}
 """Further flags by machine."""
 
 LINK = {"darwin": ("-bundle", "-undefined", "dynamic_lookup")}.get(sys.platform, ("-shared",))
 
 
+SLOWER = 10
+"""About how many times as long as a compiled walk an interpreted one takes."""
+
+MOST_LINES = 30
+"""Of what Cython or the compiler says."""
+
+
 class BuildError(Exception):
-    """There is no compiling here; its text is the reason."""
+    """A module cannot be compiled; its text is what the compiler says."""
+
+
+class NothingCompilesError(BuildError):
+    """There is no compiling here; its text is the reason, with what would be right."""
 
 
 def sources() -> Mapping[str, Path]:
@@ -78,17 +92,34 @@ def shared_path() -> Path:
 
 
 def digests() -> Mapping[str, str]:
-    """Digest of each module's source, of all types in C, and of how they are compiled."""
+    """Digest of each module's source, of the types in C that it knows, and of how it is compiled."""
     found = sources()
-    types = hashlib.sha256(repr((DIRECTIVES, FLAGS, BASELINE, LINK)).encode())
-    for path in found.values():
-        types.update(str(path).encode() + b"\0" + (ROOT / path).with_suffix(".pxd").read_bytes() + b"\0")
+    types = {name: (ROOT / path).with_suffix(".pxd").read_text(encoding="utf-8") for name, path in found.items()}
+    needs = {name: types.keys() & _cimported(text) for name, text in types.items()}
+    how = hashlib.sha256(repr((DIRECTIVES, FLAGS, BASELINE, LINK)).encode())
     made = {}
     for name, path in found.items():
-        digest = types.copy()
-        digest.update((ROOT / path).read_bytes())
+        known, left = {name}, [name]
+        while left:
+            fresh = needs[left.pop()] - known
+            known |= fresh
+            left += fresh
+        digest = how.copy()
+        for text in ((ROOT / path).read_text(encoding="utf-8"), *(types[other] for other in sorted(known))):
+            digest.update(text.encode() + b"\0")
         made[name] = digest.hexdigest()[:16]
     return made
+
+
+def _cimported(text: str) -> set[str]:
+    """Modules that a ``.pxd`` names, and names of them that may be modules."""
+    found = set()
+    for line in text.splitlines():
+        words = line.replace(",", " ").split()
+        if "cimport" in words:
+            names = words[words.index("cimport") + 1 :]
+            found |= {words[1], *(f"{words[1]}.{name}" for name in names)} if words[0] == "from" else set(names)
+    return found
 
 
 def stamp() -> Mapping[str, str]:
@@ -115,87 +146,131 @@ def made() -> str:
     return stamp().get("made", "")
 
 
-def refresh() -> str:
-    """Compile anew what is stale in a checkout; remove it where that cannot be done, since it is of other sources.
+def built() -> list[Path]:
+    """Files that a build leaves, relative to `ROOT`: the extension modules and what they were made of."""
+    return [*(target(path) for path in sources().values()), shared_path(), STAMP.relative_to(ROOT)]
 
-    Returns:
-        Why modules are interpreted; empty where all are compiled, or where this was asked for.
+
+def tag() -> str:
+    """Tag of a wheel with the extension modules in it: version of Python, and platform.
+
+    On Linux that is one whose glibc has the symbols that they ask for: ``manylinux_2_35_x86_64`` (PEP 600) where the
+    newest of them came with glibc 2.35, and at least 2.17, which is the oldest that installers know by that name.
     """
-    if not (ROOT / "pyproject.toml").exists() or "interpreted" in stamp():
-        return ""
+    python = f"cp{sys.version_info.major}{sys.version_info.minor}"
+    return f"{python}-{python}-{platform_tag((ROOT / path).read_bytes() for path in built())}"
+
+
+def platform_tag(contents: Iterable[bytes]) -> str:
+    """Last part of the tag of a wheel that holds libraries with these contents."""
+    import re
+    import sysconfig
+
+    name = sysconfig.get_platform().replace("-", "_").replace(".", "_")
+    asked = {int(minor) for content in contents for minor in re.findall(rb"GLIBC_2\.(\d+)", content)}
+    if not asked or not name.startswith("linux_"):
+        return name
+    return f"manylinux_2_{max(17, *asked)}_{name.removeprefix('linux_')}"
+
+
+def missing() -> str:
+    """Why the modules run interpreted; empty where they are compiled."""
+    kept = stamp()
+    return (
+        ""
+        if "made" in kept
+        else kept.get("interpreted", "this installation was made without a C compiler; make it again with one")
+    )
+
+
+def refresh() -> None:
+    """Compile anew what is stale in a checkout; where nothing can be compiled all of it runs interpreted from then on.
+
+    Compiled modules call each other in C, so that either all of them are compiled or none.
+
+    Raises:
+        ImportError: a module cannot be compiled.
+    """
+    # The program that compiles them does so by itself, also where one of them cannot be.
+    asked = "surefoot.native" in sys.orig_argv
+    if asked or not (ROOT / "pyproject.toml").exists() or "interpreted" in stamp():
+        return
     late = stale()
     if not late:
-        return ""
+        return
     try:
         build(late)
+    except NothingCompilesError as error:
+        interpret(str(error))
     except BuildError as error:
-        discard(late)
-        import logging
-
-        logging.getLogger(__name__).warning("%d modules run interpreted, which is slower: %s", len(late), error)
-        return str(error)
-    return ""
+        raise ImportError(f"{error}\nMend it, or run 'python -m surefoot.native --interpreted'") from None
 
 
-def discard(names: Iterable[str]) -> None:
-    """Remove the extension modules of these."""
-    found = sources()
-    for name in names:
-        (ROOT / target(found[name])).unlink(missing_ok=True)
-    _write_stamp({key: digest for key, digest in stamp().items() if key not in set(names)})
-
-
-def interpret() -> None:
+def interpret(why: str) -> None:
     """Let all modules run interpreted until they are built again."""
-    discard(sources())
-    _write_stamp({"interpreted": "on request"})
+    for path in (*map(target, sources().values()), shared_path()):
+        (ROOT / path).unlink(missing_ok=True)
+    _write_stamp({"interpreted": why})
 
 
 def build(names: Iterable[str] | None = None) -> None:
     """Compile modules, each put in its place at once, so that others may do the same meanwhile.
 
-    The compiler is ``CC``, or ``cc``.
+    The compiler is ``CC``, or ``cc``, or that of the package ``ziglang``.
 
     Args:
         names: of the modules; all by default.
 
     Raises:
-        BuildError: there is no Cython, no compiler, or no header of Python's, or a module cannot be compiled.
+        NothingCompilesError: there is no Cython, no compiler, or no header of Python's.
+        BuildError: a module cannot be compiled.
     """
     import tempfile
     from concurrent.futures import ThreadPoolExecutor
 
-    compiler, found, fresh = _compiler(), sources(), digests()
-    wanted = list(found if names is None else names)
-    kept = stamp()
+    compiler, found, fresh, kept = _compiler(), sources(), digests(), stamp()
     how = _how(compiler)
-    if kept.get("made") != how:
-        wanted = list(found)
+    wanted = list(found) if names is None or kept.get("made") != how else list(names)
     with tempfile.TemporaryDirectory(prefix="surefoot-") as folder:
         if kept.get("made") != how or not (ROOT / shared_path()).exists():
             _compile_shared(compiler, Path(folder))
         with ThreadPoolExecutor(os.cpu_count()) as pool:
-            list(pool.map(lambda name: _compile(compiler, name, found[name], Path(folder)), wanted))
-    before = {key: digest for key, digest in kept.items() if key in found}
-    _write_stamp({**before, **{name: fresh[name] for name in wanted}, "made": how})
+            running = {name: pool.submit(_compile, compiler, name, found[name], Path(folder)) for name in wanted}
+    failed = {name: task.exception() for name, task in running.items() if task.exception() is not None}
+    done = {name: digest for name, digest in kept.items() if name in found} | {name: fresh[name] for name in wanted}
+    _write_stamp({"made": how, **{name: digest for name, digest in done.items() if name not in failed}})
+    for error in failed.values():
+        assert error is not None
+        raise error
+
+
+def has_compiler() -> bool:
+    """Whether this machine has the C compiler that is asked for."""
+    import shlex
+    import shutil
+
+    command = shlex.split(os.environ.get("CC", "cc"))
+    return bool(command) and shutil.which(command[0]) is not None
 
 
 def _compiler() -> list[str]:
     """Command of the C compiler."""
     import shlex
-    import shutil
     import sysconfig
     from importlib.util import find_spec
 
-    command = shlex.split(os.environ.get("CC", "cc"))
-    if not command or shutil.which(command[0]) is None:
-        raise BuildError(f"there is no C compiler '{' '.join(command)}'")
     header = Path(sysconfig.get_paths()["include"], "Python.h")
-    if not header.exists():
-        raise BuildError(f"there are no headers of Python {platform.python_version()}: no {header}")
+    version = f"{sys.version_info.major}.{sys.version_info.minor}"
     if find_spec("Cython") is None:
-        raise BuildError("there is no Cython: run 'pip install cython', or install Surefoot again")
-    return command
+        raise NothingCompilesError("there is no Cython; run 'pip install cython'")
+    if not header.exists():
+        raise NothingCompilesError(f"there are no headers of Python; install them, such as python{version}-dev")
+    if has_compiler():
+        return shlex.split(os.environ.get("CC", "cc"))
+    if find_spec("ziglang") is None:
+        command = os.environ.get("CC", "cc")
+        raise NothingCompilesError(f"there is no C compiler '{command}'; install one, or run 'pip install ziglang'")
+    return [sys.executable, "-m", "ziglang", "cc"]
 
 
 def _how(compiler: list[str]) -> str:
@@ -204,13 +279,18 @@ def _how(compiler: list[str]) -> str:
     import subprocess
     from importlib.metadata import version
 
-    said = subprocess.run([*compiler, "--version"], capture_output=True, text=True).stdout.splitlines()
-    named = said[0].strip() if said else compiler[0]
+    asked = subprocess.run([*compiler, "--version"], capture_output=True, text=True)
+    if asked.returncode or not asked.stdout:
+        raise NothingCompilesError(f"'{shlex.join(compiler)}' is no C compiler that works; install one, or set CC")
+    named = asked.stdout.splitlines()[0].strip()
     return f"Cython {version('cython')}, {named} {shlex.join(_flags(compiler))}"
 
 
 def _flags(compiler: list[str]) -> list[str]:
-    return [*compiler[1:], *FLAGS, *BASELINE.get(platform.machine(), ())]
+    baseline: tuple[str, ...] = BASELINE.get(platform.machine(), ())
+    if "ziglang" in compiler:
+        baseline = tuple(flag.replace("86-64-", "86_64_") for flag in baseline)
+    return [*compiler[1:], *FLAGS, *baseline]
 
 
 def _compile_shared(compiler: list[str], folder: Path) -> None:
@@ -233,7 +313,8 @@ def _link(compiler: list[str], c_file: Path, path: Path) -> None:
 
     scratch = c_file.with_suffix(SUFFIX)
     include = sysconfig.get_paths()["include"]
-    _run([compiler[0], *_flags(compiler), *LINK, "-I", include, "-o", str(scratch), str(c_file), "-lm"])
+    same = f"-ffile-prefix-map={c_file.parent}=."  # the same bytes wherever it is compiled
+    _run([compiler[0], *_flags(compiler), *LINK, same, "-I", include, "-o", str(scratch), str(c_file), "-lm"])
     beside = (ROOT / path).with_name(f".{path.name}.{os.getpid()}")
     shutil.copyfile(scratch, beside)
     beside.replace(ROOT / path)
@@ -245,8 +326,8 @@ def _run(command: list[str]) -> None:
 
     done = subprocess.run(command, cwd=ROOT, capture_output=True, text=True)
     if done.returncode:
-        said = (done.stderr or done.stdout).strip()
-        raise BuildError(f"'{shlex.join(command)}' fails:\n{said}")
+        said = (done.stderr or done.stdout).strip().splitlines()
+        raise BuildError("\n".join([f"'{shlex.join(command)}' fails:", *said[:MOST_LINES]]))
 
 
 def _write_stamp(content: Mapping[str, str]) -> None:

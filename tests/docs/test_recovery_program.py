@@ -12,7 +12,9 @@ import pytest
 
 from surefoot.planner.model.dcm import nominal_dcm
 from surefoot.planner.parameters import PlannerParameters, StepAdaptation
-from surefoot.planner.recovery.step_adjustment import StepAdjustment, StepProblem
+from surefoot.planner.recovery.reach import StepReach
+from surefoot.planner.recovery.step_adjustment import StepAdjustment
+from surefoot.planner.recovery.step_problem import StepProblem
 from surefoot.planner.references.com_height import HeightPreview
 from surefoot.planner.references.window import Window
 from surefoot.planner.references.zmp_reference import ZmpReference
@@ -124,7 +126,9 @@ def priced(case, legs, box, times, bounded, means):
     p = own + (p - own) * min(1.0, legs.radius / max(math.dist(p, own), 1e-9))
     p = between(p, *box)
     u, r = p - between(p, low, high), max(math.hypot(*stance) - legs.radius, 0.0)
-    v = float(legs.shortfall(step.swing, side, np.array([T_s]), p[None, None])[0, 0])
+    reach = StepReach(LEGS)
+    reach.see(step)
+    v = reach.shortfall(T_s, *p)
     growth = math.exp(OMEGA * step.cycle)
     s = np.maximum(0.0, g * growth * np.abs(wanted - p) - (
         growth * N.stand_share * case.stand if step.last else (growth - 1.0) * h))  # fmt: skip

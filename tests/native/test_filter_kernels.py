@@ -69,5 +69,5 @@ def test_kernels_estimate_what_plain_python_does(monkeypatch, changes, near):
     for _ in range(600):
         sim.step()
     compiled, plain = pairs[0].both
-    assert compiled.filter._kernels is not None and plain.filter._kernels is None
+    assert compiled._body.compiled is not None and plain._body.compiled is None
     assert 0.0 < pairs[0].worst < near

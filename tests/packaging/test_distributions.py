@@ -14,7 +14,7 @@ import pytest
 import yaml
 from packaging.tags import Tag, sys_tags
 
-from surefoot.native.build import LIBRARY, is_built, platform_tag
+from surefoot.native import modules
 
 pytestmark = pytest.mark.unit
 
@@ -56,11 +56,11 @@ def test_the_wheel_of_the_sdist_is_the_same(distributions, wheel_from_sdist):
     assert files_of(wheel_from_sdist) == files_of(distributions[0])
 
 
-def test_a_wheel_with_compiled_kernels_is_of_its_platform_and_of_any_python(distributions):
-    built = f"surefoot/native/{LIBRARY.name}" in files_of(distributions[0])
-    assert built == is_built()
+def test_a_wheel_with_compiled_modules_is_of_its_platform_and_python(distributions):
+    built = {path.as_posix() for path in modules.built()} <= files_of(distributions[0]).keys()
+    assert built == (not modules.missing())
     *_, python, abi, system = distributions[0].stem.split("-")
-    assert (python, abi, system) == ("py3", "none", platform_tag() if built else "any")
+    assert f"{python}-{abi}-{system}" == (modules.tag() if built else "py3-none-any")
     assert Tag(python, abi, system) in set(sys_tags()), "which an installer takes here"
 
 
@@ -77,20 +77,21 @@ def test_the_workflow_of_the_page_for_github_installs_the_wheel_that_is_built(di
     assert f"wheels/{distributions[0].name}" in told
 
 
-def test_the_tag_names_the_oldest_glibc_that_has_the_symbols_of_the_library(monkeypatch):
+def test_the_tag_names_the_oldest_glibc_that_has_the_symbols_of_the_modules(monkeypatch):
+    platform_tag = modules.platform_tag
     monkeypatch.setattr(sysconfig, "get_platform", lambda: "linux-x86_64")
-    assert platform_tag(b"GLIBC_2.2.5 GLIBC_2.14") == "manylinux_2_17_x86_64"
-    assert platform_tag(b"GLIBC_2.35 GLIBC_2.4") == "manylinux_2_35_x86_64"
-    assert platform_tag(b"musl") == "linux_x86_64"
+    assert platform_tag([b"GLIBC_2.2.5", b"GLIBC_2.14"]) == "manylinux_2_17_x86_64"
+    assert platform_tag([b"GLIBC_2.35 GLIBC_2.4"]) == "manylinux_2_35_x86_64"
+    assert platform_tag([b"musl"]) == "linux_x86_64"
     monkeypatch.setattr(sysconfig, "get_platform", lambda: "macosx-11.0-arm64")
-    assert platform_tag(b"GLIBC_2.35") == "macosx_11_0_arm64"
+    assert platform_tag([b"GLIBC_2.35"]) == "macosx_11_0_arm64"
 
 
-def test_without_a_compiler_the_wheel_is_whole_but_for_the_kernels(wheel_from_sdist, wheel_without_compiler):
+def test_without_a_compiler_the_wheel_is_whole_but_for_the_compiled_modules(wheel_from_sdist, wheel_without_compiler):
     assert wheel_without_compiler.stem.endswith("-py3-none-any")
     names = {name for name in files_of(wheel_from_sdist) if not name.endswith("/WHEEL")}
     without = {name for name in files_of(wheel_without_compiler) if not name.endswith("/WHEEL")}
-    assert without == names - {f"surefoot/native/{LIBRARY.name}"}
+    assert without == names - {path.as_posix() for path in modules.built()}
 
 
 def test_the_sdist_holds_each_file_once(distributions):

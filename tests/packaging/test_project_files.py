@@ -42,7 +42,7 @@ def test_every_scenario_has_a_job():
 
 
 def test_a_release_is_tried_on_every_python_that_it_names():
-    (job,) = WORKFLOWS["release"]["jobs"].values()
+    job = WORKFLOWS["release"]["jobs"]["dist"]
     least = tomllib.loads((ROOT / "pyproject.toml").read_text())["project"]["requires-python"].removeprefix(">=")
     versions = job["strategy"]["matrix"]["python"]
     assert versions[0] == least
@@ -53,6 +53,8 @@ def test_a_release_is_tried_on_every_python_that_it_names():
             for row in csv.DictReader(line for line in file if not line.startswith("#"))
         ]
     assert versions == named == list(dict.fromkeys(tried))
+    built = tomllib.loads((ROOT / "pyproject.toml").read_text())["tool"]["cibuildwheel"]["build"].split()
+    assert built == [f"cp{version.replace('.', '')}-*" for version in versions]
 
 
 def test_the_citation_is_of_this_version():

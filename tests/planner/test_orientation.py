@@ -2,7 +2,8 @@ import numpy as np
 import pytest
 from scipy.spatial.transform import Rotation
 
-from surefoot.planner.geometry import sole_angles, sole_rates, sole_rotation
+from surefoot.planner.geometry import sole_angles
+from surefoot.planner.orientation import sole_rates, sole_rotation
 from surefoot.planner.parameters import PlannerParameters
 from surefoot.planner.swing.trajectory import SwingCourse, start_swing
 from surefoot.planner.types import Foot

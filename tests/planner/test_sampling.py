@@ -1,7 +1,10 @@
+from dataclasses import replace
+
 import numpy as np
 import pytest
 
-from surefoot.planner.plan import PlanSampler
+from surefoot.planner.plan import PLACES, POINT, PlanSample, in_point
+from surefoot.planner.sampling import PlanSampler
 from surefoot.planner.steps.gait import GaitParameters
 from surefoot.planner.types import PhaseKind
 
@@ -43,8 +46,7 @@ def test_who_does_over_each_tick_what_the_middle_says_stays_on_the_plan(diagonal
     sampler = PlanSampler(plan)
     state = None
     for i in range(6):
-        now = sampler.sample(plan.time + h * i)
-        asked = now.until(sampler.sample(plan.time + h * (i + 0.5)))
+        now, asked = sampler.tick(plan.time + h * i, plan.time + h * (i + 0.5))
         for k, (value, rate, bend) in enumerate(
             (("com", "com_velocity", "com_acceleration"), ("swing", "swing_velocity", "swing_acceleration"))
         ):
@@ -56,11 +58,47 @@ def test_who_does_over_each_tick_what_the_middle_says_stays_on_the_plan(diagonal
             state[k] = [position + h * velocity + 0.5 * h**2 * a, velocity + h * a]
 
 
-def test_a_swing_that_begins_within_a_tick_is_done_as_in_its_middle(diagonal):
-    plan = next(p for p in diagonal[1].plans if p.swing is not None)
-    standing = next(p for p in diagonal[1].plans if p.swing is None)
-    now, middle = (PlanSampler(p).sample(p.time) for p in (standing, plan))
-    assert now.until(middle) is middle
+def test_a_tick_has_the_state_of_its_begin_and_all_else_of_its_middle(plan):
+    sampler, begin, middle = PlanSampler(plan), plan.time + 0.004, plan.time + 0.013
+    (now, until), late = sampler.tick(begin, middle), sampler.sample(middle)
+    np.testing.assert_array_equal(now.point, sampler.sample(begin).point)
+    assert (until.time, until.contacts, until.swing_foot) == (middle, late.contacts, late.swing_foot)
+    for name in ("com", "swing"):
+        np.testing.assert_array_equal(getattr(until, name), getattr(now, name))
+        np.testing.assert_array_equal(getattr(until, f"{name}_velocity"), getattr(now, f"{name}_velocity"))
+        np.testing.assert_array_equal(getattr(until, f"{name}_acceleration"), getattr(late, f"{name}_acceleration"))
+    for name in ("zmp", "zmp_offset", "pendulum_zmp", "zmp_reference", "dcm", "omega", "stiffness", "load_left"):
+        np.testing.assert_array_equal(getattr(until, name), getattr(late, name))
+
+
+def test_a_swing_that_ends_within_a_tick_is_done_as_in_its_middle(diagonal):
+    plan = next(p for p in diagonal[1].plans if p.swing is not None and p.phase.left < 0.9)
+    sampler = PlanSampler(plan)
+    landed = int(np.argmax(plan.contacts.all(axis=1)))
+    edge = plan.time + landed * plan.sample_time
+    now, until = sampler.tick(edge - 1e-3, edge + 1e-3)
+    assert now.swing_foot is not None and until.swing_foot is None
+    np.testing.assert_array_equal(until.point, sampler.sample(edge + 1e-3).point)
+
+
+def test_samples_are_fresh_at_every_call(plan):
+    sampler = PlanSampler(plan)
+    first = sampler.sample(plan.time)
+    kept = first.point.copy()
+    sampler.tick(plan.time + 0.01, plan.time + 0.011)
+    np.testing.assert_array_equal(first.point, kept)
+
+
+def test_plans_of_other_numbers_are_sampled_as_those_of_ours(plan):
+    single = replace(plan, load_left=np.ones(51, dtype=np.int64), jerk=plan.jerk.astype(np.float32))
+    sample, other = PlanSampler(single).sample(plan.time + 0.01), PlanSampler(plan).sample(plan.time + 0.01)
+    assert sample.load_left == 1.0
+    np.testing.assert_allclose(sample.com, other.com, atol=1e-9)
+
+
+def test_quantities_fill_the_point_of_a_sample():
+    places = [in_point(name) for name in vars(PlanSample) if name in PLACES]
+    assert sorted(index for place in places for index in range(POINT)[place]) == list(range(POINT))
 
 
 def test_zmp_and_dcm_fit_the_motion(plan):

@@ -5,7 +5,8 @@ import pytest
 from hypothesis import given
 from hypothesis import strategies as st
 
-from surefoot.planner.geometry import seen_from, sole_rotation
+from surefoot.planner.geometry import seen_from
+from surefoot.planner.orientation import sole_rotation
 from surefoot.planner.types import Foot, Footstep, Twist
 
 pytestmark = pytest.mark.unit

@@ -6,7 +6,7 @@ import numpy as np
 import pinocchio as pin
 import pytest
 
-from surefoot.planner.geometry import sole_rotation
+from surefoot.planner.orientation import sole_rotation
 from surefoot.wbc.cone import TOE_DEPTH
 from surefoot.wbc.leaning import FREE, INWARD, line_centre, line_frame
 from surefoot.wbc.model import RobotTerms

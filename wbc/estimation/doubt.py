@@ -63,13 +63,15 @@ class Doubt:
         return Deviation(com, speed, tilt, heights, apart, *load)
 
     def _compiled(self, filter_: InvariantFilter) -> Callable[[int, float], None] | None:
-        kernels, body, covariance = library(), self._body.compiled, filter_.compiled
-        if kernels is None or body is None or covariance is None:
+        kernels, body, s = library(), self._body.compiled, filter_.stand
+        if kernels is None or body is None:
             return None
         tell: Callable[[int, float], None] = kernels.bind(
             "doubt_tell",
             body=body,
-            covariance=covariance,
+            covariance=kernels.fill(
+                "Covariance", filter=kernels.fill("Filter", size=len(filter_.P), R=s.R, columns=s.columns), P=filter_.P
+            ),
             encoder_offset=self._sensors.encoder_offset,
             rate_noise=self._rate_noise,
             rows=np.zeros((8, len(filter_.P))),

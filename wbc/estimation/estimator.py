@@ -5,9 +5,8 @@ from collections import deque
 import numpy as np
 import pinocchio as pin
 
-from surefoot.native.library import library
 from surefoot.readings import Reading, Readings
-from surefoot.wbc.estimation.compiled import StateKernel
+from surefoot.wbc.estimation.base import FARTHEST, FASTEST, FloatingBase
 from surefoot.wbc.estimation.contact import SoleContact, sprung
 from surefoot.wbc.estimation.doubt import Doubt
 from surefoot.wbc.estimation.estimate import Deviation, Estimate, Planned
@@ -19,9 +18,6 @@ from surefoot.wbc.estimation.rates import RateFilter
 from surefoot.wbc.estimation.stand import AXES, Stand
 from surefoot.wbc.estimation.torques import TorqueWrench
 from surefoot.wbc.types import GRAVITY, Array, RobotState
-
-FASTEST, FARTHEST = 300.0, 1e5
-"""Speed, of base and joints together, and place beyond which an estimate has diverged [m/s, rad/s, m]."""
 
 ATTITUDE = 0.1
 """How far off the attitude may be before the soles are taken for level [rad]."""
@@ -59,7 +55,7 @@ class SensedState:
         self._torques: TorqueWrench | None = None
         self._torques_at, self._encoders = 0, np.zeros(0)
         self._filter: InvariantFilter | None = None
-        self._compiled: StateKernel | None = None
+        self._base: FloatingBase | None = None
         self._tick, self._imu_at, self._from = -1, 0, 0.0
         self._base_told: deque[Array] = deque(maxlen=KEPT)
         self._still, self._lost = [True, True], False
@@ -98,7 +94,7 @@ class SensedState:
             self._contact = self._feeling(readings)
             self._contact.update(self._wrench(readings), self._still, self._above)
             self._load = self._contact.wrench
-            self._compiled = self._kernel(len(q))
+            self._base = self._fixed(len(q))
             # First readings that are not finite make a state that is not, which the controller tells.
             nowhere = RobotState(np.full(7 + len(q), np.nan), np.full(6 + len(q), np.nan))
             self._state = self._now(q, qd) or nowhere
@@ -120,11 +116,12 @@ class SensedState:
         contact, felt = self._contact, self._contact.felt
         return Estimate(state, contact.wrench, (felt[0], felt[1]), self._deviation, self._channels(), contact.age)
 
-    def _kernel(self, joints: int) -> StateKernel | None:
-        kernels, body, stand = library(), self._body, self.filter.stand
-        if not kernels or body.mount is None:
+    def _fixed(self, joints: int) -> FloatingBase | None:
+        """The base of an IMU that no joint moves against it."""
+        body = self._body
+        if body.mount is None:
             return None
-        return StateKernel(kernels, stand, body.mount, body.chain, joints, self._rate.rate, (FARTHEST, FASTEST))
+        return FloatingBase(self.filter.stand, body.mount, body.chain, self._rate.rate, joints)
 
     def _channels(self) -> dict[str, Array]:
         s = self.filter.stand
@@ -183,7 +180,7 @@ class SensedState:
         columns = np.vstack((np.zeros(3), p, footing.position))
         stand = Stand(R, columns, np.zeros((2, 3, 3)), np.zeros(3), np.zeros(3), np.zeros(m))
         parameters, leaning = self._parameters, footing.leaning is not None
-        filter_ = InvariantFilter(stand, parameters.sensors, parameters.ground, self._period, leaning)
+        filter_ = InvariantFilter(stand, parameters.sensors, parameters.ground, leaning)
         J = body.offset_jacobians()
         filter_.begin(body.position, body.rotation, J, normals, ATTITUDE)
         body.update(joints, filter_.stand.R, filter_.stand.offsets)
@@ -282,8 +279,8 @@ class SensedState:
             for back in range(2, min(late, len(told)) + 1):
                 gained = gained + told[-back]
             gained = self._period * gained
-        if self._compiled is not None:
-            return self._compiled(q, qd, gained, time)
+        if self._base is not None:
+            return self._base.state(q, qd, gained, time)
         q = self._body.known(q, s.offsets)
         base, p, velocity = self._body.base(s.R, s.p, s.v, self._rate.rate - s.gyro_bias, q, qd, s.mounting)
         if gained is not None:

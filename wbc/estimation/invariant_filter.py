@@ -20,31 +20,21 @@ encoders and the mount less their offsets, gives for a foot that stands (eq. 33,
 import numpy as np
 import pinocchio as pin
 
-from surefoot.native.library import Bound, library
+from surefoot import algebra, linear
 from surefoot.similarity import GRAVITY
-from surefoot.wbc.estimation.compiled import FilterKernels
+from surefoot.wbc.estimation.covariance import Covariance
 from surefoot.wbc.estimation.parameters import GroundNoise, SensorNoise
 from surefoot.wbc.estimation.stand import AXES, FOOT, FORCE, GYRO, OFFSETS, POSITION, SOLE, TURN, VELOCITY, Stand
 from surefoot.wbc.types import Array
 
-FIXED = 27
-"""Numbers of the error beside the offsets."""
+POSE = 6
+"""Numbers that a foot is seen by."""
 
-_SIX = (np.r_[FOOT[0], SOLE[0]], np.r_[FOOT[1], SOLE[1]])
-_BODY = np.r_[POSITION, TURN]
-_FALL = np.array([0.0, 0.0, -GRAVITY])
-_FALLING = pin.skew(_FALL)
 _UNIT = np.eye(3)
-
-LEANING = 3.0
-"""By how much a sole that leans turns about its line in a second, as a deviation: it tells of nothing else [rad/√s]."""
 
 LIKELY = 9.0
 """Square of the normalised height of a landing over the ground that is believed, from which on it is another ground: by
 chance in one of 370 landings, which then tells no height [-]."""
-
-UNSURE = 0.5
-"""Deviation of what springs under a sole do, over what they are believed to do [-]."""
 
 NONE = 1e-9
 """Stands for zero ticks, as in an outage of the encoders. The noise is then as good as infinite [-]."""
@@ -64,38 +54,35 @@ class InvariantFilter:
         stand: where everything is at the start; the soles are level on the ground.
         sensors: noise of the sensors.
         ground: what feet and ground add.
-        period: control period [s].
         leaning: the soles stand on lines along them, about which they turn at will.
 
     Attributes:
         stand: the state.
-        P: covariance of its error, shape (30 + m, 30 + m), in an array that stays where it is.
-        acceleration: of the IMU in the world, last, shape (3,) [m/s^2].
+        covariance: of its error, with the gain.
+        P: its array, shape (30 + m, 30 + m).
+        acceleration: of the IMU in the world, last, in an array that stays where it is, shape (3,) [m/s^2].
         standing: feet that stand, left first.
+        residual: how far those that are weighed were last from where the kinematics say, six numbers each, shape (12,)
+            [m, rad].
     """
 
-    def __init__(
-        self, stand: Stand, sensors: SensorNoise, ground: GroundNoise, period: float, leaning: bool = False
-    ) -> None:
-        self._leaning = leaning
-        self.stand, self._sensors, self._ground, self._period = stand, sensors, ground, period
-        n = FIXED + len(stand.offsets)
-        self.P, self._F = np.zeros((n, n)), np.eye(n)
+    def __init__(self, stand: Stand, sensors: SensorNoise, ground: GroundNoise, leaning: bool = False) -> None:
+        self.stand, self._ground, self._leaning, self._gravity = stand, ground, leaning, GRAVITY
+        self.covariance = Covariance(stand, sensors, ground, leaning)
+        self.P = self.covariance.P
         self.acceleration = np.zeros(3)
+        self._acceleration = self.acceleration
         self.standing = [True, True]
         # The soles stand where the kinematics of the start say.
         self._since, self._taken = 0.0, 1
-        self._gain: Array | None = None
-        self._feet: list[int] = []
-        kernels = library()
-        # Springs under one edge give twice as much.
-        self._sinking, self._turns = ((2.0 if leaning else 1.0) * ground.sinking, LEANING if leaning else 0.0)
-        ways = self._sinking, self._turns, UNSURE
-        self._kernels = FilterKernels(kernels, stand, self.P, sensors, ground, *ways) if kernels else None
-        spread = np.zeros(n)
+        self._feet, self._count = np.zeros(2, dtype=np.intp), 0
+        self._half, self._middle, self._apart = np.zeros((3, 3)), np.zeros((3, 3)), np.zeros((3, 3))
+        self.residual, self._moved = np.zeros(2 * POSE), np.zeros(len(self.P))
+        self._residual = self.residual
+        spread = np.zeros(len(self.P))
         spread[VELOCITY], spread[GYRO], spread[FORCE] = 1e-3, sensors.gyro_bias, sensors.accelerometer_bias
         spread[OFFSETS], spread[-AXES:] = sensors.encoder_offset, sensors.mounting
-        self.P[np.diag_indices(n)] = spread**2
+        self.P[np.diag_indices(len(spread))] = spread**2
 
     def begin(self, y: Array, Y: Array, J: Array, normals: Array, tilt: float) -> None:
         """Attitude and height from soles that are level on the ground.
@@ -155,7 +142,18 @@ class InvariantFilter:
         K = np.linalg.solve(S, PH.T).T
         self.P -= K @ PH.T
         self.P[:] = 0.5 * (self.P + self.P.T)
-        self.stand.move(K @ wanted)
+        self._jump(K @ wanted)
+
+    def _jump(self, x: Array) -> None:
+        """`Stand.move` with numpy's sums, which differ from its own in the last bit."""
+        s, E = self.stand, pin.exp3(x[TURN])
+        s.R[:] = E @ s.R
+        s.columns[:] = s.columns @ E.T + x[3:15].reshape(4, 3)
+        for k in (0, 1):
+            s.Z[k] = pin.exp3(x[SOLE[k]]) @ s.Z[k]
+        s.gyro_bias[:] += x[GYRO]
+        s.force_bias[:] += x[FORCE]
+        s.offsets[:] += x[OFFSETS]
 
     def propagate(self, rate: Array, force: Array, time: float) -> None:
         """Go on with what the IMU says.
@@ -165,32 +163,20 @@ class InvariantFilter:
             force: mean specific force, shape (3,) [m/s^2].
             time: that both are of [s].
         """
-        self._since += time
-        if self._kernels is not None:
-            self.acceleration = self._kernels.propagate(rate, force, time)
-            return
-        s = self.stand
+        s, half, middle = self.stand, self._half, self._middle
+        rate_now = algebra.subtract(algebra.vector(rate), algebra.vector(s._gyro_bias))
+        force_now = algebra.subtract(algebra.vector(force), algebra.vector(s._force_bias))
         # The mean force is of the frame half way through the turn.
-        half = pin.exp3((rate - s.gyro_bias) * (0.5 * time))
-        middle = s.R @ half
-        self.acceleration = a = middle @ (force - s.force_bias) + _FALL
-        v, p = s.columns[:2]
-        s.columns[1] = p + time * v + (0.5 * time * time) * a
-        s.columns[0] = v + time * a
-        s.R[:] = middle @ half
-
-    def transition(self, time: float) -> tuple[Array, Array]:
-        """What becomes of an error over a time [s], shape (n, n), and what turns about world axes do, shape (15, 3)."""
-        s, F, B = self.stand, self._F, np.empty((15, 3))
-        B[:3] = _UNIT
-        for i, column in enumerate(s.columns):
-            B[3 + 3 * i : 6 + 3 * i] = pin.skew(column)
-        F[VELOCITY, TURN] = time * _FALLING
-        F[POSITION, VELOCITY] = time * _UNIT
-        F[POSITION, TURN] = (0.5 * time * time) * _FALLING
-        F[:15, GYRO] = -time * (B @ s.R)
-        F[VELOCITY, FORCE] = -time * s.R
-        return F, B
+        algebra.rotation_of(algebra.scale(0.5 * time, rate_now), half)
+        algebra.compose(s._R, half, middle)
+        algebra.compose(middle, half, s._R)
+        x, y, z = algebra.rotate(middle, force_now)
+        algebra.put(self._acceleration, (x, y, z - self._gravity))
+        v, p, a = s._columns[0], s._columns[1], self._acceleration
+        for i in range(3):
+            p[i] += time * v[i] + 0.5 * time * time * a[i]
+            v[i] += time * a[i]
+        self._since += time
 
     def spread(self, loads: tuple[float, float], sprung: Array | None = None) -> None:
         """Covariance of the way since it was computed last.
@@ -200,34 +186,17 @@ class InvariantFilter:
             sprung: by how much each sole has rolled, pitched and risen on springs in that time, in its own axes, shape
                 (2, 3), with half of that as its deviation; None where nobody knows [rad, rad, m].
         """
-        dt, self._since = self._since, 0.0
-        if dt <= 0.0:
+        time, self._since = self._since, 0.0
+        if time <= 0.0:
             return
-        if self._kernels is not None:
-            self._kernels.spread(dt, loads, sprung, self.standing)
-            return
-        sensors, ground = self._sensors, self._ground
-        F, B = self.transition(dt)
-        P = self.P
-        P[:] = F @ P @ F.T
-        P[:15, :15] += (sensors.gyro_density**2 * dt) * (B @ B.T)
-        D = np.einsum("ii->i", P)
-        D[VELOCITY] += (sensors.accelerometer_density**2 + ground.model**2) * dt
-        D[GYRO] += sensors.gyro_walk**2 * dt
-        D[FORCE] += sensors.accelerometer_walk**2 * dt
-        for k in (0, 1):
-            more = 1.0 + (ground.light - 1.0) * (1.0 - min(2.0 * loads[k], 1.0))
+        covariance = self.covariance
+        covariance.spread(time)
+        for k in range(2):
             if self.standing[k]:
-                D[FOOT[k]] += np.square(more * np.array([ground.creep, ground.creep, self._sinking])) * dt
-                D[SOLE[k]] += (more * ground.rocking) ** 2 * dt
+                covariance.add_standing(k, time, loads[k])
                 if sprung is not None:
-                    turned, risen = self.stand.Z[k, :, :2] @ sprung[k, :2], float(sprung[k, 2])
-                    D[FOOT[k].stop - 1] += (UNSURE * risen) ** 2
-                    D[SOLE[k]] += (UNSURE * turned) ** 2
-                    self.stand.columns[2 + k, 2] += risen
-                    self.stand.Z[k] = pin.exp3(turned) @ self.stand.Z[k]
-                line = self.stand.Z[k, :, 0]
-                P[SOLE[k], SOLE[k]] += (self._turns**2 * dt) * np.outer(line, line)
+                    covariance.add_springs(k, self.stand.give(k, sprung[k]), sprung[k, 2])
+                covariance.add_leaning(k, time)
 
     def land(
         self, k: int, y: Array, Y: Array, J: Array, height: tuple[float, float] | None, place: float, turn: float
@@ -269,42 +238,33 @@ class InvariantFilter:
         self.standing[k] = False
 
     def weigh(self, J: Array) -> None:
-        """Gain and covariance after the ticks since the last time; J as in `begin`."""
-        self._feet = feet = [k for k in (0, 1) if self.standing[k]]
-        ticks, self._taken = float(self._taken or NONE), 0
-        if not feet:
-            self._gain = None
-            return
-        kernels = self._kernels
-        if kernels is not None and kernels.weigh(feet, J, ticks):
-            self._gain, self._weights = kernels.gain, kernels.weights
-            return
-        rows = np.concatenate([_SIX[k] for k in feet])
-        columns = np.tile(_BODY, len(feet))
-        R = self.stand.R
-        turned = np.concatenate([(R @ J[k].reshape(2, 3, -1)).reshape(6, -1) for k in feet])
-        PH = self.P[:, rows] - self.P[:, columns] + self.P[:, OFFSETS] @ turned.T
-        S = PH[rows] - PH[columns] + turned @ PH[OFFSETS]
-        ground, encoder = self._ground, self._sensors.encoder
-        levers = (J[feet, :, :-AXES].reshape(6 * len(feet), -1) ** 2).sum(axis=1) * encoder**2
-        noise = levers + np.tile([ground.kinematics**2] * 3 + [ground.turning**2] * 3, len(feet))
-        many = S.copy()
-        many[np.diag_indices_from(S)] += noise / ticks
-        S[np.diag_indices_from(S)] += noise
-        self.P -= PH @ np.linalg.solve(many, PH.T)
-        self.P[:] = 0.5 * (self.P + self.P.T)
-        inverse = np.linalg.inv(S)
-        self._gain, self._weights = PH @ inverse, inverse
-        if kernels is not None:
-            kernels.gain[:], kernels.weights[:] = self._gain, inverse
+        """Gain and covariance after the ticks since the last time; J as in `begin`.
 
-    def residual(self, y: Array, Y: Array) -> Array:
-        """How far the standing feet are from where the kinematics say, shape (6 feet,) [m, rad]."""
-        s, found = self.stand, np.empty(6 * len(self._feet))
-        for i, k in enumerate(self._feet):
-            found[6 * i : 6 * i + 3] = s.R @ y[k] - s.columns[2 + k] + s.columns[1]
-            found[6 * i + 3 : 6 * i + 6] = pin.log3(s.R @ Y[k] @ s.Z[k].T)
-        return found
+        A covariance that is not positive is none, nor is the state that follows from it: it becomes NaN.
+        """
+        ticks, self._taken, self._count = float(self._taken or NONE), 0, 0
+        for k in range(2):
+            if self.standing[k]:
+                self._feet[self._count] = k
+                self._count += 1
+        if self._count and not self.covariance.weigh(self._feet[: self._count], J, ticks):
+            self.P[:] = self.covariance.gain[:] = np.nan
+
+    def _see(self, y: Array, Y: Array) -> None:
+        """Residual of the standing feet: R y + p - d, log(R Y Zᵀ)."""
+        R, columns, Z = self.stand._R, self.stand._columns, self.stand._Z
+        seen, apart = self._half, self._apart
+        for i in range(self._count):
+            k = self._feet[i]
+            way = algebra.subtract(algebra.row(columns, 1), algebra.row(columns, 2 + k))
+            algebra.compose(R, Y[k], seen)
+            linear.row_products(seen, Z[k], apart)
+            algebra.put(self._residual[POSE * i :], algebra.add(algebra.rotate(R, algebra.row(y, k)), way))
+            algebra.put(self._residual[POSE * i + 3 :], algebra.rotation_vector(apart))
+
+    def _square(self, first: int, end: int) -> float:
+        """Square of some numbers of the residual, normalised by their covariance [-]."""
+        return linear.quadratic(self.covariance._weights[first:end, first:end], self._residual[first:end])
 
     def correct(self, y: Array, Y: Array, gates: tuple[float, float] = GATES) -> tuple[int, ...]:
         """Take the kinematics of a tick.
@@ -318,30 +278,22 @@ class InvariantFilter:
             the feet that have slipped. Nothing of the tick is taken then, also of the other foot: they are to land
             anew, and the tick is to be taken after it. Empty where none has slipped, and all is taken.
         """
-        if self._gain is None:
+        if not self._count:
             return ()
-        if self._kernels is not None:
-            slipped = self._kernels.correct(y, Y, gates[len(self._feet) - 1])
-            if slipped is not None:
-                return self._slipped(slipped)
-        else:
-            r = self.residual(y, Y)
-            if float(r @ self._weights @ r) > gates[len(self._feet) - 1]:
-                return self._slipped(r)
-            self.stand.move(self._gain @ r)
+        seen = POSE * self._count
+        self._see(y, Y)
+        if self._square(0, seen) > gates[self._count - 1]:
+            return self._slipped()
+        linear.multiply(self.covariance._gain[:, :seen], self._residual[:seen], self._moved)
+        self.stand.move(self._moved)
         self._taken += 1
         return ()
 
-    def _slipped(self, r: Array) -> tuple[int, ...]:
+    def _slipped(self) -> tuple[int, ...]:
         """The feet whose own residuals are not likely, and the one whose is the least in any case."""
-        blocks = [self._weights[6 * i : 6 * i + 6, 6 * i : 6 * i + 6] for i in range(len(self._feet))]
-        likely = [float(r[6 * i : 6 * i + 6] @ block @ r[6 * i : 6 * i + 6]) for i, block in enumerate(blocks)]
-        return tuple(k for k, square in zip(self._feet, likely, strict=True) if square >= min(GATES[0], max(likely)))
-
-    @property
-    def compiled(self) -> Bound | None:
-        """It as kernels take it; None for plain Python."""
-        return None if self._kernels is None else self._kernels.covariance
+        likely = [self._square(POSE * i, POSE * (i + 1)) for i in range(self._count)]
+        least = min(GATES[0], max(likely))
+        return tuple([self._feet[i] for i in range(self._count) if likely[i] >= least])
 
     @property
     def finite(self) -> bool:

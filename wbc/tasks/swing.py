@@ -285,7 +285,7 @@ class SwingFoot(TaskLaw):
         a, column = stops.axis(terms, k, n), stops._columns[k, n]
         sa = algebra.scale(self._shares[n], a)
         for j in range(terms.nv):
-            part = algebra.inner(a, algebra.column_below(rows, j))
+            part = algebra.inner(a, algebra.column(rows, j, 3))
             rows[3, j] -= sa[0] * part
             rows[4, j] -= sa[1] * part
             rows[5, j] -= sa[2] * part

@@ -4,7 +4,8 @@ import numpy as np
 import pytest
 from scipy.integrate import solve_ivp
 
-from surefoot.planner.model.dcm import dcm, moving_cop, natural_frequency, nominal_dcm, pendulum_com, viability_weights
+from surefoot.planner.model.dcm import dcm, natural_frequency, nominal_dcm, viability_weights
+from surefoot.planner.model.pendulum import com_after, moving_cop
 from surefoot.planner.plants import Pendulum
 
 pytestmark = pytest.mark.unit
@@ -95,5 +96,7 @@ def test_the_laws_of_dcm_and_com_are_the_motion_of_the_pendulum(time):
         for moves in (1.0, 0.0)
     )
     grown = np.exp(omega * time)
-    np.testing.assert_allclose(grown * dcm - moving_cop(start, end, omega, np.array([time]))[0], moved[2:], atol=1e-8)
-    np.testing.assert_allclose(pendulum_com(com, dcm, start, np.array([grown]))[0], fixed[:2], atol=1e-8)
+    taken = [moving_cop(*ends, omega, time) for ends in zip(start, end, strict=True)]
+    np.testing.assert_allclose(grown * dcm - taken, moved[2:], atol=1e-8)
+    here = [com_after(*now, grown) for now in zip(com, dcm, start, strict=True)]
+    np.testing.assert_allclose(here, fixed[:2], atol=1e-8)

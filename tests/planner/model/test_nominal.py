@@ -1,8 +1,8 @@
 import numpy as np
 import pytest
 
-from surefoot.planner.model.dcm import jerk_range, no_motion, nominal_motion
 from surefoot.planner.model.jerk import zmp_response
+from surefoot.planner.model.nominal import NominalMotion, nominal_motion
 
 pytestmark = pytest.mark.unit
 
@@ -51,13 +51,15 @@ def test_over_a_constant_zmp_it_is_the_decaying_exponential():
     assert motion.com[1, 0, 0] == pytest.approx(-omega * 0.1, rel=1e-3)
 
 
-def test_no_motion_leaves_everything_to_the_moves():
-    motion = no_motion(5, T)
-    assert not (motion.com.any() or motion.zmp.any() or motion.jerk.any())
+def test_a_motion_that_follows_nothing_rests_at_the_origin():
+    motion = NominalMotion(T, 5)
+    assert not (motion.com.any() or motion.jerk.any())
 
 
-def test_moves_keep_the_whole_jerk_within_its_limit():
-    jerk = np.array([[10.0, 0.0], [-20.0, 0.0], [5.0, 80.0], [15.0, 70.0]])
-    lower, upper = jerk_range(jerk, (0, 2), 60.0)
-    np.testing.assert_array_equal(upper, [[50.0, 45.0], [60.0, 0.0]])
-    np.testing.assert_array_equal(lower, [[-40.0, -65.0], [-60.0, -130.0]])
+def test_a_motion_that_is_told_something_else_forgets_what_it_followed(footsteps):
+    zmp, stiffness = footsteps
+    motion = nominal_motion(np.array([0.3, -0.2]), zmp[::-1], stiffness[::-1], T)
+    motion.follow(np.array([0.1, -0.05]), zmp, stiffness)
+    fresh = nominal_motion(np.array([0.1, -0.05]), zmp, stiffness, T)
+    np.testing.assert_array_equal(motion.com, fresh.com)
+    np.testing.assert_array_equal(motion.jerk, fresh.jerk)

@@ -11,9 +11,11 @@ from scipy.optimize import linprog
 from surefoot.forces import Push
 from surefoot.planner.parameters import PlannerParameters, StepAdaptation
 from surefoot.planner.planner import WalkingPlanner
-from surefoot.planner.recovery.capture_margin import CaptureMargin, planned_margin
+from surefoot.planner.recovery.capture_margin import CaptureMargin
+from surefoot.planner.recovery.outlook import Outlook
+from surefoot.planner.recovery.reach import StepReach
 from surefoot.planner.recovery.recovery import falling
-from surefoot.planner.recovery.step_adjustment import StepProblem
+from surefoot.planner.recovery.step_problem import StepProblem
 from surefoot.planner.references.com_height import HeightPreview
 from surefoot.planner.references.window import Window
 from surefoot.planner.references.zmp_reference import ZmpReference
@@ -124,8 +126,9 @@ def rests(now, axis, box, steps, together, legs=LEGS):
     program.hold(now.single, -half * one, half * one)
     place = program.variable()
     program.within(place, box[0][axis] * one, box[1][axis] * one)
-    swung = legs.edges(now.swing, now.nominal, np.array([now.single]))[:, 0]
-    program.within(place, -swung[2 + axis] * one, swung[axis] * one)
+    reach = StepReach(legs)
+    reach.see(now)
+    program.within(place, -reach.swung(axis, -1.0, now.single) * one, reach.swung(axis, 1.0, now.single) * one)
     hip = program.com + axis * 0.5 * side * legs.hip_width * one
     program.within(place, hip - legs.radius * one, hip + legs.radius * one)
     for _ in range(steps - 1):
@@ -235,7 +238,7 @@ def test_as_planned_the_cop_at_the_edge_of_its_boxes_holds_just_what_is_inside(a
         edge = point + (edge - point) * np.exp(-OMEGA * step)
     for margin in (-0.01, 0.0, 0.01):
         dcm = np.where(np.arange(2) == axis, edge - sign * margin, 0.0)
-        assert abs(planned_margin(dcm, seen, T, 0.9) - margin) < 1e-3
+        assert abs(Outlook(replace(P, foot_margin=0.9)).margin(dcm, seen) - margin) < 1e-3
 
 
 GAIT = GaitParameters(steps=5, step_length=0.3, single_support=0.5, double_support=0.12, com_height=0.95)

@@ -8,9 +8,12 @@ import pytest
 from pendulum_walk import LEGS
 
 from surefoot.planner.geometry import quintic
-from surefoot.planner.model.dcm import pendulum_com, viability_weights
+from surefoot.planner.model.dcm import viability_weights
+from surefoot.planner.model.pendulum import com_after
 from surefoot.planner.parameters import PlannerParameters, RecoveryParameters, StepAdaptation
-from surefoot.planner.recovery.step_adjustment import StepAdjustment, StepProblem
+from surefoot.planner.recovery.reach import StepReach
+from surefoot.planner.recovery.step_adjustment import StepAdjustment
+from surefoot.planner.recovery.step_problem import StepProblem
 from surefoot.planner.references.com_height import HeightPreview
 from surefoot.planner.references.window import Window
 from surefoot.planner.references.zmp_reference import ZmpReference
@@ -127,7 +130,9 @@ def test_the_place_leaves_no_error_that_the_cop_cannot_hold(error, share):
     # Double support takes 0.12 s, in which the ZMP goes over to the foot: a shift counts as the mean fade of that time.
     gain = (1.0 - np.exp(-OMEGA * 0.12)) / (OMEGA * 0.12)
     place = NOMINAL + (landed - nominal) / gain
-    hip = pendulum_com(now.com, now.dcm, cop, np.exp([OMEGA * now.single]))[0] + (0.0, 0.1)
+    grown = np.exp(OMEGA * now.single)
+    com = [com_after(*here, grown) for here in zip(now.com, now.dcm, cop, strict=True)]
+    hip = np.array(com) + np.array([0.0, 0.1])
     low, high = free.around(place, hip, free.allowed(1.0, ANYWHERE, True)[0], free.radius)
     held = np.maximum(0.5 * most, half - 0.03) / gain
     low, high = np.maximum(low, place - held), np.minimum(high, place + held)
@@ -158,7 +163,9 @@ def test_a_step_is_not_hurried_to_a_place_that_its_foot_cannot_be_swung_to(behin
     """With the DCM far ahead: nobody gets across the stance leg, 0.24 m ahead of it, in the 0.18 s that would do."""
     now = situation((0.25, 0.0), 0.38, swing=((-behind, 0.2), (0.3, 0.0)))
     caught = adjusted(now)
-    front = LEGS.edges(now.swing, now.nominal, np.array([caught.left, now.single]))[0, 0]
+    reach = StepReach(LEGS)
+    reach.see(now)
+    front = reach.swung(0, 1.0, caught.left)
     assert caught.box[0, 0] <= front
 
 

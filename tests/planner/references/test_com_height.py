@@ -125,6 +125,24 @@ def test_stiffness_counts_the_height_above_the_zmp(preview):
     np.testing.assert_allclose(shown.stiffness * (shown.height[0] - ground), GRAVITY + shown.height[2], rtol=1e-12)
 
 
+class Own(SmoothHeight):
+    """A law of one's own, in whole numbers or too short."""
+
+    def __init__(self, missing):
+        object.__setattr__(self, "rise", Rise.DOUBLE)
+        object.__setattr__(self, "_missing", missing)
+
+    def height(self, gait, samples, support_height):
+        return np.ones((3, len(samples.clock) - self._missing), dtype=int)
+
+
+def test_a_law_of_ones_own_may_tell_whole_numbers_but_not_fewer_than_there_are_samples(preview):
+    shown = preview(Own(0), np.zeros(5))[0]
+    np.testing.assert_allclose(shown.stiffness, GRAVITY + 1.0)
+    with pytest.raises(ValueError, match="shape"):
+        preview(Own(3), np.zeros(5))
+
+
 @pytest.mark.parametrize(("rise", "name"), [(Rise.DOUBLE, "double_support"), (Rise.SINGLE, "single_support")])
 def test_a_step_too_high_for_its_support_is_refused(schedule, rise, name):
     gait = GaitParameters(steps=2, single_support=0.36, double_support=0.3)

@@ -1,17 +1,24 @@
 import numpy as np
 import pytest
 
-from surefoot.planner.references.nominal_feet import nominal_feet
+from surefoot.planner.references.nominal_feet import NominalFeet
 from surefoot.planner.steps.gait import GaitParameters
 from surefoot.planner.types import PhaseKind
 
 pytestmark = pytest.mark.unit
 
 
+def moved_soles(samples, schedule):
+    """Centres of both soles over a window, shape (2, n, 3)."""
+    feet = NominalFeet(len(samples.clock))
+    feet.move(len(samples.clock), samples, schedule, (np.eye(2), np.zeros(2)))
+    return feet.soles
+
+
 def test_feet_that_search_for_the_ground_are_expected_to_find_it(schedule):
     """A swing goes on down after its touchdown; planned through the ground, its legs would seem to accelerate."""
     made = schedule(GaitParameters(steps=4, single_support=0.5, double_support=0.2))
-    soles, *_ = nominal_feet(made.samples, made.schedule, (np.eye(2), np.zeros(2)))
+    soles = moved_soles(made.samples, made.schedule)
     assert (made.samples.kind == PhaseKind.SINGLE).any()
     assert soles[..., 2].max() > 0.04
     assert soles[..., 2].min() > -1e-9
@@ -23,7 +30,7 @@ def test_a_foot_that_lands_higher_or_lower_than_its_swing_was_laid_comes_to_rest
     made = schedule(GaitParameters(steps=4, single_support=0.5, double_support=0.2))
     place = made.schedule.step(1).place
     moved = made.schedule.moved(1, place.position + np.array([-0.03, 0.0, over]))
-    soles, *_ = nominal_feet(made.samples, moved, (np.eye(2), np.zeros(2)))
+    soles = moved_soles(made.samples, moved)
     height = soles[place.foot, :, 2]
     swings = np.flatnonzero([made.samples.phases[k].step == 1 for k in made.samples.which])
     swings = swings[made.samples.kind[swings] == PhaseKind.SINGLE]

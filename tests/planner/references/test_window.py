@@ -12,6 +12,7 @@ from surefoot.planner.model.leg_chain import LegChain, Link
 from surefoot.planner.model.time_scaling import TimeScaling
 from surefoot.planner.parameters import LegInertia, PlannerParameters, RecoveryParameters
 from surefoot.planner.planner import WalkingPlanner
+from surefoot.planner.references import window
 from surefoot.planner.references.leg_offset import LegOffset
 from surefoot.planner.references.window import OffsetTable
 from surefoot.planner.references.zmp_reference import SupportKey
@@ -87,12 +88,17 @@ def test_an_offset_that_serves_is_about_what_it_would_be_anew(stand, monkeypatch
         parameters = PlannerParameters(leg=LEG, recovery=RecoveryParameters(**numbers))
         return Recorded(WalkingPlanner(gait, stand(), 0.22, 0.11, parameters=parameters, legs=legs))
 
-    def counted(offset, moving, *given):
-        made.append(moving[-1] is not None)
-        return anew_made(offset, moving, *given)
+    class Counted:
+        """An offset of which it is counted how often it is made."""
 
-    anew_made = LegOffset.made
-    monkeypatch.setattr(LegOffset, "made", counted)
+        def __init__(self, *given):
+            self.offset = LegOffset(*given)
+
+        def made(self, moving, *given):
+            made.append(moving[-1] is not None)
+            return self.offset.made(moving, *given)
+
+    monkeypatch.setattr(window, "LegOffset", Counted)
     usual, push = planner(), Push(gait.lift_off(2) + 0.06, 0.1, np.array([250.0, 0.0, 0.0]))
     end, com = gait.lift_off(2) + 0.48, np.array([0.0, 0.0, 0.95])
     plans = walk_pendulum(usual, stand(), end, com=com, pushes=(push,)).plans
@@ -129,3 +135,19 @@ def test_plans_depend_on_values_and_not_on_objects(stand, copied):
     same = np.array_equal(plans[0].zmp_offset, plans[1].zmp_offset)
     assert same is copied
     assert np.abs(plans[0].zmp_offset).max() > 1e-3
+
+
+def test_a_window_stays_as_it_was_when_the_next_one_is_looked_at(stand):
+    planner = WalkingPlanner(GaitParameters(steps=3), stand(), 0.2, 0.1, parameters=PlannerParameters(leg=LEG))
+    execution, preview = planner._execution, planner._preview
+    windows, kept = [], []
+    for tick in range(2):
+        execution.clock = replace(execution.clock, now=60.0 + tick, ticks=tick)
+        support = preview.support(execution)
+        windows.append(preview.window(execution, support, np.zeros(2), 0.02 * tick))
+        names = ("offset", "stiffness", "omega", "load_left", "contacts")
+        kept.append({name: getattr(windows[0], name).copy() for name in names})
+        kept[tick]["height"], kept[tick]["point"] = windows[0].height.height.copy(), windows[0].driving.point.copy()
+    assert not np.array_equal(windows[0].height.height, windows[1].height.height)
+    for name, value in kept[0].items():
+        np.testing.assert_array_equal(kept[1][name], value)

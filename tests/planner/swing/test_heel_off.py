@@ -2,15 +2,14 @@ import numpy as np
 import pytest
 from scipy.spatial.transform import Rotation
 
-from surefoot.planner.geometry import sole_rotation
 from surefoot.planner.ground.terrain import flat
 from surefoot.planner.model.leg_chain import LegChain, Link
-from surefoot.planner.model.vectors import headings
+from surefoot.planner.orientation import sole_rotation
 from surefoot.planner.parameters import PlannerParameters
-from surefoot.planner.plan import PlanSampler
 from surefoot.planner.planner import WalkingPlanner
 from surefoot.planner.plants import IdealFeet
-from surefoot.planner.references.nominal_feet import nominal_feet
+from surefoot.planner.references.nominal_feet import NominalFeet
+from surefoot.planner.sampling import PlanSampler
 from surefoot.planner.steps.execution import Execution
 from surefoot.planner.steps.gait import GaitParameters
 from surefoot.planner.steps.schedule import Schedule
@@ -109,7 +108,9 @@ def test_only_feet_that_are_left_behind_roll(walk):
 
 
 def test_pitch_over_a_window_is_that_of_the_rolls(walk):
-    *_, pitch = nominal_feet(walk.samples, walk.schedule, (np.eye(2), np.zeros(2)))
+    feet = NominalFeet(len(walk.samples.clock))
+    feet.move(len(walk.samples.clock), walk.samples, walk.schedule, (np.eye(2), np.zeros(2)))
+    pitch = feet.pitch
     start, end, angle = next(phase.roll for phase in walk.phases if phase.roll is not None)
     roll = FootRoll(Foot.RIGHT, 0.02 * start, 0.02 * end, angle, 0.11)
     for sample in range(int(start), int(end) + 2):
@@ -143,9 +144,9 @@ def test_a_rolling_foot_turns_about_its_toe_edge_and_lifts_the_ankle():
         0.1, (0.0, 0.0, 0.3), Link(0.43, 0.1, 0.33, 1.7e-3), Link(0.43, 0.04, 0.4, 6e-4), 0.02, (0.0, 0.0, -0.04),
         (-0.022, 0.0, 0.08),
     )  # fmt: skip
-    frame = headings(np.zeros((2, 1)))
-    level = chain._rolled(frame, None, 0.11)[0][0, :, 0]
-    rolled, flat = chain._rolled(frame, np.array([[0.5], [0.0]]), 0.11)[0][..., 0]
+    com, soles, heading = np.array([[0.0, 0.0, 0.9]]), np.zeros((2, 1, 3)), np.zeros((2, 1))
+    level = chain.joints(com, soles, heading)[2][0, 0]
+    rolled, flat = chain.joints(com, soles, heading, np.array([[0.5], [0.0]]), 0.11)[2][:, 0]
     edge = np.array([0.11, 0.0, 0.0])
     assert np.linalg.norm(rolled - edge) == pytest.approx(np.linalg.norm(level - edge))
     assert rolled[0] > level[0] + 0.05

@@ -1,6 +1,7 @@
 import pytest
 
-from surefoot.planner.plan import PlanSampler
+from surefoot.planner.sampling import PlanSampler
+from surefoot.scenarios.run import planning
 from surefoot.scenarios.run.simulation import Simulation
 from surefoot.scenarios.setup.load import load as load_scenario
 
@@ -9,14 +10,14 @@ pytestmark = pytest.mark.unit
 
 def test_what_is_decided_for_a_tick_is_what_is_planned_for_its_middle(monkeypatch):
     """A torque is held for a tick; planned for its begin, the ZMP would lag by half of it."""
-    acted, tick = [], PlanSampler.tick
+    acted = []
 
-    def noted(*given):
-        sample, until = tick(*given)
-        acted.append(until.time)
-        return sample, until
+    class Noting(PlanSampler):
+        def tick(self, time, middle):
+            acted.append(middle)
+            return super().tick(time, middle)
 
-    monkeypatch.setattr(PlanSampler, "tick", noted)
+    monkeypatch.setattr(planning, "PlanSampler", Noting)
     with Simulation(load_scenario("walk", ("fidelity=pendulum",))) as simulation:
         ticks = [simulation.step() for _ in range(20)]
         rate = simulation.walk.rates.control

@@ -1,16 +1,20 @@
 """What the whole-body controller is told of a plan."""
 
+from dataclasses import replace
 from itertools import pairwise
 
 import numpy as np
 import pytest
 from pendulum_walk import walk_pendulum
 
-from surefoot.planner.plan import PlanSampler
+import surefoot
+from surefoot.planner.model.time_scaling import TimeScaling
+from surefoot.planner.orientation import sole_rates, sole_rotation
 from surefoot.planner.planner import WalkingPlanner
+from surefoot.planner.sampling import PlanSampler
 from surefoot.planner.steps.gait import Bout, GaitParameters
 from surefoot.planner.types import FeetState, PhaseKind, Twist
-from surefoot.scenarios.run.reference import whole_body_reference
+from surefoot.scenarios.run.reference import planned, whole_body_reference
 
 pytestmark = pytest.mark.unit
 
@@ -30,3 +34,68 @@ def test_a_foot_is_unloaded_only_before_it_lifts():
         after = next((b for a, b in pairwise(rest) if b.elapsed < a.elapsed), None)
         steps = plan.phase.kind is PhaseKind.DOUBLE and after is not None and after.kind is PhaseKind.SINGLE
         assert lifting[tick] == (after.stance.other if steps else -1)
+
+
+@pytest.fixture(scope="module", params=[("walk-fast", 2.4), ("walk-curve", 2.0)], ids=lambda case: case[0])
+def plans(request):
+    """The plans of a walk; the feet of the fast one roll."""
+    (name, seconds), found = request.param, []
+    with surefoot.Simulation(surefoot.load(name, {"fidelity": "pendulum"})) as simulation:
+        while simulation.time < seconds:
+            plan = simulation.step().plan
+            if not found or plan is not found[-1]:
+                found.append(plan)
+    return found
+
+
+def test_a_reference_says_what_sample_and_plan_say(plans):
+    swung, rolled = 0, 0
+    for plan in [*plans[::3], *scaled(plans[1::6])]:
+        sampler = PlanSampler(plan)
+        for ahead in (0.0, 0.018, 0.0195, 0.31):
+            sample, reference = planned(sampler, plan.time + ahead, plan.time + ahead + 0.001)
+            _, until = sampler.tick(plan.time + ahead, plan.time + ahead + 0.001)
+            np.testing.assert_array_equal(sample.point, sampler.sample(plan.time + ahead).point)
+            for name in ("com", "com_velocity", "com_acceleration", "omega", "stiffness"):
+                np.testing.assert_array_equal(getattr(reference, name), getattr(until, name))
+            np.testing.assert_array_equal(reference.zmp, until.pendulum_zmp)
+            np.testing.assert_allclose(reference.zmp_offset, until.zmp_offset, atol=1e-15)
+            for name in ("", "_velocity", "_acceleration"):
+                swing = getattr(reference, f"swing{name or '_position'}")
+                np.testing.assert_array_equal(swing, getattr(until, f"swing{name}")[:3])
+            motion = until.swing[3:], until.swing_velocity[3:], until.swing_acceleration[3:]
+            np.testing.assert_array_equal(reference.swing_rotation, sole_rotation(*until.swing[3:]))
+            spins = reference.swing_angular_velocity, reference.swing_angular_acceleration
+            np.testing.assert_array_equal(spins, sole_rates(*motion))
+            assert reference.load_share == (until.load_left, 1.0 - until.load_left)
+            assert reference.planned_contact == until.contacts
+            yaw, normal = [foot.yaw for foot in plan.footholds], [foot.normal for foot in plan.footholds]
+            foot = until.swing_foot
+            assert reference.swing_foot == (-1 if foot is None else foot)
+            if foot is not None:
+                swung += 1
+                yaw[foot], normal[foot] = until.swing[3], plan.footsteps[0].normal
+            np.testing.assert_array_equal(reference.ground_normal, normal)
+            assert reference.heading == 0.5 * sum(yaw)
+            assert reference.heading_rate == 0.5 * until.swing_velocity[3]
+            rolls = plan.roll is not None and plan.roll.rolling(until.time)
+            assert reference.rolling_foot == (plan.roll.foot if rolls else -1)
+            assert reference.roll == (plan.roll.evaluate(until.time) if rolls else (0.0, 0.0, 0.0))
+            rolled += rolls
+            assert (*reference.numbers[-3:],) == (reference.swing_foot, reference.rolling_foot, reference.catching)
+    assert swung
+    assert bool(rolled) == any(plan.roll is not None for plan in plans)
+
+
+def scaled(plans):
+    """Plans with feet that roll by a clock that goes faster."""
+    for plan in plans:
+        if plan.roll is not None:
+            scaling = TimeScaling(plan.sample_time, 10.0).scaled(15.0, 12.0)
+            yield replace(plan, roll=replace(plan.roll, scaling=scaling, told=plan.time))
+
+
+def test_a_reference_that_is_changed_does_not_keep_the_numbers_of_the_old_one(plans):
+    _, reference = planned(PlanSampler(plans[1]), plans[1].time, plans[1].time + 0.001)
+    assert reference.numbers is not None
+    assert replace(reference, heading=1.0).numbers is None

@@ -40,33 +40,17 @@ def test_kernels_see_soles_and_doubt_as_plain_python_does(robot, monkeypatch, mo
         body = SensedBody(robot.model, robot.frames.soles, mount)
         still, offsets = np.zeros(3), np.concatenate((0.1 * np.ones(len(body.chain)), turn))
         stand = Stand(rotations[0].copy(), columns.copy(), np.stack(rotations[1:]), still, still, offsets)
-        filter_ = InvariantFilter(stand, SensorNoise(), GroundNoise(), 2e-3)
+        filter_ = InvariantFilter(stand, SensorNoise(), GroundNoise())
         some = 1e-3 * spread[: len(filter_.P)]
         filter_.P[:] = some @ some.T
         body.update(q[7:], np.eye(3), offsets)
         J = body.offset_jacobians()
         doubt = Doubt(body, SensorNoise(), 0.01).deviation(filter_, contact, 0.02, J)
-        assert (body.compiled is None) == (filter_.compiled is None) == (variable == "0")
+        assert (body.compiled is None) == (variable == "0")
         numbers = doubt.com, doubt.com_velocity, doubt.tilt, doubt.sole_height, (doubt.step_height, doubt.force)
         found.append((body.position, body.rotation, J, np.concatenate((*numbers, (doubt.moment,)))))
     for compiled, plain in zip(*found, strict=True):
         np.testing.assert_allclose(compiled, plain, rtol=1e-10, atol=1e-13)
-
-
-def test_a_covariance_that_is_not_positive_is_weighed_by_plain_python(monkeypatch):
-    """What neither can factor, numpy weighs; the kernel then corrects with that gain."""
-    KERNELS.or_skip()
-    found = []
-    for variable in ("", "0"):
-        monkeypatch.setenv(VARIABLE, variable)
-        rng = np.random.default_rng(1)
-        stand = Stand(np.eye(3), rng.normal(size=(4, 3)), np.stack((np.eye(3),) * 2), *np.zeros((3, 3)))
-        filter_ = InvariantFilter(stand, SensorNoise(), GroundNoise(), 2e-3)
-        filter_.P[:] = -np.eye(len(filter_.P))
-        filter_.weigh(rng.normal(size=(2, 6, 3)))
-        filter_.correct(stand.d - stand.p + 1e-6, stand.Z.copy(), (np.inf, np.inf))
-        found.append(np.concatenate((filter_.P.ravel(), stand.columns.ravel(), stand.offsets)))
-    np.testing.assert_allclose(*found, atol=1e-9)
 
 
 @pytest.mark.parametrize("lost", ["joints", "rate"])

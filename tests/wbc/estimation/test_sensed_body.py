@@ -5,12 +5,9 @@ from dataclasses import replace
 import numpy as np
 import pinocchio as pin
 import pytest
-from needs import KERNELS
 
-from surefoot.native.library import library
-from surefoot.wbc.estimation.compiled import StateKernel
 from surefoot.wbc.estimation.kinematics import ImuMount, SensedBody
-from surefoot.wbc.estimation.stand import AXES, Stand
+from surefoot.wbc.estimation.stand import AXES
 
 pytestmark = pytest.mark.unit
 
@@ -175,40 +172,3 @@ def test_soles_that_lean_are_seen_at_their_lines_which_move_with_them(robot, mou
         for k in (0, 1):
             found = (centre.position[k] + centre.rotation[k] @ beside[k] - place[k]) / step
             np.testing.assert_allclose(J[k, :3, column], found, atol=2e-6)
-
-
-@pytest.mark.parametrize("turned", [0.1, 2.5])
-@pytest.mark.parametrize("mount", MOUNTS)
-def test_the_compiled_base_is_where_it_has_come_to(robot, mount, turned):
-    """As by Pinocchio, gone on by half of what it is planned to gain; of an IMU that joints move there is none."""
-    KERNELS.or_skip()
-    kernels, body = library(), SensedBody(robot.model, robot.frames.soles, mount)
-    if body.mount is None:
-        assert mount.body == "torso"
-        return
-    rng, (q, v) = np.random.default_rng(3), moving(robot)
-    q[3:7] = pin.Quaternion(pin.exp3(turned * np.array([0.6, 0.0, 0.8]))).coeffs()
-    pose, motion = imu(robot, mount, q, v)
-    bias, gained, late = 0.1 * rng.normal(size=3), rng.normal(size=6), 0.006
-    velocity = pose.rotation @ motion.linear
-    zeros, by = 1e-3 * rng.normal(size=len(body.chain)), 0.1 * rng.normal(size=AXES)
-    pose.rotation, motion.angular = pose.rotation @ pin.exp3(by), pin.exp3(by).T @ motion.angular
-    columns = np.vstack((velocity, pose.translation, np.zeros((2, 3))))
-    stand = Stand(pose.rotation.copy(), columns, np.zeros((2, 3, 3)), bias, np.zeros(3), np.concatenate((zeros, by)))
-    joints, speeds = q[7:].copy(), v[6:]
-    joints[body.chain] += zeros
-    limits = 2.0 * float(np.linalg.norm(q[:7])), 2.0 * float(np.linalg.norm(v))
-    now = StateKernel(kernels, stand, body.mount, body.chain, len(joints), motion.angular + bias, limits)
-    for given, way in ((None, np.zeros(6)), (gained, late * (v[:6] + 0.5 * gained))):
-        state = now(joints, speeds, given, late)
-        base = pin.XYZQUATToSE3(q[:7])
-        half = base.rotation @ pin.exp3(0.5 * way[3:])
-        found = pin.XYZQUATToSE3(state.q[:7])
-        np.testing.assert_allclose(found.translation, base.translation + half @ way[:3], atol=1e-12)
-        np.testing.assert_allclose(found.rotation, base.rotation @ pin.exp3(way[3:]), atol=1e-12)
-        np.testing.assert_allclose(state.v[:6], v[:6] + (0.0 if given is None else gained), atol=1e-12)
-        np.testing.assert_allclose(state.q[7:], q[7:], atol=1e-15)
-        np.testing.assert_array_equal(state.v[6:], speeds)
-    assert now(joints, 3.0 * speeds, None, late) is None
-    columns[1, 0] = np.nan
-    assert now(joints, speeds, None, late) is None

@@ -25,8 +25,8 @@ def test_both_soles_that_slip_at_once_slip_once(robot, monkeypatch, variable):
     """
     monkeypatch.setenv(VARIABLE, variable)
     believed, landed = [0.0], []
-    land = InvariantFilter.land
-    monkeypatch.setattr(InvariantFilter, "land", lambda self, k, *rest: landed.append(k) or land(self, k, *rest))
+    land = SensedState._land
+    monkeypatch.setattr(SensedState, "_land", lambda self, k, *rest: landed.append(k) or land(self, k, *rest))
     feet = np.array([[0.0, 0.1, 0.0], [0.0, -0.1, 0.0]])
     up = np.array([0.0, 0.0, 1.0])
     footing = Footing(feet, np.zeros(2), (0.1, 0.05), lambda x, y: believed[0], lambda x, y: up)
@@ -56,7 +56,7 @@ def test_the_covariance_counts_what_was_taken_and_nothing_else():
     rng = np.random.default_rng(3)
     columns = rng.normal(size=(4, 3))
     stand = Stand(np.eye(3), columns, np.stack((np.eye(3),) * 2), np.zeros(3), np.zeros(3), np.zeros(4))
-    filter_ = InvariantFilter(stand, SensorNoise(), GroundNoise(), PERIOD)
+    filter_ = InvariantFilter(stand, SensorNoise(), GroundNoise())
     J, y, Y = 0.1 * rng.normal(size=(2, 6, 4)), stand.d - stand.p, stand.Z.copy()
     filter_.weigh(J)
     filter_.P[:] += 1e-6 * np.eye(len(filter_.P))

@@ -1,0 +1,11 @@
+cimport cython
+cimport libc.math as math
+
+@cython.locals(k=Py_ssize_t, last=Py_ssize_t, w=double)
+cpdef void integrate_riccati(const double[:] stiffness, double sample_time, double[:] omega) noexcept nogil
+@cython.locals(k=Py_ssize_t)
+cpdef void fade(const double[:] stiffness, const double[:] omega, double sample_time, double[:] decay) noexcept nogil
+@cython.locals(k=Py_ssize_t)
+cpdef void weigh(const double[:] decay, double[:] weights) noexcept nogil
+@cython.locals(last=Py_ssize_t, before=double, after=double)
+cpdef double weight(const double[:] decay, Py_ssize_t k) noexcept nogil

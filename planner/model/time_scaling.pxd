@@ -1,0 +1,7 @@
+cimport cython
+from surefoot cimport algebra
+from surefoot.planner cimport quintic
+from surefoot.planner.quintic cimport quintic6
+
+@cython.locals(k=Py_ssize_t, over=cython.bint)
+cpdef void follow(quintic6 course, double length, double begun, const double[:] time, double[:, ::1] told) noexcept

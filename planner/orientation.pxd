@@ -1,0 +1,12 @@
+cimport cython
+cimport libc.math as math
+from surefoot cimport algebra
+from surefoot.algebra cimport vector3
+
+cpdef void turn_sole(vector3 angles, double[:, :] R) noexcept nogil
+@cython.locals(turn=double, tilt=double, lean=double)
+cpdef vector3 sole_spin(vector3 angles, vector3 rates) noexcept nogil
+@cython.locals(turn=double, tilt=double, lean=double, turn2=double, tilt2=double, lean2=double)
+cpdef vector3 sole_spin_rate(vector3 angles, vector3 rates, vector3 accelerations) noexcept nogil
+@cython.locals(R=double[:, ::1])
+cpdef void roll_sole(const double[:] level, const double[:] rates, double toe, double pitch, double rate, double[:] centre, double[:] velocity) noexcept

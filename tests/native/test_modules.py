@@ -1,0 +1,109 @@
+"""Compiled modules: made of their sources, known by them, made anew where these changed, and never needed."""
+
+import os
+import shutil
+import subprocess
+import sys
+import sysconfig
+from pathlib import Path
+
+import pytest
+from needs import COMPILER
+
+from surefoot.native import modules
+
+pytestmark = pytest.mark.unit
+
+LAW = "import math\n\n\ndef law(x: float) -> float:\n    return math.sqrt(x) + 1.0\n"
+TYPES = "cimport libc.math as math\n\ncpdef double law(double x) noexcept nogil\n"
+
+
+@pytest.fixture
+def checkout(tmp_path):
+    """A checkout with one law."""
+    native = tmp_path / "surefoot" / "native"
+    native.mkdir(parents=True)
+    for name in ("__init__.py", "__main__.py", "modules.py"):
+        shutil.copy(Path(modules.__file__).parent / name, native)
+    (tmp_path / "surefoot" / "__init__.py").write_text("from surefoot.native import modules\n\nmodules.refresh()\n")
+    (tmp_path / "surefoot" / "law.py").write_text(LAW)
+    (tmp_path / "surefoot" / "law.pxd").write_text(TYPES)
+    (tmp_path / "pyproject.toml").touch()
+    return tmp_path
+
+
+def python(folder: Path, *command: str, code: int = 0, **changed: str) -> str:
+    """What a program says there: its output, and then its errors."""
+    environment = {**os.environ, "PYTHONPATH": str(folder), **changed}
+    done = subprocess.run(
+        [sys.executable, *command], env=environment, cwd=folder, capture_output=True, text=True, timeout=120
+    )
+    assert done.returncode == code, done.stderr
+    return done.stdout + done.stderr
+
+
+ASK = "from surefoot.law import law; import surefoot.law; print(law(4.0), surefoot.law.__file__)"
+
+
+def test_a_law_that_was_edited_is_compiled_anew(checkout):
+    COMPILER.or_skip()
+    path = checkout / "surefoot" / f"law{modules.SUFFIX}"
+    assert python(checkout, "-c", ASK) == f"3.0 {path}\n"
+    first = path.stat().st_mtime_ns
+    assert python(checkout, "-c", ASK) == f"3.0 {path}\n"
+    assert path.stat().st_mtime_ns == first, "nothing had changed"
+    (checkout / "surefoot" / "law.py").write_text(LAW.replace("1.0", "2.0"))
+    assert python(checkout, "-c", ASK) == f"4.0 {path}\n"
+    assert python(checkout, "-m", "surefoot.native").startswith("compiled: Cython 3.")
+    # It is no module of that name any more that is left behind.
+    assert python(checkout, "-m", "surefoot.native", "--interpreted").startswith("interpreted, slower: that was asked")
+    assert python(checkout, "-c", ASK) == f"4.0 {checkout / 'surefoot' / 'law.py'}\n"
+    assert not path.exists()
+
+
+def test_a_law_that_cannot_be_compiled_is_an_error_that_names_its_line(checkout):
+    COMPILER.or_skip()
+    (checkout / "surefoot" / "law.py").write_text(LAW.replace("math.sqrt(x)", "print(x) or x"))
+    said = python(checkout, "-c", ASK, code=1)
+    assert "surefoot/law.py:5" in said
+    assert said.rstrip().endswith("Mend it, or run 'python -m surefoot.native --interpreted'")
+    assert "surefoot/law.py:5" in python(checkout, "-m", "surefoot.native", code=1)
+    assert python(checkout, "-m", "surefoot.native", "--interpreted").startswith("interpreted")
+    assert "law.py" in python(checkout, "-c", "import surefoot.law as it; print(it.__file__)")
+
+
+@pytest.mark.parametrize("compiler", ["false", "no-such-compiler", ""])
+def test_without_a_compiler_the_same_file_is_interpreted_and_the_reason_is_kept(checkout, compiler):
+    source = checkout / "surefoot" / "law.py"
+    hidden = "import sys; sys.modules['ziglang'] = None; "
+    assert python(checkout, "-c", hidden + ASK, CC=compiler) == f"3.0 {source}\n"
+    tell = "from surefoot.native import modules; print(modules.missing(), modules.made())"
+    assert "C compiler" in python(checkout, "-c", tell)
+
+
+def test_without_headers_the_reason_names_them(monkeypatch, tmp_path):
+    monkeypatch.setattr(sysconfig, "get_paths", lambda: {"include": str(tmp_path)})
+    with pytest.raises(modules.NothingCompilesError, match=r"no headers of Python; install them, such as python3"):
+        modules.build([])
+
+
+def test_a_change_of_types_makes_stale_who_knows_them(checkout, monkeypatch):
+    package = checkout / "surefoot"
+    for name, types in (("other", "from surefoot cimport law\n"), ("third", "cimport surefoot.other\n"), ("alone", "")):
+        (package / f"{name}.py").touch()
+        (package / f"{name}.pxd").write_text(types)
+    monkeypatch.setattr(modules, "ROOT", checkout)
+    before = modules.digests()
+    (package / "law.pxd").write_text(TYPES + "\n")
+    moved = {name for name, digest in modules.digests().items() if digest != before[name]}
+    assert moved == {"surefoot.law", "surefoot.other", "surefoot.third"}
+    (package / "law.py").write_text(LAW + "\n")
+    again = modules.digests()
+    assert {name for name in again if again[name] != before[name]} == moved
+
+
+def test_all_modules_of_this_checkout_are_compiled_or_none_is():
+    found = modules.sources()
+    there = [name for name, path in found.items() if (modules.ROOT / modules.target(path)).exists()]
+    assert there == ([] if modules.missing() else list(found))
+    assert len(found) > 4

@@ -29,5 +29,11 @@ cpdef void compose_back(const double[:, :] A, const double[:, :] B, double[:, :]
 @cython.locals(small=cython.bint)
 cpdef void rotation_of(vector3 a, double[:, :] R) noexcept nogil
 cpdef vector3 rotation_vector(const double[:, :] R) noexcept nogil
+cpdef vector3 turn_between(const double[:, :] A, const double[:, :] B) noexcept nogil
+cpdef double columns_inner(const double[:, :] A, Py_ssize_t i, const double[:, :] B, Py_ssize_t j) noexcept nogil
+cdef vector3 _logarithm(vector3 axis, double trace) noexcept nogil
+cpdef (vector3, vector3) see_motion(const double[:, :] R, vector3 p, vector3 linear, vector3 angular) noexcept nogil
+@cython.locals(j=Py_ssize_t)
+cpdef void see_wrench(const double[:, :] R, vector3 p, double[:, :] out) noexcept nogil
 @cython.locals(i=Py_ssize_t, j=Py_ssize_t, k=Py_ssize_t)
 cpdef void quaternion(const double[:, :] R, double[:] out) noexcept nogil

@@ -149,11 +149,50 @@ def rotation_of(a: Vector, R: Array) -> None:
 
 def rotation_vector(R: Array) -> Vector:
     """Rotation vector of a rotation, as `pinocchio.log3` has it for angles below pi."""
-    x, y, z = R[2, 1] - R[1, 2], R[0, 2] - R[2, 0], R[1, 0] - R[0, 1]
-    sine = 0.5 * math.sqrt(x * x + y * y + z * z)
-    cosine = 0.5 * (R[0, 0] + R[1, 1] + R[2, 2] - 1.0)
-    scale = 0.5 if sine < 1e-8 else 0.5 * math.atan2(sine, cosine) / sine
-    return scale * x, scale * y, scale * z
+    return _logarithm((R[2, 1] - R[1, 2], R[0, 2] - R[2, 0], R[1, 0] - R[0, 1]), R[0, 0] + R[1, 1] + R[2, 2])
+
+
+def turn_between(A: Array, B: Array) -> Vector:
+    """Rotation vector of A' B: how B is turned from A, in the frame of A."""
+    axis = (
+        columns_inner(A, 2, B, 1) - columns_inner(A, 1, B, 2),
+        columns_inner(A, 0, B, 2) - columns_inner(A, 2, B, 0),
+        columns_inner(A, 1, B, 0) - columns_inner(A, 0, B, 1),
+    )
+    return _logarithm(axis, columns_inner(A, 0, B, 0) + columns_inner(A, 1, B, 1) + columns_inner(A, 2, B, 2))
+
+
+def columns_inner(A: Array, i: int, B: Array, j: int) -> float:
+    """Inner product of a column of one rotation with a column of another one."""
+    found: float = A[0, i] * B[0, j] + A[1, i] * B[1, j] + A[2, i] * B[2, j]
+    return found
+
+
+def _logarithm(axis: Vector, trace: float) -> Vector:
+    """Rotation vector of a rotation R, from the vector of R - R' and its trace."""
+    sine = 0.5 * math.sqrt(inner(axis, axis))
+    cosine = 0.5 * (trace - 1.0)
+    factor = 0.5 if sine < 1e-8 else 0.5 * math.atan2(sine, cosine) / sine
+    return scale(factor, axis)
+
+
+def see_motion(R: Array, p: Vector, linear: Vector, angular: Vector) -> tuple[Vector, Vector]:
+    """A motion as seen from a frame with rotation R and origin p: R' (v - p x ω) and R' ω."""
+    return rotate_back(R, subtract(linear, cross(p, angular))), rotate_back(R, angular)
+
+
+def see_wrench(R: Array, p: Vector, out: Array) -> None:
+    """Write the map of a wrench in a frame to force and moment about the origin into an array, shape (6, 6).
+
+    It is [R, 0; [p]x R, R], with rotation R and origin p of the frame.
+    """
+    for j in range(3):
+        axis = column(R, j)
+        lever = cross(p, axis)
+        out[0, j], out[1, j], out[2, j] = axis[0], axis[1], axis[2]
+        out[0, 3 + j], out[1, 3 + j], out[2, 3 + j] = 0.0, 0.0, 0.0
+        out[3, j], out[4, j], out[5, j] = lever[0], lever[1], lever[2]
+        out[3, 3 + j], out[4, 3 + j], out[5, 3 + j] = axis[0], axis[1], axis[2]
 
 
 def quaternion(R: Array, out: Array) -> None:

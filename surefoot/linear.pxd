@@ -15,6 +15,14 @@ cpdef void add_gram(double[:, :] S, const double[:, :] Y) noexcept nogil
 cpdef void upper_product(const double[:, :] A, const double[:, :] B, double[:, :] out) noexcept nogil
 cpdef void mirror(double[:, :] A) noexcept nogil
 cpdef void subtract_products(double[:, :] S, const double[:, :] Y) noexcept nogil
+cpdef void copy_rows(double[:, :] out, Py_ssize_t i, const double[:, :] A, Py_ssize_t k, Py_ssize_t count) noexcept nogil
+cpdef void scale_rows(double[:, :] out, Py_ssize_t first, double factor, const double[:] scale, const double[:, :] A, Py_ssize_t k) noexcept nogil
+cpdef void add_row(double[:, :] out, Py_ssize_t i, double factor, const double[:, :] A, Py_ssize_t k) noexcept nogil
+cpdef void put_transposed(double[:, :] out, Py_ssize_t i, Py_ssize_t j, double factor, const double[:, :] A) noexcept nogil
+cpdef void see_columns(const double[:, :] R, const double[:] p, const double[:, :] motions, const long long[:] columns, double[:, :] out) noexcept nogil
+cpdef double distance_squared(const double[:, :] A, const double[:, :] B, const double[:, :] C) noexcept nogil
+cpdef void gram(const double[:, :] T, double[:, :] H) noexcept nogil
+cpdef void transposed_product(const double[:, :] T, const double[:] t, double[:] g) noexcept nogil
 cpdef void copy(const double[:, :] A, double[:, :] out) noexcept nogil
 cpdef void product(const double[:, :] A, const double[:, :] B, double[:, :] out) noexcept nogil
 cpdef void accumulate(double[:, :] S, const double[:, :] A, const double[:, :] B) noexcept nogil

@@ -102,6 +102,55 @@ def subtract_products(S: Array, Y: Array) -> None:
     S -= np.triu(Y[:, : len(S)].T @ Y)
 
 
+def copy_rows(out: Array, i: int, A: Array, k: int, count: int) -> None:
+    """Put so many rows of A from row k on, shape (m, n), into the first columns of another matrix from row i on."""
+    out[i : i + count, : A.shape[1]] = A[k : k + count]
+
+
+def scale_rows(out: Array, first: int, factor: float, scale: Array, A: Array, k: int) -> None:
+    """Put rows of A from row k on, shape (m, n), each times its scale and a factor, into a matrix from a column on."""
+    rows = A[k : k + len(scale)]
+    np.multiply(rows, (scale * factor)[:, None], out=out[: len(scale), first : first + A.shape[1]])
+
+
+def add_row(out: Array, i: int, factor: float, A: Array, k: int) -> None:
+    """Add a multiple of row k of A, shape (m, n), to the first columns of row i of another matrix."""
+    out[i, : A.shape[1]] += factor * A[k]
+
+
+def put_transposed(out: Array, i: int, j: int, factor: float, A: Array) -> None:
+    """Put a multiple of A', for A of shape (m, n), into another matrix, from row i and column j on."""
+    m, n = A.shape
+    np.multiply(A.T, factor, out=out[i : i + n, j : j + m])
+
+
+def see_columns(R: Array, p: Array, motions: Array, columns: NDArray[np.int64], out: Array) -> None:
+    """Write some columns of a Jacobian, shape (6, n): those of another one, as `algebra.see_motion` sees each.
+
+    That is R' (v - p x ω) and R' ω, with rotation R and origin p, shape (3,), of the frame from which they are seen.
+    """
+    x, y, z = p
+    cross = np.array([[0.0, -z, y], [z, 0.0, -x], [-y, x, 0.0]])
+    linear, angular = motions[:3, columns], motions[3:, columns]
+    out[:3, columns], out[3:, columns] = R.T @ (linear - cross @ angular), R.T @ angular
+
+
+def distance_squared(A: Array, B: Array, C: Array) -> float:
+    """Sum of the squares of A' B - C, of matrices of shape (3, 3)."""
+    difference = (A.T @ B - C).ravel()
+    return float(difference @ difference)
+
+
+def gram(T: Array, H: Array) -> None:
+    """H = T' T, for T of shape (m, n)."""
+    np.matmul(T.T, T, out=H)
+
+
+def transposed_product(T: Array, t: Array, g: Array) -> None:
+    """Write T' t into g, for T of shape (m, n)."""
+    np.matmul(t, T, out=g)
+
+
 def nearest(value: float) -> float:
     """The nearest whole number, of two the even one."""
     return float(np.rint(value))

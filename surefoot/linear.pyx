@@ -5,6 +5,7 @@ Sums go in an order of their own, the same on every machine.
 
 from libc.math cimport fma, rint, sqrt
 from surefoot.algebra cimport vector3
+from libc.string cimport memcpy, memset
 
 
 cdef inline double _dot(const double *a, const double *b, Py_ssize_t count) noexcept nogil:
@@ -185,6 +186,122 @@ cpdef void subtract_products(double[:, :] S, const double[:, :] Y) noexcept nogi
     cdef Py_ssize_t e, width = S.shape[1]
     for e in range(S.shape[0]):
         _subtract_rows(&S[e, e], width - e, &Y[0, e], _stride(Y), &Y[0, e], _stride(Y), Y.shape[0])
+
+
+cpdef void copy_rows(double[:, :] out, Py_ssize_t i, const double[:, :] A, Py_ssize_t k, Py_ssize_t count) noexcept nogil:
+    cdef Py_ssize_t row
+    for row in range(count):
+        memcpy(&out[i + row, 0], &A[k + row, 0], A.shape[1] * sizeof(double))
+
+
+cpdef void scale_rows(
+    double[:, :] out, Py_ssize_t first, double factor, const double[:] scale, const double[:, :] A, Py_ssize_t k
+) noexcept nogil:
+    cdef Py_ssize_t i, j
+    cdef double *row
+    cdef const double *other
+    cdef double times
+    for i in range(scale.shape[0]):
+        row, other, times = &out[i, first], &A[k + i, 0], scale[i] * factor
+        for j in range(A.shape[1]):
+            row[j] = times * other[j]
+
+
+cpdef void add_row(
+    double[:, :] out, Py_ssize_t i, double factor, const double[:, :] A, Py_ssize_t k
+) noexcept nogil:
+    cdef double *row = &out[i, 0]
+    cdef const double *other = &A[k, 0]
+    cdef Py_ssize_t j
+    for j in range(A.shape[1]):
+        row[j] += factor * other[j]
+
+
+cpdef void put_transposed(
+    double[:, :] out, Py_ssize_t i, Py_ssize_t j, double factor, const double[:, :] A
+) noexcept nogil:
+    cdef Py_ssize_t k, l
+    cdef double *row
+    for l in range(A.shape[1]):
+        row = &out[i + l, j]
+        for k in range(A.shape[0]):
+            row[k] = factor * A[k, l]
+
+
+cpdef void see_columns(
+    const double[:, :] R, const double[:] p, const double[:, :] motions, const long long[:] columns, double[:, :] out
+) noexcept nogil:
+    cdef Py_ssize_t n, i, j
+    cdef double[3] v
+    cdef double[3] w
+    for n in range(columns.shape[0]):
+        j = columns[n]
+        for i in range(3):
+            w[i] = motions[3 + i, j]
+        v[0] = motions[0, j] - (p[1] * w[2] - p[2] * w[1])
+        v[1] = motions[1, j] - (p[2] * w[0] - p[0] * w[2])
+        v[2] = motions[2, j] - (p[0] * w[1] - p[1] * w[0])
+        for i in range(3):
+            out[i, j] = R[0, i] * v[0] + R[1, i] * v[1] + R[2, i] * v[2]
+            out[3 + i, j] = R[0, i] * w[0] + R[1, i] * w[1] + R[2, i] * w[2]
+
+
+cpdef double distance_squared(const double[:, :] A, const double[:, :] B, const double[:, :] C) noexcept nogil:
+    cdef Py_ssize_t i, j
+    cdef double total = 0.0, change
+    for i in range(3):
+        for j in range(3):
+            change = A[0, i] * B[0, j] + A[1, i] * B[1, j] + A[2, i] * B[2, j] - C[i, j]
+            total += change * change
+    return total
+
+
+cdef (Py_ssize_t, Py_ssize_t) _span(const double *row, Py_ssize_t count) noexcept nogil:
+    """First entry that is not zero, and the end of those: most rows are those of a motion or of the wrenches alone."""
+    cdef Py_ssize_t first = 0, end = count
+    while first < count and row[first] == 0.0:
+        first += 1
+    while end > first and row[end - 1] == 0.0:
+        end -= 1
+    return first, end
+
+
+cpdef void gram(const double[:, :] T, double[:, :] H) noexcept nogil:
+    cdef Py_ssize_t n = T.shape[1], k, i, j, first, end
+    cdef const double *row
+    cdef double *out
+    cdef double factor
+    for i in range(n):
+        memset(&H[i, 0], 0, n * sizeof(double))
+    for k in range(T.shape[0]):
+        row = &T[k, 0]
+        first, end = _span(row, n)
+        for i in range(first, end):
+            factor = row[i]
+            if factor == 0.0:
+                continue
+            out = &H[i, 0]
+            for j in range(i, end):
+                out[j] += factor * row[j]
+    for i in range(n):
+        out = &H[i, 0]
+        for j in range(i):
+            out[j] = H[j, i]
+
+
+cpdef void transposed_product(const double[:, :] T, const double[:] t, double[:] g) noexcept nogil:
+    cdef Py_ssize_t n = T.shape[1], k, j, first, end
+    cdef const double *row
+    cdef double *out = &g[0]
+    cdef double factor
+    for j in range(n):
+        out[j] = 0.0
+    for k in range(T.shape[0]):
+        row = &T[k, 0]
+        first, end = _span(row, n)
+        factor = t[k]
+        for j in range(first, end):
+            out[j] += factor * row[j]
 
 
 cdef inline void _add_row(

@@ -17,35 +17,59 @@ def convex_hull(points: Array) -> Array:
     Args:
         points: shape (n, 2), at least three that are not on a line.
     """
-    x, y = points.T.tolist()
-    ordered = sorted(set(zip(x, y, strict=True)))
-    hull = [*_chain(ordered)[:-1], *_chain(ordered[::-1])[:-1]]
-    right, left, above, below = max(x), min(x), max(y), min(y)
+    ordered, vertices = np.array(points, dtype=np.float64), np.zeros((2 * len(points) + 2, 2))
+    count = hull(ordered, len(ordered), vertices)
+    (left, below), (right, above) = points.min(axis=0).tolist(), points.max(axis=0).tolist()
     extent = max(right - left, above - below)
     flat = extent * (FLAT * extent + ROUNDING * max(abs(right), abs(left), abs(above), abs(below)))
     corner = 0
-    while corner < len(hull):
-        if _left_turn(hull[corner - 1], hull[corner], hull[(corner + 1) % len(hull)]) > flat:
+    while corner < count:
+        before, after = (corner + count - 1) % count, (corner + 1) % count
+        if _left_turn(vertices, before, corner, vertices, after) > flat:
             corner += 1
         else:
-            del hull[corner]
-            corner = max(corner - 1, 0)
-    return np.array(hull)
+            vertices[corner : count - 1] = vertices[corner + 1 : count].copy()
+            count, corner = count - 1, max(corner - 1, 0)
+    return vertices[:count].copy()
 
 
-_Point = tuple[float, float]
+def hull(points: Array, count: int, vertices: Array) -> int:
+    """Write the vertices of the anticlockwise hull of a few points, but for those on its edges.
+
+    Andrew's monotone chain, in memory that is given.
+
+    Args:
+        points: shape (n, 2), which are sorted.
+        count: of points that count.
+        vertices: shape (at least 2 count + 2, 2).
+
+    Returns:
+        How many vertices there are.
+    """
+    for k in range(1, count):
+        i = k
+        while i > 0 and not (
+            points[i - 1, 0] < points[i, 0] or (points[i - 1, 0] == points[i, 0] and points[i - 1, 1] <= points[i, 1])
+        ):
+            x, y = points[i, 0], points[i, 1]
+            points[i, 0], points[i, 1] = points[i - 1, 0], points[i - 1, 1]
+            points[i - 1, 0], points[i - 1, 1] = x, y
+            i -= 1
+    found = 0
+    for upper in range(2):
+        first = found
+        for k in range(count):
+            i = count - 1 - k if upper else k
+            while found >= first + 2 and _left_turn(vertices, found - 2, found - 1, points, i) <= 0.0:
+                found -= 1
+            vertices[found, 0], vertices[found, 1] = points[i, 0], points[i, 1]
+            found += 1
+        found -= 1  # the last one begins the other half
+    return found
 
 
-def _left_turn(a: _Point, b: _Point, c: _Point) -> float:
-    """Twice the area of a triangle, positive where the way from a by b to c turns left."""
-    return (b[0] - a[0]) * (c[1] - a[1]) - (b[1] - a[1]) * (c[0] - a[0])
-
-
-def _chain(points: list[_Point]) -> list[_Point]:
-    """The points at which a way along them turns left, from the first to the last."""
-    chain: list[_Point] = []
-    for point in points:
-        while len(chain) > 1 and _left_turn(chain[-2], chain[-1], point) <= 0.0:
-            chain.pop()
-        chain.append(point)
-    return chain
+def _left_turn(vertices: Array, a: int, b: int, points: Array, c: int) -> float:
+    """Twice the area of two vertices and a point, positive where the way from a by b to c turns left."""
+    ax, ay, bx, by = vertices[a, 0], vertices[a, 1], vertices[b, 0], vertices[b, 1]
+    twice: float = (bx - ax) * (points[c, 1] - ay) - (by - ay) * (points[c, 0] - ax)
+    return twice

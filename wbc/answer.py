@@ -7,7 +7,7 @@ import numpy as np
 from surefoot.native.library import Bound
 from surefoot.similarity import Similarity
 from surefoot.values import dataclass
-from surefoot.wbc.compiled import CompiledTick
+from surefoot.wbc.compiled import CompiledTerms
 from surefoot.wbc.model import RobotTerms
 from surefoot.wbc.qp import QpData, QpLayout
 from surefoot.wbc.tasks.stack import TaskStack
@@ -47,7 +47,7 @@ class AnswerReader:
         limit: largest torques, shape (nj,) [N·m].
         period: time between two answers [s].
         size: of the robot.
-        tick: on which the kernel works; None for plain Python.
+        compiled: terms on which the kernel works; None for plain Python.
 
     Attributes:
         answer: as last filled.
@@ -62,7 +62,7 @@ class AnswerReader:
         limit: Array,
         period: float,
         size: Similarity,
-        tick: CompiledTick | None,
+        compiled: CompiledTerms | None,
     ) -> None:
         self._tasks, self._limit = tasks, np.ascontiguousarray(limit, dtype=np.float64)
         self._fading = period / (FADE * size.time), FADE_DAMPING * size.time
@@ -70,15 +70,15 @@ class AnswerReader:
         wrench, error = self._wrench.reshape(2, 6), np.zeros_like(tasks.target)
         self.answer = WbcAnswer(np.zeros(layout.joints), np.zeros(layout.nv), wrench, error)
         self._x = np.zeros(layout.variables)
-        self.bound = None if tick is None else self._bind(tick)
-        self._read = None if tick is None else tick.kernels.bind("answer_read", self.bound)
+        self.bound = None if compiled is None else self._bind(compiled)
+        self._read = None if compiled is None else compiled.kernels.bind("answer_read", self.bound)
 
-    def _bind(self, tick: CompiledTick) -> Bound:
+    def _bind(self, compiled: CompiledTerms) -> Bound:
         answer = self.answer
-        return tick.kernels.fill(
+        return compiled.kernels.fill(
             "Answer",
-            terms=tick.terms,
-            stack=self._tasks.bound,
+            terms=compiled.bound,
+            stack=compiled.stack(self._tasks),
             joints=len(answer.torque),
             torque_rows=self._torque_rows,
             torque_limit=self._limit,

@@ -1,98 +1,81 @@
 """CoM law: time-varying DCM feedback through the ZMP, and a spring-damper for the height."""
 
 import math
-from collections.abc import Callable, Sequence
 
 import numpy as np
 
-from surefoot.native.library import Library, library
-from surefoot.polygon import convex_hull
+from surefoot import algebra, polygon
 from surefoot.wbc.parameters import BalanceGains
-from surefoot.wbc.types import Array, WbcReference
+from surefoot.wbc.setpoint import Setpoint
+from surefoot.wbc.types import Array
 
 
 class SupportRegion:
     """The area where the commanded ZMP may lie: convex hull of the active soles, shrunk towards each sole's centre.
 
-    Held as its edges in the horizontal plane, rebuilt only when the contacts change. Plain floats, since arrays of two
-    numbers cost more than their arithmetic.
-
-    Attributes:
-        edges: the same for kernels: start point, unit direction and length of each edge, shape (8, 5) [m, -, m].
-        edge_count: how many of them there are, shape (1,).
+    Held as its edges in the horizontal plane, rebuilt only when the contacts change. An edge is its start point, unit
+    direction and length [m, -, m].
     """
 
     def __init__(self, half_length: float, half_width: float, share: float) -> None:
         """Soles of the given half sizes [m], of which ``share`` is used."""
         corners = np.array([[1.0, 1.0], [-1.0, 1.0], [-1.0, -1.0], [1.0, -1.0]])
         self._corners = corners * (share * np.array([half_length, half_width]))
-        self._edges: list[_Edge] = []
         # Two convex soles of four corners have a hull of eight at most.
-        self.edges, self.edge_count = np.zeros((8, 5)), np.zeros(1, dtype=np.int64)
-        self._positions, self._rotations = np.zeros((2, 3)), np.zeros((2, 3, 3))
-        kernels = library()
-        self._rebuild = None if kernels is None else self._compile(kernels)
-
-    def _compile(self, kernels: Library) -> Callable[[bool, bool, int], None]:
-        """The kernel that does what `rebuild` does."""
-        return kernels.bind(
-            "support_rebuild",
-            corners=self._corners,
-            positions=self._positions,
-            rotations=self._rotations,
-            edges=self.edges,
-            edge_count=self.edge_count,
-        )
+        self._points, self._vertices = np.zeros((8, 2)), np.zeros((18, 2))
+        self._edges, self._count = np.zeros((8, 5)), 0
 
     def rebuild(self, positions: Array, rotations: Array, active: tuple[bool, bool], rolling: int = -1) -> None:
         """Hull of the active soles; positions (2, 3), rotations (2, 3, 3) in the world frame.
 
         Of a rolling foot, the toe edge alone, which is where its frame is.
         """
-        if self._rebuild is not None:
-            self._positions[:], self._rotations[:] = positions, rotations
-            self._rebuild(*active, rolling)
-            self._edges = self.edges[: self.edge_count[0]].tolist()
-            return
-        edge = self._corners * np.array([0.0, 1.0])
-        corners = [edge if k == rolling else self._corners for k in (0, 1)]
-        soles = [positions[k, :2] + corners[k] @ rotations[k, :2, :2].T for k in (0, 1) if active[k]]
-        vertices = convex_hull(np.concatenate(soles)).tolist()
-        self._edges = [_edge(*start, *end) for start, end in zip(vertices, vertices[1:] + vertices[:1], strict=True)]
-        self.edge_count[0] = len(self._edges)
-        self.edges[: len(self._edges)] = self._edges
+        count = 0
+        for k in range(2):
+            if not active[k]:
+                continue
+            for i in range(4):
+                x, y = (0.0 if k == rolling else self._corners[i, 0]), self._corners[i, 1]
+                for j in range(2):
+                    self._points[count, j] = positions[k, j] + (x * rotations[k, j, 0] + y * rotations[k, j, 1])
+                count += 1
+        self._count = polygon.hull(self._points, count, self._vertices)
+        for k in range(self._count):
+            self._write_edge(k, (k + 1) % self._count)
+
+    def _write_edge(self, start: int, end: int) -> None:
+        """Write the edge between two vertices."""
+        vertices, edge = self._vertices, self._edges[start]
+        x, y = vertices[end, 0] - vertices[start, 0], vertices[end, 1] - vertices[start, 1]
+        length = math.hypot(x, y)
+        edge[0], edge[1] = vertices[start, 0], vertices[start, 1]
+        edge[2], edge[3], edge[4] = x / length, y / length, length
 
     def project(self, x: float, y: float, beyond: float = 0.0) -> tuple[float, float]:
         """The point nearest to (x, y) that is no farther than `beyond` from the region [m]."""
-        for ex, ey, ux, uy, _ in self._edges:
-            if not (x - ex) * uy - (y - ey) * ux <= 0.0:
-                break
-        else:
+        if self._holds(x, y):
             return x, y
-        nearest, least = (x, y), math.inf
-        for ex, ey, ux, uy, length in self._edges:
-            along = min(max((x - ex) * ux + (y - ey) * uy, 0.0), length)
-            px, py = ex + along * ux, ey + along * uy
-            distance = (x - px) ** 2 + (y - py) ** 2
+        nearest_x, nearest_y, least = x, y, algebra.INFINITY
+        for i in range(self._count):
+            edge = self._edges[i]
+            along = algebra.clamp((x - edge[0]) * edge[2] + (y - edge[1]) * edge[3], 0.0, edge[4])
+            at_x, at_y = edge[0] + along * edge[2], edge[1] + along * edge[3]
+            distance = algebra.square(x - at_x) + algebra.square(y - at_y)
             if distance < least:
-                nearest, least = (px, py), distance
-        px, py = nearest
+                nearest_x, nearest_y, least = at_x, at_y, distance
         share = min(1.0, beyond / max(math.sqrt(least), 1e-9))
-        return px + share * (x - px), py + share * (y - py)
+        return nearest_x + share * (x - nearest_x), nearest_y + share * (y - nearest_y)
+
+    def _holds(self, x: float, y: float) -> bool:
+        """Whether a point is on no edge's outer side."""
+        for i in range(self._count):
+            edge = self._edges[i]
+            if not (x - edge[0]) * edge[3] - (y - edge[1]) * edge[2] <= 0.0:
+                return False
+        return True
 
 
-_Edge = Sequence[float]
-"""Start point, unit direction and length of an edge of a counter-clockwise polygon."""
-
-
-def _edge(start_x: float, start_y: float, end_x: float, end_y: float) -> _Edge:
-    length = math.hypot(end_x - start_x, end_y - start_y)
-    return start_x, start_y, (end_x - start_x) / length, (end_y - start_y) / length, length
-
-
-def com_acceleration(
-    reference: WbcReference, com: Array, com_velocity: Array, region: SupportRegion, gains: BalanceGains
-) -> tuple[float, float, float]:
+class BalanceLaw:
     """CoM acceleration that tracks the reference.
 
     Horizontal: with ξ = c + c'/ω and e = ξ - ξ_ref, the pendulum's commanded point is p = p_ref + k e, moved so that
@@ -106,28 +89,29 @@ def com_acceleration(
     Vertical: c_z'' = z_ref'' + k_z (z_ref - z) + d_z (z_ref' - z').
 
     Args:
-        reference: what to track.
-        com: measured CoM, shape (3,) [m].
-        com_velocity: its velocity, shape (3,) [m/s].
-        region: where the ZMP may lie.
         gains: of the law.
-
-    Returns:
-        x, y, z [m/s^2].
+        region: where the ZMP may lie; its owner keeps it up to date.
     """
-    (x, y, z), (x_ref, y_ref, z_ref) = com.tolist(), reference.com.tolist()
-    (vx, vy, vz), (vx_ref, vy_ref, vz_ref) = com_velocity.tolist(), reference.com_velocity.tolist()
-    dx, dy, dz, vx, vy, vz = x - x_ref, y - y_ref, z - z_ref, vx - vx_ref, vy - vy_ref, vz - vz_ref
-    px, py = reference.zmp.tolist()
-    offset_x, offset_y = reference.zmp_offset.tolist()
-    zmp_x, zmp_y = region.project(
-        px + offset_x + gains.dcm * (dx + vx / reference.omega),
-        py + offset_y + gains.dcm * (dy + vy / reference.omega),
-        gains.beyond_catching if reference.catching else 0.0,
-    )
-    ax, ay, planned = reference.com_acceleration.tolist()
-    return (
-        ax + reference.stiffness * (px + offset_x + dx - zmp_x),
-        ay + reference.stiffness * (py + offset_y + dy - zmp_y),
-        planned - gains.height_stiffness * dz - gains.height_damping * vz,
-    )
+
+    def __init__(self, gains: BalanceGains, region: SupportRegion) -> None:
+        self._region = region
+        self._k, self._beyond = gains.dcm, gains.beyond_catching
+        self._k_z, self._d_z = gains.height_stiffness, gains.height_damping
+
+    def acceleration(self, reference: Setpoint, c: Array, c_dot: Array) -> algebra.Vector:
+        """x, y, z [m/s^2] at a CoM and its velocity, shape (3,) each [m, m/s]."""
+        ref = reference
+        dx, dy, dz = c[0] - ref.com[0], c[1] - ref.com[1], c[2] - ref.com[2]
+        vx, vy = c_dot[0] - ref.com_velocity[0], c_dot[1] - ref.com_velocity[1]
+        vz = c_dot[2] - ref.com_velocity[2]
+        px, py = ref.zmp[0] + ref.zmp_offset[0], ref.zmp[1] + ref.zmp_offset[1]
+        zmp_x, zmp_y = self._region.project(
+            px + self._k * (dx + vx / ref.omega),
+            py + self._k * (dy + vy / ref.omega),
+            self._beyond if ref.catching else 0.0,
+        )
+        return (
+            ref.com_acceleration[0] + ref.stiffness * (px + dx - zmp_x),
+            ref.com_acceleration[1] + ref.stiffness * (py + dy - zmp_y),
+            ref.com_acceleration[2] - self._k_z * dz - self._d_z * vz,
+        )

@@ -11,12 +11,10 @@ import pinocchio as pin
 from numpy.typing import NDArray
 
 from surefoot.forces import NO_LOAD
-from surefoot.native.library import Bound
 from surefoot.values import maker
 from surefoot.wbc.answer import AnswerReader, WbcAnswer
 from surefoot.wbc.arm_swing import ArmSwing
 from surefoot.wbc.balance import SupportRegion
-from surefoot.wbc.compiled import CompiledTick
 from surefoot.wbc.cone import CONE_ROWS, TOE_DEPTH, Sole
 from surefoot.wbc.contacts import ContactSchedule, ContactState
 from surefoot.wbc.driven import DrivenRows, without_driven
@@ -27,6 +25,7 @@ from surefoot.wbc.model import BodyFrames, RobotTerms
 from surefoot.wbc.parameters import WbcParameters
 from surefoot.wbc.qp import UNBOUNDED, WRENCH_UNIT, QpData, QpLayout, allocate
 from surefoot.wbc.separation import Separation
+from surefoot.wbc.setpoint import Setpoint
 from surefoot.wbc.solvers import EqualityFirst, QpSolution, QpSolver, equalities_only, in_turn
 from surefoot.wbc.tasks.default import default_tasks
 from surefoot.wbc.tasks.diagonal import ForceDistribution, Posture, Regularisation
@@ -111,7 +110,7 @@ class WholeBodyController:
         self.layout = QpLayout(model.nv, CONE_ROWS, parameters.separation.slots if limbs is not None else 0)
         self.qp: QpData = allocate(self.layout)
         shapes = pin.GeometryModel() if limbs is None else limbs
-        self._separation = Separation(model, shapes, parameters.separation, self.terms.compiled)
+        self._separation = Separation(model, shapes, parameters.separation)
         gaps = self.layout.separation
         self._gap_rows = self.qp.A[gaps, : model.nv]
         self._gap_lower = self.qp.bounds_lower[self.layout.variables :][gaps]
@@ -120,9 +119,9 @@ class WholeBodyController:
         if leaning:
             sole = replace(sole, half_width=TOE_DEPTH * size.length)
         cones, ankles = sole.cones(TOE_DEPTH * size.length), stops[0].columns
-        self._tick = CompiledTick(self.terms.compiled) if self.terms.compiled else None
+        self._setpoint = Setpoint()
         self._hard = HardConstraints(
-            self.qp, self.layout, cones, limits, parameters.contact, ankles, stops[0].rolling, self._tick, leaning
+            self.qp, self.layout, cones, limits, parameters.contact, ankles, stops[0].rolling, leaning
         )
         self._region = SupportRegion(sole.half_length, sole.half_width, parameters.balance.polygon_share)
         self._region_contacts: tuple[tuple[bool, bool], int] | None = None
@@ -139,16 +138,16 @@ class WholeBodyController:
             Posture(weights, gains, posture, leg_joints, arms, driven),
             ForceDistribution(weights, self.terms.wrench_unit),
         )
-        self.tasks = TaskStack(self.qp, (*default, *tasks), diagonal, self._tick)
+        self.tasks = TaskStack(self.qp, (*default, *tasks), diagonal)
         self.schedule = ContactSchedule(parameters.schedule, self.terms.mass * GRAVITY, control_period)
         self._observer = LoadObserver(self.terms.mass, control_period, size, self.terms.compiled)
         self.driven = None if driven is None or not driven.any() else DrivenRows(self.layout, driven, control_period)
         fixed = None if self.driven is None else self.driven.fixed
         self._limits, self._toe = limits, sole.half_length
         self._seen: list[tuple[int, Array]] = []
-        self._reader = AnswerReader(self.qp, self.layout, self.tasks, limits.torque, control_period, size, self._tick)
-        if self._tick is not None:
-            self._compile(self._tick)
+        self._reader = AnswerReader(
+            self.qp, self.layout, self.tasks, limits.torque, control_period, size, self.terms.compiled
+        )
         self._ask(in_turn(parameters.solver, parameters.second_solver, self.layout.soft, fixed))
 
     @property
@@ -204,33 +203,19 @@ class WholeBodyController:
         """
         if reference.rolling_foot >= 0 or self._seen or terms.is_shifted or terms.leaning is not None:
             self._shift(terms, reference, contacts)
-        tick, gaps = self._tick, self._separation
         if contacts is not self._contacts or terms.leaning is not None:
             self._hold(terms, contacts)
-        if tick is None or terms is not self.terms:
-            self.tasks.write(terms, reference)
-            self._hard.write(terms, terms.q, terms.v, contacts, reference.ground_normal, reference.roll[1:])
-            gaps.write(terms.data, terms.v, self._gap_rows, self._gap_lower, UNBOUNDED)
-        else:
-            if reference.numbers is None:
-                tick.refer(reference)
-            else:
-                tick.numbers[...] = reference.numbers
-            if reference.catching is not self.tasks.catching or not self.tasks.is_alone:
-                self.tasks.write_others(terms, reference)
-            # For kernels 1 is a foot that is held, 2 one that lands as well.
-            (left, right), (one, other) = contacts.active, contacts.landing
-            due = self._write_compiled(left + one, right + other, contacts.rolling, *contacts.force_cap)
-            if due or not gaps.is_clear:
-                gaps.write_due(due, terms.data, terms.v, self._gap_rows, self._gap_lower, UNBOUNDED)
+        setpoint = self._setpoint
+        setpoint.take(reference)
+        self.tasks.write(terms, setpoint)
+        self._hard.write(terms, setpoint, contacts)
+        self._separation.write(terms.data, terms.v, self._gap_rows, self._gap_lower, UNBOUNDED)
         if self.driven is not None:
             self.driven.write(self.qp, terms.bias, terms.v)
         return self.qp
 
     def _hold(self, terms: RobotTerms, contacts: ContactState) -> None:
         """Stand on other contacts than those of the tick before."""
-        if self._tick is not None and terms is self.terms:
-            self._hard.follow(contacts)
         holding = (contacts.active, contacts.rolling)
         # The line on which a leaning foot stands moves over its sole.
         if terms.leaning is not None or holding != self._region_contacts:
@@ -288,12 +273,6 @@ class WholeBodyController:
         if own.solve is WholeBodyController.solve and own.interpret is WholeBodyController.interpret:
             self._at_once, self._sure = equalities.answering(bound), equalities.accuracy
             self._first_goes_on = partial(first.go_on, equalities)
-
-    def _compile(self, tick: CompiledTick) -> None:
-        due = self._separation.due
-        assert due is not None
-        parts: dict[str, Bound] = {"tasks": self.tasks.calls, "hard": self._hard.bound, "pairs": due.bound}
-        self._write_compiled = tick.kernels.bind("qp_build", **parts)
 
     def _shift(self, terms: RobotTerms, reference: WbcReference, contacts: ContactState) -> None:
         """See a rolling foot from its toe edge, a leaning one from its line, others from their soles."""

@@ -4,13 +4,14 @@ from collections.abc import Sequence
 
 import numpy as np
 
-from surefoot.wbc.compiled import CompiledTick
+from surefoot import algebra, linear
 from surefoot.wbc.contacts import ContactState
 from surefoot.wbc.leaning import FREE
 from surefoot.wbc.limits import AccelerationBounds, JointLimits
 from surefoot.wbc.model import RobotTerms
 from surefoot.wbc.parameters import ContactGains
-from surefoot.wbc.qp import FOOT_ROWS, UNBOUNDED, QpData, QpLayout
+from surefoot.wbc.qp import UNBOUNDED, QpData, QpLayout
+from surefoot.wbc.setpoint import Setpoint
 from surefoot.wbc.types import Array
 
 
@@ -37,7 +38,6 @@ class HardConstraints:
         gains: ContactGains,
         ankles: Sequence[Sequence[int]] = ((), ()),
         tipping: tuple[int, ...] = (-1, -1),
-        compiled: CompiledTick | None = None,
         leaning: bool = False,
     ) -> None:
         """Write the rows that change with the contacts only.
@@ -50,162 +50,119 @@ class HardConstraints:
             gains: of the contacts.
             ankles: columns of the generalised velocity that belong to the left and to the right ankle.
             tipping: of these, that of the joint that rolls each foot; -1 for none.
-            compiled: on which the kernel works; None for plain Python.
-            leaning: whether the kernel's feet lean.
+            leaning: whether feet roll as their legs do (see `surefoot.wbc.leaning`).
         """
-        self._gains = gains
-        self._joints, self._ankles = AccelerationBounds(limits), [list(columns) for columns in ankles]
-        self._at_ankles = [_place(columns) for columns in self._ankles]
-        self._tipping = tipping
-        self._rates = np.zeros(layout.nv)
-        self._torque_span = np.concatenate([np.zeros(6), limits.torque])
-        self._target, self._active = np.zeros((2, 6)), (False, False)
+        self._damping, self._levelling = gains.damping, gains.levelling
+        self._softening, self._sinking = gains.softening, gains.sinking
+        self._free = FREE if leaning else -1
+        self._joints, self._unbounded = AccelerationBounds(limits), UNBOUNDED
+        self._ankles = np.array([list(columns) for columns in ankles], dtype=np.int64).reshape(2, -1)
+        self._tipping = np.array(tipping, dtype=np.int64)
+        self._torque_span, self._rates = np.concatenate([np.zeros(6), limits.torque]), np.zeros(layout.nv)
         n, first = layout.variables, layout.torque_rows.stop
-        for k in (0, 1):
-            rows = slice(first + k * layout.cone_rows, first + (k + 1) * layout.cone_rows)
-            qp.A[rows, layout.wrench(k)] = cones[0]
-            qp.bounds_upper[n + rows.start : n + rows.stop] = 0.0
+        rows = [slice(first + k * layout.cone_rows, first + (k + 1) * layout.cone_rows) for k in (0, 1)]
         self._cones, self._rolling = cones, -1
-        self._bind(qp, layout)
-        self._release(0)
-        self._release(1)
-        if compiled is not None:
-            self._compile(compiled, qp, leaning)
-
-    def _compile(self, tick: CompiledTick, qp: QpData, leaning: bool) -> None:
-        bounds = self._joints
-        self.bound = tick.kernels.fill(
-            "HardRows",
-            terms=tick.terms,
-            reference=tick.reference,
-            variables=len(qp.g),
-            damping=self._gains.damping,
-            softening=self._gains.softening,
-            sinking=self._gains.sinking,
-            levelling=self._gains.levelling,
-            leaning=int(leaning),
-            free_row=FREE,
-            ankle_joints=len(self._ankles[0]),
-            ankle_columns=np.array(self._ankles, dtype=np.int64),
-            tipping_columns=np.array(self._tipping, dtype=np.int64),
-            unbounded=UNBOUNDED,
-            torque_span=self._torque_span,
-            reach_time=bounds.reach_time,
-            position_rate=bounds.position_rate,
-            velocity_rate=bounds.velocity_rate,
-            positions=bounds.positions,
-            velocities=bounds.velocities,
-            rates=self._rates,
-            A=qp.A,
-            lower=qp.bounds_lower,
-            upper=qp.bounds_upper,
-        )
-
-    def follow(self, contacts: ContactState) -> None:
-        """What of ``write`` the kernel leaves to Python where these contacts are not those of the tick before."""
-        if contacts.rolling != self._rolling:
-            self._roll(contacts.rolling)
-        self._active = contacts.active
-
-    def _bind(self, qp: QpData, layout: QpLayout) -> None:
-        # A view costs as much to make as to use, so the parts of rows and bounds get their names once.
-        n, nv, lower, upper = layout.variables, layout.nv, qp.bounds_lower, qp.bounds_upper
-        motion, contact = layout.motion_rows, slice(n, n + 2 * FOOT_ROWS)
-        self._mass, self._forces = qp.A[motion, :nv], qp.A[motion, nv:]
-        self._motion_lower, self._motion_upper = (b[n + motion.start : n + motion.stop] for b in (lower, upper))
-        self._contact_lower, self._contact_upper = (b[contact].reshape(2, FOOT_ROWS) for b in (lower, upper))
-        self._contact_rows = [qp.A[layout.contact_rows(k), :nv] for k in (0, 1)]
-        first, rows = layout.torque_rows.stop, layout.cone_rows
-        self._cone_rows = [qp.A[first + k * rows : first + (k + 1) * rows, layout.wrench(k)] for k in (0, 1)]
-        self._no_wrench_rows = [qp.A[layout.contact_rows(k), layout.wrench(k)] for k in (0, 1)]
-        self._joint_lower, self._joint_upper = lower[6:nv], upper[6:nv]
-        self._force_caps = upper[nv + 2 : n : 6]
-
-    def write(
-        self,
-        terms: RobotTerms,
-        q: Array,
-        v: Array,
-        contacts: ContactState,
-        ground_normal: Array,
-        roll: tuple[float, float] = (0.0, 0.0),
-    ) -> None:
-        """Write the rows and bounds of this state; q (nq,), v (nv,), ground_normal (2, 3) in the world frame.
-
-        A rolling foot is seen from its toe edge (see ``RobotTerms.shift_foot``), which neither slides nor lifts; its
-        pitch follows the planned ``roll``, rate and acceleration [rad/s, rad/s^2], and its CoP lies on the edge.
-        """
-        self._motion(terms)
-        self._contacts(terms, contacts, ground_normal, roll)
-        np.copyto(self._rates, v)
-        held = [contacts.active[k] and k != contacts.rolling for k in (0, 1)]
-        for k, columns in enumerate(self._at_ankles):
-            if held[k]:
-                self._rates[columns] -= terms.sole_jacobian[k, 3:][:, columns].T.dot(terms.sole_velocity[k, 3:])
-        self._joints.write(q[7:], self._rates[6:], self._joint_lower, self._joint_upper)
-        for k, column in enumerate(self._tipping):
-            if held[k] and column >= 0:
-                self._joint_lower[column - 6], self._joint_upper[column - 6] = -UNBOUNDED, UNBOUNDED
-
-    def _motion(self, terms: RobotTerms) -> None:
-        self._mass[:] = terms.mass_matrix
-        np.multiply(terms.contact_jacobian.T, -terms.wrench_unit, out=self._forces)
-        np.negative(terms.bias, out=self._motion_lower)
-        np.add(self._motion_lower, self._torque_span, out=self._motion_upper)
-        self._motion_lower -= self._torque_span
-
-    def _contacts(
-        self, terms: RobotTerms, contacts: ContactState, ground_normal: Array, roll: tuple[float, float]
-    ) -> None:
-        target, levelling = self._target, self._gains.levelling
-        np.multiply(terms.sole_velocity, -self._gains.damping, out=target)
+        self._cone_rows = [qp.A[rows[k], layout.wrench(k)] for k in (0, 1)]
+        self._roll(-1)
         for k in (0, 1):
-            if contacts.landing[k]:
-                target[k, 2] = -self._gains.softening * (terms.sole_velocity[k, 2] + self._gains.sinking)
-        target -= terms.sole_bias
-        # Rotation vector, in the sole frame, that turns the sole's normal to the ground's.
-        normal = np.matmul(ground_normal[:, None, :], terms.contact_rotation)[:, 0]
-        for k, (x, y, _) in enumerate(normal.tolist()):
-            target[k, 3] -= levelling * y
-            target[k, 4] += levelling * x
-        if contacts.rolling != self._rolling:
-            self._roll(contacts.rolling)
-        if contacts.rolling >= 0:
-            target[contacts.rolling, 4] += self._gains.damping * roll[0] + roll[1]
-        if terms.leaning is not None:
-            target[:, FREE] = 0.0
-        self._follow(0, terms, contacts.active[0])
-        self._follow(1, terms, contacts.active[1])
-        self._active = contacts.active
-        self._contact_lower[:] = target
-        self._contact_upper[:] = target
-        left, right = contacts.force_cap
-        self._force_caps[:] = (left / terms.wrench_unit, right / terms.wrench_unit)
-
-    def _follow(self, k: int, terms: RobotTerms, active: bool) -> None:
-        if active:
-            if not self._active[k]:
-                self._no_wrench_rows[k][:] = 0.0
-            self._contact_rows[k][:] = terms.sole_jacobian[k]
-            if terms.leaning is not None:
-                self._contact_rows[k][FREE] = 0.0
-                self._no_wrench_rows[k][FREE, FREE] = 1.0
-            return
-        if self._active[k]:
-            self._release(k)
-        self._target[k] = 0.0
+            qp.bounds_upper[n + rows[k].start : n + rows[k].stop] = 0.0
+        self._A, self._lower, self._upper = qp.A, qp.bounds_lower, qp.bounds_upper
+        # Bounds of the rows come after those of the variables.
+        self._row_lower, self._row_upper = qp.bounds_lower[n:], qp.bounds_upper[n:]
 
     def _roll(self, foot: int) -> None:
+        """Hold a rolling foot, if any, to the cone of its toe edge."""
         for k in (0, 1):
             self._cone_rows[k][:] = self._cones[1 if k == foot else 0]
         self._rolling = foot
 
-    def _release(self, k: int) -> None:
-        self._contact_rows[k][:] = 0.0
-        self._no_wrench_rows[k][:] = np.eye(6)
+    def write(self, terms: RobotTerms, reference: Setpoint, contacts: ContactState) -> None:
+        """Write the rows and bounds of this state.
 
+        A rolling foot is seen from its toe edge (see ``RobotTerms.shift_foot``), which neither slides nor lifts; its
+        pitch follows the planned roll, and its CoP lies on the edge.
+        """
+        rolling = contacts.rolling
+        if rolling != self._rolling:
+            self._roll(rolling)
+        left, right = contacts.active
+        lands_left, lands_right = contacts.landing
+        self._motion(terms)
+        self._contact(terms, reference, 0, left, lands_left)
+        self._contact(terms, reference, 1, right, lands_right)
+        cap_left, cap_right = contacts.force_cap
+        self._upper[terms.nv + 2] = cap_left / terms.wrench_unit
+        self._upper[terms.nv + 8] = cap_right / terms.wrench_unit
+        self._bound_joints(terms, left and rolling != 0, right and rolling != 1)
 
-def _place(columns: list[int]) -> list[int] | slice:
-    """Columns as a slice where they are neighbours, of which numpy makes a view in a fifth of a copy's time."""
-    first, count = columns[0] if columns else 0, len(columns)
-    return slice(first, first + count) if columns == list(range(first, first + count)) else columns
+    def _motion(self, terms: RobotTerms) -> None:
+        """M q̈ - Jᵀ w between -h and -h, of joints less and more their largest torque."""
+        nv = terms.nv
+        for i in range(nv):
+            self._row_lower[12 + i] = -terms._h[i] - self._torque_span[i]
+            self._row_upper[12 + i] = -terms._h[i] + self._torque_span[i]
+        linear.copy_rows(self._A, 12, terms._M, 0, nv)
+        linear.put_transposed(self._A, 12, nv, -terms.wrench_unit, terms._J)
+
+    def _contact(self, terms: RobotTerms, reference: Setpoint, k: int, active: bool, lands: bool) -> None:
+        """Six equalities of a foot."""
+        first, nv = 6 * k, terms.nv
+        if active:
+            linear.copy_rows(self._A, first, terms._J, first, 6)
+        for i in range(6):
+            row = first + i
+            self._A[row, nv:] = 0.0
+            self._row_lower[row] = self._rest(terms, k, i)
+            if not active or i == self._free:
+                self._A[row, :nv] = 0.0
+                self._A[row, nv + row] = 1.0
+                self._row_lower[row] = 0.0
+        if active:
+            if lands:
+                sinking = terms._v_sole[k, 2] + self._sinking
+                self._row_lower[first + 2] = -self._softening * sinking - terms._bias_sole[k, 2]
+            self._turn(terms, reference, k)
+        self._row_upper[first : first + 6] = self._row_lower[first : first + 6]
+
+    def _rest(self, terms: RobotTerms, k: int, i: int) -> float:
+        """J q̈ that brings a velocity of a sole to rest: -d J v - J' v [m/s^2, rad/s^2]."""
+        wanted: float = terms._v_sole[k, i] * -self._damping - terms._bias_sole[k, i]
+        return wanted
+
+    def _turn(self, terms: RobotTerms, reference: Setpoint, k: int) -> None:
+        """Turn the sole's normal to the ground's, which is a rotation vector in its frame, and let it roll."""
+        target, first = self._row_lower, 6 * k
+        normal = algebra.rotate_back(terms._R_contact[k], algebra.row(reference.ground_normal, k))
+        target[first + 3] -= self._levelling * normal[1]
+        target[first + 4] += self._levelling * normal[0]
+        if k == self._rolling:
+            target[first + 4] += self._damping * reference.roll_rate + reference.roll_acceleration
+        if self._free >= 0:
+            target[first + self._free] = 0.0
+
+    def _bound_joints(self, terms: RobotTerms, left: bool, right: bool) -> None:
+        """Bounds of the joints' accelerations, of which a foot that is held counts as at rest."""
+        nv = terms.nv
+        self._rates[:] = terms._v
+        if left:
+            self._rest_ankle(terms, 0)
+        if right:
+            self._rest_ankle(terms, 1)
+        self._joints.write(terms._q[7:], self._rates[6:], self._lower[6:nv], self._upper[6:nv])
+        if left:
+            self._release(self._tipping[0])
+        if right:
+            self._release(self._tipping[1])
+
+    def _rest_ankle(self, terms: RobotTerms, k: int) -> None:
+        """Take from the rates of an ankle what it turns of its foot."""
+        for n in range(self._ankles.shape[1]):
+            column, turning = self._ankles[k, n], 0.0
+            for i in range(3):
+                turning += terms._v_sole[k, 3 + i] * terms._J[6 * k + 3 + i, column]
+            self._rates[column] -= turning
+
+    def _release(self, column: int) -> None:
+        """Let a variable be as it likes; none where the column is negative."""
+        if column >= 0:
+            self._lower[column], self._upper[column] = -self._unbounded, self._unbounded

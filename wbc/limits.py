@@ -45,26 +45,20 @@ class AccelerationBounds:
     """
 
     def __init__(self, limits: JointLimits) -> None:
-        """Allocate buffers for the joints of ``limits``."""
         self.reach_time = 2.0 * limits.position_horizon
         self.position_rate = 1.0 / limits.position_horizon**2
         self.velocity_rate = 1.0 / limits.velocity_horizon
-        self.positions = np.stack([limits.lower, limits.upper])
+        self.positions = self._positions = np.stack([limits.lower, limits.upper])
         fastest = limits.velocity_share * limits.velocity
-        self.velocities = np.stack([-fastest, fastest])
-        self._reach = np.zeros_like(limits.lower)
-        self._by_position, self._by_velocity = np.zeros_like(self.positions), np.zeros_like(self.velocities)
+        self.velocities = self._velocities = np.stack([-fastest, fastest])
 
     def write(self, position: Array, velocity: Array, lower: Array, upper: Array) -> None:
         """Write the bounds of a state into ``lower`` and ``upper``; shape (nj,) each."""
-        np.multiply(velocity, self.reach_time, out=self._reach)
-        self._reach += position
-        by_position, by_velocity = self._by_position, self._by_velocity
-        np.subtract(self.positions, self._reach, out=by_position)
-        by_position *= self.position_rate
-        np.subtract(self.velocities, velocity, out=by_velocity)
-        by_velocity *= self.velocity_rate
-        np.maximum(by_position[0], by_velocity[0], out=lower)
-        np.minimum(by_position[1], by_velocity[1], out=upper)
-        np.minimum(lower, by_position[1], out=lower)
-        np.maximum(upper, by_position[0], out=upper)
+        for j in range(position.shape[0]):
+            reach = velocity[j] * self.reach_time + position[j]
+            lowest = (self._positions[0, j] - reach) * self.position_rate
+            highest = (self._positions[1, j] - reach) * self.position_rate
+            slowest = (self._velocities[0, j] - velocity[j]) * self.velocity_rate
+            fastest = (self._velocities[1, j] - velocity[j]) * self.velocity_rate
+            lower[j] = min(max(lowest, slowest), highest)
+            upper[j] = max(min(highest, fastest), lowest)

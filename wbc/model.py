@@ -5,10 +5,12 @@ import math
 import numpy as np
 import pinocchio as pin
 
+from surefoot import algebra
 from surefoot.forces import NO_LOAD, ExternalLoad
 from surefoot.native.library import library
 from surefoot.values import dataclass
 from surefoot.wbc.compiled import CompiledTerms
+from surefoot.wbc.frame import Frame
 from surefoot.wbc.leaning import line_centre, line_frame
 from surefoot.wbc.qp import WRENCH_UNIT
 from surefoot.wbc.types import GRAVITY, Array
@@ -81,7 +83,7 @@ class RobotTerms:
         torso_jacobian: from v to the torso's angular velocity, shape (3, nv).
         torso_velocity: angular, in its frame, shape (3,) [rad/s].
         torso_bias: angular acceleration with v' = 0, shape (3,) [rad/s^2].
-        compiled: kernels that fill these arrays; None for plain Python.
+        compiled: these terms as kernels take them; None without kernels.
     """
 
     def __init__(self, model: pin.Model, frames: BodyFrames, wrench_unit: float = WRENCH_UNIT) -> None:
@@ -96,31 +98,44 @@ class RobotTerms:
             )
         self.model = model
         self.data = data = model.createData()
-        self.q: Array = pin.neutral(model)
-        self.v: Array = np.zeros(model.nv)
         left, right = frames.soles
-        self._soles = _frame_id(model, left), _frame_id(model, right)
-        self._torso = _frame_id(model, frames.torso)
+        soles = _frame_id(model, left), _frame_id(model, right)
+        self._torso_frame = torso = _frame_id(model, frames.torso)
         self.leaning = frames.leaning
-        self.waist = model.frames[self._torso].parentJoint != 1
+        self.waist = model.frames[torso].parentJoint != 1
         self.mass = self.model_mass = float(sum(inertia.mass for inertia in model.inertias))
-        self.load, self.wrench_unit = NO_LOAD, wrench_unit
-        # Views of Pinocchio's own memory need no copy. M is symmetric and column-major: its transpose is contiguous.
+        self.nv, self.wrench_unit = model.nv, wrench_unit
+        self._view(data, torso)
+        self._allocate(model)
+        self._left, self._right = (
+            Frame(model, data, sole, self.sole_jacobian[k], self.sole_velocity[k], self.sole_bias[k])
+            for k, sole in enumerate(soles)
+        )
+        motion = np.zeros((6, model.nv)), np.zeros(6), np.zeros(6)
+        self._torso = Frame(model, data, torso, *motion)
+        self.torso_jacobian, self.torso_velocity, self.torso_bias = (part[3:] for part in motion)
+        self._name()
+        kernels = library()
+        self.compiled = CompiledTerms(kernels, self) if kernels else None
+
+    def _view(self, data: pin.Data, torso: int) -> None:
+        """Views of Pinocchio's own memory, which need no copy."""
+        # M is symmetric and column-major: its transpose is contiguous.
         self.mass_matrix: Array = data.M.T
         self._mass_diagonal: Array = np.einsum("ii->i", data.M)
         self.bias: Array = data.nle
         self.com: Array = data.com[0]
         self.angular_momentum: Array = data.hg.angular
         self._linear_momentum: Array = data.hg.linear
+        self._momentum: Array = data.h[0].vector
         self.base_rotation: Array = data.oMi[1].rotation
-        self.torso_rotation: Array = data.oMf[self._torso].rotation
-        self.torso_position: Array = data.oMf[self._torso].translation
-        self._sole_places = [(data.oMf[sole].translation, data.oMf[sole].rotation) for sole in self._soles]
-        torso = self._allocate(model.nv)
-        kernels = library()
-        self.compiled = CompiledTerms(kernels, self, self._soles, self._torso, torso) if kernels else None
+        self.torso_rotation: Array = data.oMf[torso].rotation
+        self.torso_position: Array = data.oMf[torso].translation
 
-    def _allocate(self, nv: int) -> tuple[Array, Array, Array]:
+    def _allocate(self, model: pin.Model) -> None:
+        nv = model.nv
+        self.q: Array = pin.neutral(model)
+        self.v: Array = np.zeros(nv)
         self.com_velocity, self.base_angular_velocity = np.zeros(3), np.zeros(3)
         self.sole_position, self.sole_rotation = np.zeros((2, 3)), np.zeros((2, 3, 3))
         self.sole_pose = np.zeros((2, 7))
@@ -129,32 +144,48 @@ class RobotTerms:
         self.sole_jacobian = self.contact_jacobian.reshape(2, 6, nv)
         self.sole_velocity, self.sole_bias = np.zeros((2, 6)), np.zeros((2, 6))
         self.sole_wrench_map = np.zeros((6, 12))
-        torso = np.zeros((6, nv)), np.zeros(6), np.zeros(6)
-        self.torso_jacobian, self.torso_velocity, self.torso_bias = (part[3:] for part in torso)
-        self._shifted, self.is_shifted, self.is_finite = [False, False], False, True
-        return torso
+        self.load, self._load_force, self._load_moment = NO_LOAD, np.zeros(3), np.zeros(3)
+        self._to_sole = np.zeros((6, 6))
+        self._shifted_left = self._shifted_right = self.is_shifted = False
+        self.is_finite = True
+
+    def _name(self) -> None:
+        """Name the same memory for compiled laws."""
+        self._q, self._v, self._c, self._c_dot = self.q, self.v, self.com, self.com_velocity
+        self._L, self._h = self.angular_momentum, self.bias
+        self._M, self._J, self._W = self.mass_matrix, self.contact_jacobian, self.sole_wrench_map
+        self._R_base, self._w_base = self.base_rotation, self.base_angular_velocity
+        self._R_torso, self._w_torso = self.torso_rotation, self.torso_velocity
+        self._J_torso, self._bias_torso = self.torso_jacobian, self.torso_bias
+        self._p_sole, self._R_sole, self._pose = self.sole_position, self.sole_rotation, self.sole_pose
+        self._p_contact, self._R_contact = self.contact_position, self.contact_rotation
+        self._v_sole, self._bias_sole = self.sole_velocity, self.sole_bias
 
     def update(self, q: Array, v: Array) -> None:
         """Compute every term at configuration q, shape (nq,), and velocity v, shape (nv,)."""
         self.q[...], self.v[...] = q, v  # numpy.copyto goes through Python first
         # Leaves in data.a the velocity-product accelerations, those of zero generalised acceleration.
         pin.computeAllTerms(self.model, self.data, q, v)
-        compiled = self.compiled
         if self.load is not NO_LOAD:
-            self.mass, self.load = self.model_mass, NO_LOAD
-            if compiled is not None:
-                compiled.bear(self.mass, NO_LOAD)
-        if self.is_shifted:
-            self._shifted[:], self.is_shifted = (False, False), False
-        if compiled is not None:
-            self.is_finite = compiled.update() != 0
-            return
-        self.is_finite = math.isfinite(q.dot(q) + v.dot(v))
-        np.divide(self._linear_momentum, self.model_mass, out=self.com_velocity)
-        self.base_angular_velocity[:] = v[3:6]
+            self.mass = self.model_mass
+            self._carry(NO_LOAD)
+        self._shifted_left = self._shifted_right = self.is_shifted = False
+        self._update()
+
+    def _update(self) -> None:
+        """What follows from Pinocchio's terms."""
+        total = 0.0
+        for i in range(self._q.shape[0]):
+            total += self._q[i] * self._q[i]
+        for i in range(self._v.shape[0]):
+            total += self._v[i] * self._v[i]
+        self.is_finite = math.isfinite(total)
+        for i in range(3):
+            self._c_dot[i] = self._linear_momentum[i] / self.model_mass
+            self._w_base[i] = self._v[3 + i]
         self._update_sole(0)
         self._update_sole(1)
-        self._update_torso()
+        self._torso.update()
 
     def place(self, q: Array, v: Array) -> None:
         """Compute where the robot is, as `update` does, in less than half its time.
@@ -166,15 +197,26 @@ class RobotTerms:
             q: configuration, shape (nq,) [m, -, rad].
             v: velocity, shape (nv,) [m/s, rad/s].
         """
-        if self.compiled is None:
-            self.update(q, v)
-            return
         self.q[...], self.v[...] = q, v
         # The CoM of computeAllTerms is that of ccrba, and its momentum that of the other, about another CoM; on
         # processors of x86-64 to the bit.
         pin.computeCentroidalMomentum(self.model, self.data, q, v)
         pin.ccrba(self.model, self.data, q, v)
-        self.compiled.place()
+        self._place()
+
+    def _place(self) -> None:
+        """What follows: the momentum of the one about the CoM of the other."""
+        h = self._momentum
+        p = (h[0], h[1], h[2])
+        turn = algebra.cross(p, algebra.vector(self._c))
+        for i in range(3):
+            self._c_dot[i] = h[i] / self.model_mass
+        self._L[0], self._L[1], self._L[2] = h[3] + turn[0], h[4] + turn[1], h[5] + turn[2]
+        self._left.place()
+        self._right.place()
+        self._torso.place()
+        self._place_sole(0)
+        self._place_sole(1)
 
     def bear(self, load: ExternalLoad) -> None:
         """Count with a load until the next update.
@@ -187,7 +229,7 @@ class RobotTerms:
         """
         if load is NO_LOAD:
             return
-        self.load, scale = load, load.mass_scale
+        scale = load.mass_scale
         if scale != 1.0:
             self.mass = scale * self.model_mass
             self.mass_matrix *= scale
@@ -195,22 +237,32 @@ class RobotTerms:
             self.bias *= scale
         R = self.torso_rotation
         moment = load.moment + cross(self.com - self.torso_position, load.force)
-        torso = pin.getFrameJacobian(self.model, self.data, self._torso, _LOCAL)
+        torso = pin.getFrameJacobian(self.model, self.data, self._torso_frame, _LOCAL)
         self.bias -= np.concatenate((load.force @ R, moment @ R)) @ torso
-        if self.compiled is not None:
-            self.compiled.bear(self.mass, load)
+        self._carry(load)
+
+    def _carry(self, load: ExternalLoad) -> None:
+        self.load, force, moment = load, load.force, load.moment
+        self._load_force[:], self._load_moment[:] = force, moment
+
+    def _sole(self, k: int) -> Frame:
+        return self._right if k else self._left
 
     def _update_sole(self, k: int) -> None:
-        model, data, frame = self.model, self.data, self._soles[k]
-        placement = pin.updateFramePlacement(model, data, frame)
-        position, rotation = self._sole_places[k]
-        self.sole_position[k] = self.contact_position[k] = position
-        self.sole_rotation[k] = self.contact_rotation[k] = rotation
-        self.sole_pose[k] = pin.SE3ToXYZQUAT(placement)
-        self.sole_wrench_map[:, 6 * k : 6 * k + 6] = placement.toDualActionMatrix()
-        self.sole_jacobian[k] = pin.getFrameJacobian(model, data, frame, _LOCAL)
-        self.sole_velocity[k] = pin.getFrameVelocity(model, data, frame, _LOCAL).vector
-        self.sole_bias[k] = pin.getFrameClassicalAcceleration(model, data, frame, _LOCAL).vector
+        """All of a sole, seen from its centre."""
+        self._sole(k).update()
+        self._place_sole(k)
+        self._p_contact[k, :] = self._p_sole[k]
+        self._R_contact[k, :, :] = self._R_sole[k]
+        algebra.see_wrench(self._R_sole[k], algebra.vector(self._p_sole[k]), self._W[:, 6 * k : 6 * k + 6])
+
+    def _place_sole(self, k: int) -> None:
+        """Where a sole is, of a frame that is in its place."""
+        frame, pose = self._sole(k), self._pose[k]
+        self._R_sole[k, :, :] = frame.rotation
+        self._p_sole[k, :] = frame.position
+        pose[:3] = frame.position
+        algebra.quaternion(self._R_sole[k], pose[3:])
 
     def level_soles(self, toe: float) -> Array:
         """Where the soles' centres would be if each foot turned level about its toe edge, shape (2, 3) [m].
@@ -245,38 +297,37 @@ class RobotTerms:
             What takes a wrench from the new frame to the sole's, shape (6, 6) [-, m].
         """
         self.unshift(k)
-        self._shifted[k] = self.is_shifted = True
-        if self.compiled is not None and self.leaning is None:
-            return self.compiled.shift(k, forward, pitch)
-        turned = pin.SE3(pin.utils.rotate("y", -pitch), np.array([forward, 0.0, 0.0]))
+        self._mark(k, True)
+        c, s = math.cos(pitch), math.sin(pitch)
+        R, p = np.array([[c, 0.0, -s], [0.0, 1.0, 0.0], [s, 0.0, c]]), np.array([forward, 0.0, 0.0])
         if self.leaning is not None:
-            turned = line_frame(k, self.sole_rotation[k], self.leaning) * turned
-        action = turned.toActionMatrixInverse()
-        spin = self.sole_velocity[k, 3:]
-        centripetal = cross(spin, cross(spin, turned.translation))
-        self.sole_jacobian[k] = action @ self.sole_jacobian[k]
-        self.sole_velocity[k] = action @ self.sole_velocity[k]
-        self.sole_bias[k] = action @ self.sole_bias[k]
-        self.sole_bias[k, :3] += turned.rotation.T @ centripetal
-        placement = pin.SE3(self.sole_rotation[k], self.sole_position[k]) * turned
-        self.contact_position[k], self.contact_rotation[k] = placement.translation, placement.rotation
-        self.sole_wrench_map[:, 6 * k : 6 * k + 6] = placement.toDualActionMatrix()
-        to_sole: Array = turned.toDualActionMatrix()
-        return to_sole
+            line = line_frame(k, self.sole_rotation[k], self.leaning)
+            R, p = line.rotation @ R, line.act(p)
+        self._shift(k, R, p)
+        return self._to_sole.copy()
+
+    def _shift(self, k: int, R: Array, p: Array) -> None:
+        """See a foot from a frame with rotation R and origin p in that of its sole."""
+        there, R_sole = algebra.vector(p), self._R_sole[k]
+        self._sole(k).shift(R, p)
+        at = algebra.add(algebra.rotate(R_sole, there), algebra.vector(self._p_sole[k]))
+        algebra.put(self._p_contact[k], at)
+        algebra.compose(R_sole, R, self._R_contact[k])
+        algebra.see_wrench(self._R_contact[k], at, self._W[:, 6 * k : 6 * k + 6])
+        algebra.see_wrench(R, there, self._to_sole)
 
     def unshift(self, k: int) -> None:
         """See foot k from its sole again, as after an update."""
-        if self._shifted[k]:
-            self._shifted[k] = False
-            self.is_shifted = self._shifted[1 - k]
-            (self._update_sole if self.compiled is None else self.compiled.unshift)(k)
+        if self._shifted_right if k else self._shifted_left:
+            self._mark(k, False)
+            self._update_sole(k)
 
-    def _update_torso(self) -> None:
-        model, data, frame = self.model, self.data, self._torso
-        pin.updateFramePlacement(model, data, frame)
-        self.torso_jacobian[:] = pin.getFrameJacobian(model, data, frame, _LOCAL)[3:]
-        self.torso_velocity[:] = pin.getFrameVelocity(model, data, frame, _LOCAL).angular
-        self.torso_bias[:] = pin.getFrameAcceleration(model, data, frame, _LOCAL).angular
+    def _mark(self, k: int, shifted: bool) -> None:
+        if k:
+            self._shifted_right = shifted
+        else:
+            self._shifted_left = shifted
+        self.is_shifted = self._shifted_left or self._shifted_right
 
 
 def cross(a: Array, b: Array) -> Array:

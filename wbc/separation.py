@@ -1,16 +1,15 @@
 """Distances between the robot's own limbs as bounds on the joint accelerations of one tick."""
 
-from collections.abc import Callable, Sequence
+import math
 
 import numpy as np
 import pinocchio as pin
+from numpy.typing import NDArray
 
-from surefoot.wbc.compiled import CompiledTerms, moving_columns
-from surefoot.wbc.model import cross
+from surefoot import algebra, linear
+from surefoot.wbc.frame import moving_columns
 from surefoot.wbc.parameters import SeparationParameters
 from surefoot.wbc.types import Array
-
-_WORLD_AXES = pin.ReferenceFrame.LOCAL_WORLD_ALIGNED
 
 
 class Separation:
@@ -25,181 +24,170 @@ class Separation:
     ICRA 1987, is the first such damper on distances.)
 
     Attributes:
-        due: pairs that have to be measured; None in plain Python, which measures all of them.
         is_clear: whether the rows that were written last hold no pair.
     """
 
-    def __init__(
-        self,
-        model: pin.Model,
-        geometry: pin.GeometryModel,
-        parameters: SeparationParameters,
-        compiled: CompiledTerms | None = None,
-    ) -> None:
+    def __init__(self, model: pin.Model, geometry: pin.GeometryModel, parameters: SeparationParameters) -> None:
         """Take the shapes whose collision pairs are to be kept apart.
 
         Args:
             model: the robot.
             geometry: its shapes.
             parameters: when they keep apart.
-            compiled: terms on which the kernel works; None for plain Python.
         """
         self._model, self._geometry, self._parameters = model, geometry, parameters
-        self._data = pin.GeometryData(geometry)
+        self._shapes = pin.GeometryData(geometry)
         # The results are updated in place; to walk through Pinocchio's vector of them costs more than the distances.
-        self._results = list(self._data.distanceResults)
-        self._joints = [
-            tuple(geometry.geometryObjects[shape].parentJoint for shape in (pair.first, pair.second))
-            for pair in geometry.collisionPairs
-        ]
-        self._points = np.zeros((2, 3))
+        self._results = list(self._shapes.distanceResults)
+        self._data: pin.Data | None = None
+        self._pairs: list[Pair] = []
+        self._attention = parameters.attention
         self._written: Array | None = None
         self._filled = 0
         self.is_clear = False
-        self._compiled, self._rates = compiled, dict[tuple[int, int], Callable[[], float]]()
-        self.due = DuePairs(compiled, geometry, self._joints, parameters.attention) if compiled else None
 
     def write(self, data: pin.Data, v: Array, rows: Array, lower: Array, unbounded: float) -> None:
         """Write the rows of the nearest pairs; unused ones become zero rows without a bound.
 
         Args:
-            data: Pinocchio's terms of the state, with joint Jacobians.
+            data: Pinocchio's terms of the state, with joint Jacobians; best the same at each call.
             v: generalised velocity, shape (nv,).
             rows: shape (slots, nv).
             lower: lower bounds of the rows, shape (slots,).
             unbounded: value of an absent bound.
         """
-        if self.due is None:
-            near = self._near(data)
-            if near or not self.is_clear or self._written is not rows:
-                self._fill(near, data, v, rows, lower, unbounded)
-        else:
-            self.write_due(self.due.find(), data, v, rows, lower, unbounded)
+        if data is not self._data:
+            self._data = data
+            self._pairs = [Pair(self._model, data, self._geometry, pair) for pair in self._geometry.collisionPairs]
+        due = self.due()
+        if due or not self.is_clear or self._written is not rows:
+            self._fill(self._near(due), v, rows, lower, unbounded)
 
-    def write_due(self, count: int, data: pin.Data, v: Array, rows: Array, lower: Array, unbounded: float) -> None:
-        """The same where so many pairs are known to be due."""
-        assert self.due is not None
-        known, results, attention = self.due.distances, self._results, self._parameters.attention
-        geometry, measured, near = self._geometry, self._data, []
-        if count:
-            pin.updateGeometryPlacements(self._model, data, geometry, measured)
-            for k in self.due.numbers[:count].tolist():
-                pin.computeDistance(geometry, measured, k)
-                known[k] = distance = results[k].min_distance
-                if 0.0 < distance < attention:
-                    near.append((distance, k))
-        self._fill(near, data, v, rows, lower, unbounded)
+    def due(self) -> list[int]:
+        """Numbers of the pairs that may have come near since they were measured, each of which is to be measured."""
+        found = []
+        for k in range(len(self._pairs)):
+            pair = self._pairs[k]
+            if pair.is_due(self._attention):
+                found.append(k)
+        return found
 
-    def _near(self, data: pin.Data) -> list[tuple[float, int]]:
-        """Distance and number of each pair within the attention, all of which are measured."""
-        attention = self._parameters.attention
-        pin.updateGeometryPlacements(self._model, data, self._geometry, self._data)
-        least = pin.computeDistances(self._geometry, self._data)
-        # Where not even the nearest pair is looked at, it alone has to be read.
-        if least < len(self._results) and self._results[least].min_distance >= attention:
+    def _near(self, due: list[int]) -> list[tuple[float, int]]:
+        """Distance and number of each pair within the attention, once those that are due are measured."""
+        if not due:
             return []
-        distances = [result.min_distance for result in self._results]
-        return [(distance, k) for k, distance in enumerate(distances) if 0.0 < distance < attention]
+        pin.updateGeometryPlacements(self._model, self._data, self._geometry, self._shapes)
+        near = []
+        for k in due:
+            pin.computeDistance(self._geometry, self._shapes, k)
+            pair, distance = self._pairs[k], self._results[k].min_distance
+            pair.distance = distance
+            if 0.0 < distance < self._attention:
+                near.append((distance, k))
+        return near
 
-    def _fill(
-        self, near: list[tuple[float, int]], data: pin.Data, v: Array, rows: Array, lower: Array, unbounded: float
-    ) -> None:
+    def _fill(self, near: list[tuple[float, int]], v: Array, rows: Array, lower: Array, unbounded: float) -> None:
         """Write the rows of pairs that are near, by distance and number."""
-        p, compiled = self._parameters, self._compiled
+        p = self._parameters
         if self._written is not rows:
             self._written, self._filled = rows, p.slots
-            self._rates.clear()
         filled, self._filled = self._filled, min(len(near), p.slots)
         self.is_clear = not near
         near.sort()
-        for slot, (distance, pair) in enumerate(near[: p.slots]):
-            if compiled is None:
-                rows[slot] = self._gradient(data, pair)
-                rate = float(rows[slot] @ v)
-            else:
-                result, points = self._results[pair], self._points
-                points[0], points[1] = result.getNearestPoint1(), result.getNearestPoint2()
-                rate = (self._rates.get((pair, slot)) or self._bound(compiled, pair, slot))()
+        for slot, (distance, k) in enumerate(near[: p.slots]):
+            result = self._results[k]
+            normal, first, second = result.normal, result.getNearestPoint1(), result.getNearestPoint2()
+            pair = self._pairs[k]
+            rate = pair.rate(normal, first, second, v, rows, slot)
             gap = max(distance - p.clearance, 0.0)
             lower[slot] = -2.0 / p.horizon * rate - gap / p.horizon**2
         if filled > self._filled:
             rows[self._filled :], lower[self._filled :] = 0.0, -unbounded
 
-    def _bound(self, terms: CompiledTerms, pair: int, slot: int) -> Callable[[], float]:
-        """The kernel that does what `_gradient` does for a pair in a slot, bound once it is near."""
-        assert self._written is not None
-        columns = [np.array(moving_columns(self._model, joint), dtype=np.int64) for joint in self._joints[pair]]
-        self._rates[pair, slot] = rate = terms.kernels.bind(
-            "distance_rate",
-            terms=terms.bound,
-            first_count=len(columns[0]),
-            first_columns=columns[0],
-            second_count=len(columns[1]),
-            second_columns=columns[1],
-            direction=self._results[pair].normal,  # where Coal keeps it
-            points=self._points,
-            gradient=self._written[slot],
-        )
-        return rate
 
-    def _gradient(self, data: pin.Data, pair: int) -> Array:
-        """Jacobian of a distance, shape (nv,)."""
-        result, (one, other) = self._results[pair], self._joints[pair]
-        normal = -np.asarray(result.normal)
-        row = self._along(data, one, result.getNearestPoint1(), normal)
-        row -= self._along(data, other, result.getNearestPoint2(), normal)
-        return row
+class Pair:
+    """Two shapes on two bodies, which most of the time cannot have come near since their distance was measured.
 
-    def _along(self, data: pin.Data, joint: int, point: Array, normal: Array) -> Array:
-        """From v to the rate along a normal at a point that goes with a joint, shape (nv,)."""
-        arm = point - data.oMi[joint].translation
-        jacobian = pin.getJointJacobian(self._model, data, joint, _WORLD_AXES)
-        return np.asarray(normal.dot(jacobian[:3]) + cross(arm, normal).dot(jacobian[3:]))
-
-
-class DuePairs:
-    """Pairs that can have come near since their distance was measured last, which most of a robot's limbs never do.
+    A distance changes by no more than a point of the second shape moves, seen from the first body: its centre, and as
+    far as the farthest point from that turns.
 
     Args:
-        compiled: terms whose joints move the shapes.
+        model: the robot.
+        data: where Pinocchio places its joints.
         geometry: the shapes.
-        joints: those of the two shapes of each pair.
-        attention: distance from which a pair is looked at [m].
+        pair: their numbers.
 
     Attributes:
-        distances: as measured last, shape (pairs,) [m].
-        numbers: of the pairs that were found last, in its first places, shape (pairs,) [-].
-        bound: these pairs as other kernels take them.
-        find: finds those that are due in the state of the terms, each of which is then to be measured there; returns
-            how many they are.
+        distance: as measured last [m].
     """
 
-    def __init__(
-        self,
-        compiled: CompiledTerms,
-        geometry: pin.GeometryModel,
-        joints: Sequence[tuple[int, ...]],
-        attention: float,
-    ) -> None:
-        centres, radii = [], []
-        for pair in geometry.collisionPairs:
-            shape = geometry.geometryObjects[pair.second]
-            shape.geometry.computeLocalAABB()
-            centres.append(shape.placement.act(np.array(shape.geometry.aabb_center)))
-            radii.append(shape.geometry.aabb_radius)
-        poses = [compiled.pose(joint) for pair in joints for joint in pair]
-        self.distances, self.numbers = np.full(len(joints), -np.inf), np.zeros(len(joints), dtype=np.int64)
-        # The kernel follows addresses, so what is there must live as long as this.
-        self._poses = poses
-        self.bound = compiled.kernels.fill(
-            "Pairs",
-            count=len(joints),
-            poses=np.array([part.ctypes.data for pose in poses for part in pose], dtype=np.int64),
-            centres=np.array(centres).reshape(-1, 3),
-            radii=np.array(radii, dtype=np.float64),
-            attention=attention,
-            places=np.zeros((len(joints), 12)),
-            distances=self.distances,
-            due=self.numbers,
+    def __init__(self, model: pin.Model, data: pin.Data, geometry: pin.GeometryModel, pair: pin.CollisionPair) -> None:
+        shapes = [geometry.geometryObjects[k] for k in (pair.first, pair.second)]
+        (one, other), far = (shape.parentJoint for shape in shapes), shapes[1]
+        far.geometry.computeLocalAABB()
+        self._centre = algebra.vector(far.placement.act(np.array(far.geometry.aabb_center)))
+        self._radius, self.distance = far.geometry.aabb_radius, -math.inf
+        # Views of Pinocchio's memory, which never moves.
+        self._R_1, self._p_1 = data.oMi[one].rotation, data.oMi[one].translation
+        self._R_2, self._p_2 = data.oMi[other].rotation, data.oMi[other].translation
+        self._jacobian = data.J
+        self._columns_1, self._columns_2 = (
+            np.array(moving_columns(model, joint), dtype=np.int64) for joint in (one, other)
         )
-        self.find = compiled.kernels.bind("pairs_due", self.bound)
+        self._R, self._p = np.zeros((3, 3)), (0.0, 0.0, 0.0)
+
+    def is_due(self, attention: float) -> bool:
+        """Whether the distance may be less than that [m]; what is due is taken as measured in this place."""
+        turned = linear.distance_squared(self._R_1, self._R_2, self._R)
+        now = self._seen()
+        moved = algebra.subtract(now, self._p)
+        most = math.sqrt(algebra.inner(moved, moved)) + self._radius * math.sqrt(0.5 * turned)
+        if self.distance - most > attention:
+            return False
+        algebra.compose_back(self._R_1, self._R_2, self._R)
+        self._p = now
+        return True
+
+    def _seen(self) -> algebra.Vector:
+        """Centre of the second shape as seen from the first body, R_1' (p_2 - p_1 + R_2 c) [m]."""
+        x, y, z = self._lever(0), self._lever(1), self._lever(2)
+        return (
+            self._R_1[0, 0] * x + self._R_1[1, 0] * y + self._R_1[2, 0] * z,
+            self._R_1[0, 1] * x + self._R_1[1, 1] * y + self._R_1[2, 1] * z,
+            self._R_1[0, 2] * x + self._R_1[1, 2] * y + self._R_1[2, 2] * z,
+        )
+
+    def _lever(self, i: int) -> float:
+        """The same in the world, along an axis [m]."""
+        c, apart = self._centre, self._p_2[i] - self._p_1[i]
+        lever: float = apart + self._R_2[i, 0] * c[0] + self._R_2[i, 1] * c[1] + self._R_2[i, 2] * c[2]
+        return lever
+
+    def rate(self, direction: Array, first: Array, second: Array, v: Array, rows: Array, slot: int) -> float:
+        """Write the Jacobian of the distance into a row; the rate of the distance [m/s].
+
+        Args:
+            direction: from the nearest point of the first shape to that of the second one, shape (3,).
+            first: nearest point of the first shape, in the world, shape (3,) [m].
+            second: that of the second one, likewise.
+            v: generalised velocity, shape (nv,).
+            rows: shape (slots, nv).
+            slot: number of the row.
+        """
+        rows[slot, :] = 0.0
+        normal = algebra.scale(-1.0, algebra.vector(direction))
+        self._add_point(1.0, normal, algebra.vector(first), self._columns_1, rows, slot)
+        self._add_point(-1.0, normal, algebra.vector(second), self._columns_2, rows, slot)
+        return linear.row_dot(rows, slot, v)
+
+    def _add_point(
+        self, sign: float, n: algebra.Vector, point: algebra.Vector, columns: NDArray[np.int64], rows: Array, slot: int
+    ) -> None:
+        """Add n'(J v) of a point of a body, whose joints have these columns: n'v + (p x n)'ω."""
+        J, lever = self._jacobian, algebra.cross(point, n)
+        for i in range(columns.shape[0]):
+            j = columns[i]
+            along = n[0] * J[0, j] + lever[0] * J[3, j]
+            along += n[1] * J[1, j] + lever[1] * J[4, j]
+            along += n[2] * J[2, j] + lever[2] * J[5, j]
+            rows[slot, j] += sign * along

@@ -78,7 +78,7 @@ class FootSensing:
 
 _put = object.__setattr__
 
-_ARRAYS: Mapping[str, tuple[int, tuple[int, ...]]] = {
+ARRAYS: Mapping[str, tuple[int, tuple[int, ...]]] = {
     "com": (0, (3,)),
     "com_velocity": (3, (3,)),
     "com_acceleration": (6, (3,)),
@@ -92,8 +92,9 @@ _ARRAYS: Mapping[str, tuple[int, tuple[int, ...]]] = {
     "swing_rotation": (28, (3, 3)),
     "ground_normal": (37, (2, 3)),
 }
+"""Where the arrays of a reference are in its numbers, and their shapes."""
 _IN_NUMBERS: Mapping[str, tuple[int, tuple[int, ...]]] = {
-    **_ARRAYS,
+    **ARRAYS,
     "omega": (43, ()),
     "stiffness": (44, ()),
     "heading": (45, ()),
@@ -213,7 +214,7 @@ class WbcReference:
                 raise AttributeError(f"{type(self).__name__} has no attribute '{name}'")
             start, shape = _IN_NUMBERS[name]
             part = self.numbers[start : start + math.prod(shape)]
-            value = part.reshape(shape) if name in _ARRAYS else tuple(part.tolist()) if shape else part.item()
+            value = part.reshape(shape) if name in ARRAYS else tuple(part.tolist()) if shape else part.item()
             _put(self, name, value)
             return value
 

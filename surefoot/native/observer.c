@@ -150,10 +150,9 @@ int64_t load_span_end(const LoadSpan *span, double age) {
 /* Where the soles' centres would be if each foot turned level about its toe edge, their yaws, and the ZMP. */
 void feet_see(const FeetSeen *feet, double toe) {
     const Terms *terms = feet->terms;
-    const Sole *soles[2] = {terms->left, terms->right};
     double force[2][3], torque[2][3], total = 0.0, height = 0.0, x = 0.0, y = 0.0;
     for (int k = 0; k < 2; k++) {
-        const double *R = soles[k]->rotation, *position = terms->sole_position + 3 * k;
+        const double *R = terms->sole_rotation + 9 * k, *position = terms->sole_position + 3 * k;
         const double ahead[3] = {R[0], R[3], R[6]}, size = hypot(ahead[0], ahead[1]);
         const double flat = 1.0 / (size > 1e-9 ? size : 1e-9);
         for (int i = 0; i < 3; i++)

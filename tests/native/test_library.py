@@ -102,16 +102,17 @@ def test_structs_are_as_large_as_the_compiler_makes_them(kernels, tmp_path):
 
 
 def test_a_struct_is_filled_whole_and_with_what_it_points_to(kernels):
-    decay, bench = 3.0, kernels.fill("Bench")
-    assert kernels.fill("AngularMomentum", bench=bench, decay=decay).struct.decay == decay
+    noise, value = kernels.fill("Noise", size=3, silent=0, drawn=np.zeros(3)), np.zeros(3)
+    assert noise.struct.size == 3
+    drift = kernels.fill("Drift", steps=noise, value=value)
     with pytest.raises(TypeError, match="has the fields"):
-        kernels.fill("AngularMomentum", bench=bench)
+        kernels.fill("Drift", steps=noise)
     with pytest.raises(TypeError, match="has the fields"):
-        kernels.fill("AngularMomentum", bench=bench, decay=decay, more=1)
-    with pytest.raises(TypeError, match=r"AngularMomentum\.bench points to Bench"):
-        kernels.fill("AngularMomentum", bench=kernels.fill("Torso"), decay=decay)
-    with pytest.raises(TypeError, match="works on a Torso"):
-        kernels.bind("task_torso", bench)
+        kernels.fill("Drift", steps=noise, value=value, more=1)
+    with pytest.raises(TypeError, match=r"Drift\.steps points to Noise"):
+        kernels.fill("Drift", steps=drift, value=value)
+    with pytest.raises(TypeError, match="works on a Feet"):
+        kernels.bind("feet_sample", noise)
     numbers = {"terms": kernels.fill("Terms"), "wrench": np.zeros((2, 6)), "felt": np.zeros(6), "com": np.zeros(3)}
     numbers |= {"past": np.zeros((4, 6)), "past_count": 4, "newest": np.zeros(1, dtype=np.int64)}
     kernels.fill("LoadSums", **numbers)

@@ -3,7 +3,6 @@
 import numpy as np
 import pytest
 
-from surefoot.native.library import VARIABLE
 from surefoot.wbc.qp import UNBOUNDED
 from surefoot.wbc.tasks.swing import AnkleStops
 from surefoot.wbc.types import FootSensing, RobotState
@@ -52,22 +51,14 @@ def bounds_at_the_end(robot, reference):
     return np.array([controller.qp.bounds_lower[columns], controller.qp.bounds_upper[columns]])
 
 
-@pytest.mark.parametrize("kernels", ["compiled", "plain"])
-def test_the_end_of_the_range_of_its_roll_does_not_stop_the_body_over_a_held_foot(
-    robot, references, kernels, monkeypatch
-):
-    if kernels == "plain":
-        monkeypatch.setenv(VARIABLE, "0")
+def test_the_end_of_the_range_of_its_roll_does_not_stop_the_body_over_a_held_foot(robot, references):
     lower, upper = bounds_at_the_end(robot, references[0]())
     assert lower[1] <= -UNBOUNDED and upper[1] >= UNBOUNDED
     assert lower[0] > -UNBOUNDED and upper[0] < UNBOUNDED
 
 
-@pytest.mark.parametrize("kernels", ["compiled", "plain"])
-def test_it_stops_that_of_a_swinging_foot(robot, references, kernels, monkeypatch):
+def test_it_stops_that_of_a_swinging_foot(robot, references):
     """Negative control: nothing but the joint itself turns that foot."""
-    if kernels == "plain":
-        monkeypatch.setenv(VARIABLE, "0")
     _, upper = bounds_at_the_end(robot, references[1]())
     assert upper[1] < 0.0
 

@@ -3,20 +3,17 @@
 Each costs Σ weight_i (x_i - target_i)², which adds the weights to the diagonal of H and weight_i target_i to -g.
 """
 
-from collections.abc import Callable
-from typing import Protocol
-
 import numpy as np
 from numpy.typing import NDArray
 
 from surefoot.wbc.arm_swing import ArmSwing
-from surefoot.wbc.compiled import CompiledTick
 from surefoot.wbc.model import RobotTerms
+from surefoot.wbc.setpoint import Setpoint
 from surefoot.wbc.tasks.parameters import TaskGains, TaskWeights
-from surefoot.wbc.types import GRAVITY, Array, WbcReference
+from surefoot.wbc.types import GRAVITY, Array
 
 
-class DiagonalTerm(Protocol):
+class DiagonalTerm:
     """A cost on single variables."""
 
     def weigh(self, diagonal: Array, catching: bool) -> None:
@@ -26,15 +23,16 @@ class DiagonalTerm(Protocol):
             diagonal: to be added to.
             catching: as where a step catches the body, in place of a walk.
         """
+        raise NotImplementedError
 
-    def write(self, terms: RobotTerms, reference: WbcReference, linear: Array) -> None:
-        """Write weight times target of its variables into ``linear``, shape (nv + 12,), zero at first."""
+    def put(self, terms: RobotTerms, reference: Setpoint, linear: Array) -> None:
+        """Write weight times target of its variables into ``linear``, shape (nv + 12,), zero at first.
 
-    def compiled(self, tick: CompiledTick, linear: Array) -> Callable[[], None] | None:
-        """A kernel that does what ``write`` does; None where that is nothing."""
+        Where the target is zero, that is nothing.
+        """
 
 
-class Regularisation:
+class Regularisation(DiagonalTerm):
     """No generalised acceleration without a reason: what keeps H positive definite."""
 
     def __init__(self, weights: TaskWeights, length: float) -> None:
@@ -46,14 +44,8 @@ class Regularisation:
         diagonal[:3] += self._weight[0]
         diagonal[3:-12] += self._weight[1]
 
-    def write(self, terms: RobotTerms, reference: WbcReference, linear: Array) -> None:
-        """Nothing: the target is zero."""
 
-    def compiled(self, tick: CompiledTick, linear: Array) -> None:
-        """None is needed."""
-
-
-class Posture:
+class Posture(DiagonalTerm):
     """Joint accelerations that return the joints to a posture, in which the arms may swing: K (q_0 - q) - D q'."""
 
     def __init__(
@@ -80,76 +72,41 @@ class Posture:
         if driven is not None:
             self._weights = [np.where(driven, 0.0, weight) for weight in self._weights]
         self._gains, self._posture, self._arms = gains.posture, posture, arms
-        # In place, since the kernel has views of them.
-        self._stiffness, self._damping, self._pull = np.zeros((3, len(posture)))
+        self._K, self._D, self._pull = np.zeros((3, len(posture)))
 
     def weigh(self, diagonal: Array, catching: bool) -> None:
         """See ``DiagonalTerm.weigh``."""
         weight, (stiffness, damping) = self._weights[catching], self._gains
-        np.multiply(stiffness, weight, out=self._stiffness)
-        np.multiply(damping, weight, out=self._damping)
-        np.multiply(self._stiffness, self._posture, out=self._pull)
+        self._K, self._D = stiffness * weight, damping * weight
+        self._pull = stiffness * weight * self._posture
         diagonal[6:-12] += weight
 
-    def write(self, terms: RobotTerms, reference: WbcReference, linear: Array) -> None:
-        """See ``DiagonalTerm.write``."""
-        joints = linear[6:-12]
-        np.multiply(self._stiffness, terms.q[7:], out=joints)
-        np.subtract(self._pull, joints, out=joints)
-        joints -= self._damping * terms.v[6:]
-        if self._arms is not None:
-            self._swing_arms(self._arms, terms, joints)
-
-    def compiled(self, tick: CompiledTick, linear: Array) -> Callable[[], None]:
-        """See ``DiagonalTerm.compiled``."""
-        arms = self._arms or ArmSwing((0, 0), 0.0)
-        return tick.kernels.bind(
-            "cost_posture",
-            terms=tick.terms,
-            joints=len(self._pull),
-            stiffness=self._stiffness,
-            damping=self._damping,
-            pull=self._pull,
-            arm_gain=arms.gain,
-            left_arm=arms.joints[0],
-            right_arm=arms.joints[1],
-            left_back=arms.back[0],
-            right_back=arms.back[1],
-            linear=linear,
-        )
-
-    def _swing_arms(self, arms: ArmSwing, terms: RobotTerms, joints: Array) -> None:
+    def put(self, terms: RobotTerms, reference: Setpoint, linear: Array) -> None:
+        """See ``DiagonalTerm.put``."""
+        for j in range(self._K.shape[0]):
+            linear[6 + j] = self._pull[j] - self._K[j] * terms._q[7 + j] - self._D[j] * terms._v[6 + j]
+        if self._arms is None:
+            return
+        arms = self._arms
         angle, rate = arms.offset(terms)
-        left, right = arms.back
-        for joint, sign in zip(arms.joints, (left, -right), strict=True):
-            joints[joint] += sign * (self._stiffness.item(joint) * angle + self._damping.item(joint) * rate)
+        linear[6 + arms.left] += arms.left_back * (self._K[arms.left] * angle + self._D[arms.left] * rate)
+        linear[6 + arms.right] += -arms.right_back * (self._K[arms.right] * angle + self._D[arms.right] * rate)
 
 
-class ForceDistribution:
+class ForceDistribution(DiagonalTerm):
     """Sole forces near their planned share of the weight, moments near zero."""
 
     def __init__(self, weights: TaskWeights, wrench_unit: float) -> None:
         """``wrench_unit``: of the wrench variables [N, N·m]."""
-        self._force, self._moment, self._unit = weights.force, weights.moment, wrench_unit
+        self._force, self._moment, self._unit, self._g = weights.force, weights.moment, wrench_unit, GRAVITY
 
     def weigh(self, diagonal: Array, catching: bool) -> None:
         """See ``DiagonalTerm.weigh``."""
         diagonal[-12:] += np.tile([self._force] * 3 + [self._moment] * 3, 2) * self._unit**2
 
-    def write(self, terms: RobotTerms, reference: WbcReference, linear: Array) -> None:
-        """See ``DiagonalTerm.write``."""
+    def put(self, terms: RobotTerms, reference: Setpoint, linear: Array) -> None:
+        """See ``DiagonalTerm.put``."""
         # The diagonal weighs forces in wrench units, their targets are shares of the weight.
-        weight = self._force * self._unit * terms.mass * GRAVITY
-        left, right = reference.load_share
-        linear[-10::6] = (weight * left, weight * right)
-
-    def compiled(self, tick: CompiledTick, linear: Array) -> Callable[[], None]:
-        """See ``DiagonalTerm.compiled``."""
-        return tick.kernels.bind(
-            "cost_force_distribution",
-            terms=tick.terms,
-            reference=tick.reference,
-            force=self._force,
-            gravity=GRAVITY,
-            linear=linear,
-        )
+        weight = self._force * terms.wrench_unit * terms.mass * self._g
+        linear[terms.nv + 2] = weight * reference.load_left
+        linear[terms.nv + 8] = weight * reference.load_right

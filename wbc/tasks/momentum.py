@@ -1,20 +1,18 @@
 """The two momentum tasks: they act on the sole forces, which the floating-base rows tie to the accelerations."""
 
-from collections.abc import Callable
-
 import numpy as np
 
-from surefoot.native.library import Bound
-from surefoot.wbc.balance import SupportRegion, com_acceleration
-from surefoot.wbc.compiled import CompiledTick
+from surefoot import algebra, linear
+from surefoot.wbc.balance import BalanceLaw, SupportRegion
 from surefoot.wbc.model import RobotTerms
 from surefoot.wbc.parameters import BalanceGains
+from surefoot.wbc.setpoint import Setpoint
+from surefoot.wbc.tasks.law import TaskLaw
 from surefoot.wbc.tasks.parameters import TaskGains, TaskWeights
-from surefoot.wbc.tasks.task import Vector
-from surefoot.wbc.types import GRAVITY, Array, WbcReference
+from surefoot.wbc.types import GRAVITY, Array
 
 
-class CentreOfMass:
+class CentreOfMass(TaskLaw):
     """CoM acceleration by the law of ``surefoot.wbc.balance``, from the forces: c'' = (Σ R_k f_k + f) / m - g.
 
     The force f is that of a lasting load (see ``RobotTerms.bear``).
@@ -30,33 +28,19 @@ class CentreOfMass:
         across = weights.com_horizontal, weights.com_horizontal
         self.weight = np.array([*across, weights.com_vertical])
         self.catching_weight = np.array([*across, weights.com_vertical_catching])
-        self._balance, self._region = balance, region
+        self._balance, self._g = BalanceLaw(balance, region), GRAVITY
 
-    def write(self, terms: RobotTerms, reference: WbcReference, scale: Array, rows: Array) -> Vector:
-        """See ``Task.write``."""
-        per_mass = scale * (terms.wrench_unit / terms.mass)
-        np.multiply(terms.sole_wrench_map[:3], per_mass, out=rows[:, -12:])
-        x, y, z = com_acceleration(reference, terms.com, terms.com_velocity, self._region, self._balance)
-        fx, fy, fz = terms.load.force.tolist()
-        return x - fx / terms.mass, y - fy / terms.mass, z + GRAVITY - fz / terms.mass
-
-    def compiled(self, tick: CompiledTick, bench: Bound) -> Callable[[], None]:
-        """See ``CompiledTask.compiled``."""
-        gains, region = self._balance, self._region
-        return tick.kernels.bind(
-            "task_centre_of_mass",
-            bench=bench,
-            edges=region.edges,
-            edge_count=region.edge_count,
-            beyond=gains.beyond_catching,
-            dcm=gains.dcm,
-            height_stiffness=gains.height_stiffness,
-            height_damping=gains.height_damping,
-            gravity=GRAVITY,
-        )
+    def put(self, terms: RobotTerms, reference: Setpoint, scale: Array, rows: Array, target: Array) -> None:
+        """See ``TaskLaw.put``: (Σ R_k f_k) / m = c''_cmd + g - f / m."""
+        m = terms.mass
+        c_ddot = self._balance.acceleration(reference, terms._c, terms._c_dot)
+        linear.scale_rows(rows, terms.nv, terms.wrench_unit / m, scale, terms._W, 0)
+        target[0] = c_ddot[0] - terms._load_force[0] / m
+        target[1] = c_ddot[1] - terms._load_force[1] / m
+        target[2] = c_ddot[2] - terms._load_force[2] / m + self._g
 
 
-class AngularMomentum:
+class AngularMomentum(TaskLaw):
     """Decay of the angular momentum L about the CoM, per mass: L'/m = (Σ [(p_k - c) x R_k f_k + R_k τ_k] + n) / m.
 
     The moment n is that of a lasting load (see ``RobotTerms.bear``).
@@ -68,25 +52,17 @@ class AngularMomentum:
 
     def __init__(self, weights: TaskWeights, gains: TaskGains) -> None:
         self.weight, self.catching_weight = weights.angular_momentum, weights.angular_momentum_catching
-        self._decay = gains.angular_momentum
-        self._about_com = np.zeros((3, 6))
-        self._flat = self._about_com.reshape(-1)
+        self._k = gains.angular_momentum
 
-    def write(self, terms: RobotTerms, reference: WbcReference, scale: Array, rows: Array) -> Vector:
-        """See ``Task.write``."""
-        per_mass = float(scale[0, 0]) * (terms.wrench_unit / terms.mass)
-        x, y, z = terms.com.tolist()
-        x, y, z = per_mass * x, per_mass * y, per_mass * z
-        # One by one: an array of eighteen numbers takes twice as long.
-        about = self._flat
-        about[1], about[2], about[6], about[8], about[12], about[13] = z, -y, -z, x, y, -x
-        about[3] = about[10] = about[17] = per_mass
-        np.matmul(self._about_com, terms.sole_wrench_map, out=rows[:, -12:])
-        decay, mass = -self._decay / terms.model_mass, terms.mass
-        lx, ly, lz = terms.angular_momentum.tolist()
-        nx, ny, nz = terms.load.moment.tolist()
-        return decay * lx - nx / mass, decay * ly - ny / mass, decay * lz - nz / mass
-
-    def compiled(self, tick: CompiledTick, bench: Bound) -> Callable[[], None]:
-        """See ``CompiledTask.compiled``."""
-        return tick.kernels.bind("task_angular_momentum", bench=bench, decay=self._decay)
+    def put(self, terms: RobotTerms, reference: Setpoint, scale: Array, rows: Array, target: Array) -> None:
+        """See ``TaskLaw.put``: (M + F x c) / m = -k L / m - n / m, with F and M by each number of the wrenches."""
+        m, nv = terms.mass, terms.nv
+        s = scale[0] * (terms.wrench_unit / m)
+        c = algebra.scale(s, algebra.vector(terms._c))
+        for j in range(12):
+            F = (terms._W[0, j], terms._W[1, j], terms._W[2, j])
+            M = (terms._W[3, j], terms._W[4, j], terms._W[5, j])
+            turn = algebra.add(algebra.cross(F, c), algebra.scale(s, M))
+            rows[0, nv + j], rows[1, nv + j], rows[2, nv + j] = turn[0], turn[1], turn[2]
+        for i in range(3):
+            target[i] = -self._k / terms.model_mass * terms._L[i] - terms._load_moment[i] / m

@@ -1,19 +1,19 @@
 """The swing foot follows its curve."""
 
-from collections.abc import Callable
 from functools import lru_cache
 
 import numpy as np
 import pinocchio as pin
 
-from surefoot.native.library import Bound
-from surefoot.wbc.compiled import CompiledTick
+from surefoot import algebra, linear
 from surefoot.wbc.leaning import FREE
 from surefoot.wbc.limits import JointLimits
-from surefoot.wbc.model import BodyFrames, RobotTerms, cross
+from surefoot.wbc.model import BodyFrames, RobotTerms
+from surefoot.wbc.setpoint import Setpoint
+from surefoot.wbc.tasks import law
+from surefoot.wbc.tasks.law import TaskLaw
 from surefoot.wbc.tasks.parameters import TaskGains, TaskWeights
-from surefoot.wbc.tasks.task import angular_acceleration
-from surefoot.wbc.types import Array, WbcReference
+from surefoot.wbc.types import Array
 
 YIELDING = 0.1
 """Way to the end of its range within which an ankle ceases to turn its swinging foot towards that end [rad]."""
@@ -46,6 +46,7 @@ class AnkleStops:
     Attributes:
         ankles: from the centres of the soles, in their frames: forward and up, shape (2, 3) [m].
         columns: of the generalised velocity, those of the joints of each ankle.
+        joints: how many those of one ankle are.
         rolling: of these, that of the joint of each ankle which rolls its foot; -1 for none.
         lower, upper: ends of the ranges of all joints, shape (nj,) [rad].
         ahead: time by which a joint is looked at before it comes to its end [s].
@@ -54,31 +55,40 @@ class AnkleStops:
     def __init__(self, model: pin.Model, frames: BodyFrames, limits: JointLimits) -> None:
         self.ankles, self.columns, self.rolling = _ankles(model, frames)
         self.lower, self.upper, self.ahead = limits.lower, limits.upper, 2.0 * limits.position_horizon
-        self._lower, self._upper = np.asarray(self.lower).tolist(), np.asarray(self.upper).tolist()
+        self.joints = len(self.columns[0])
+        self._columns = np.array(self.columns, dtype=np.int64)
+        self._ankles, self._skew = self.ankles, np.array([pin.skew(ankle) for ankle in self.ankles])
+        self._lower, self._upper = (np.array(ends, dtype=np.float64) for ends in (self.lower, self.upper))
+        self._yielding, self._turned_back = YIELDING, _TURNED_BACK
 
-    def yielding(self, terms: RobotTerms, k: int, desired: Array) -> list[tuple[int, Array, float]]:
-        """Joints that are not to turn sole k any further: column, axis in the frame of the sole, and share of it [-].
+    def yielding(self, terms: RobotTerms, k: int, n: int, desired: Array) -> float:
+        """Share of a joint of ankle k that is not to turn the sole any further [-].
 
         Args:
             terms: of the state.
             k: the foot.
-            desired: its orientation, shape (3, 3).
+            n: the joint, as ``columns[k]`` has it.
+            desired: orientation of the sole, shape (3, 3).
         """
-        found: list[tuple[int, Array, float]] = []
-        for column in self.columns[k]:
-            position, velocity = terms.q.item(column + 1), terms.v.item(column)
-            coming = position + self.ahead * velocity
-            up, down = self._upper[column - 6] - max(position, coming), min(position, coming) - self._lower[column - 6]
-            near = min(up, down)
-            if near >= YIELDING:
-                continue
-            axis = terms.sole_jacobian[k, 3:, column]
-            onward = float(axis @ pin.log3(terms.contact_rotation[k].T @ desired)) * (1.0 if up < down else -1.0)
-            # A foot that keeps to its target may ask for more of the ankle all the same, since its shank turns.
-            share = (1.0 - max(0.0, near) / YIELDING) * min(max(1.0 + onward / _TURNED_BACK, 0.0), 1.0)
-            if share > 0.0:
-                found.append((column, axis, share))
-        return found
+        column = self._columns[k, n]
+        position = terms._q[column + 1]
+        coming = position + self.ahead * terms._v[column]
+        up = self._upper[column - 6] - max(position, coming)
+        down = min(position, coming) - self._lower[column - 6]
+        near = min(up, down)
+        if near >= self._yielding:
+            return 0.0
+        onward = algebra.inner(self.axis(terms, k, n), algebra.turn_between(terms._R_contact[k], desired))
+        if not up < down:
+            onward = -onward
+        # A foot that keeps to its target may ask for more of the ankle all the same, since its shank turns.
+        share: float = 1.0 - max(0.0, near) / self._yielding
+        return share * algebra.clamp(1.0 + onward / self._turned_back, 0.0, 1.0)
+
+    def axis(self, terms: RobotTerms, k: int, n: int) -> algebra.Vector:
+        """Axis of that joint in the frame of the sole [-]."""
+        row, column = 6 * k + 3, self._columns[k, n]
+        return terms._J[row, column], terms._J[row + 1, column], terms._J[row + 2, column]
 
 
 @lru_cache(maxsize=8)
@@ -101,7 +111,7 @@ def _rolling(model: pin.Model, data: pin.Data, sole: str, columns: tuple[int, ..
     return max(along, key=lambda column: axes[0, columns.index(column)], default=-1)
 
 
-class SwingFoot:
+class SwingFoot(TaskLaw):
     """Acceleration of the swing foot's sole, linear then angular, in the sole's frame; absent when both feet stand.
 
     A foot that leaves the ground rolling is seen from its toe edge (see ``RobotTerms.shift_foot``). One that cannot be
@@ -138,90 +148,153 @@ class SwingFoot:
         self.weight = weights.swing * np.repeat([1.0, length**2], 3)
         if leaning:
             self.weight[FREE] = 0.0
-        self._gains, (self._toe, self._side), self._lifted = gains.swing, edges, _LIFTED * length
+        self._k, self._d = gains.swing
+        (self._toe, self._side), self._lifted, self._resting = edges, _LIFTED * length, _RESTING
+        self._shares = np.zeros(stops.joints if stops else 0)
 
-    def write(self, terms: RobotTerms, reference: WbcReference, scale: Array, rows: Array) -> tuple[float, ...]:
-        """See ``Task.write``."""
+    def put(self, terms: RobotTerms, reference: Setpoint, scale: Array, rows: Array, target: Array) -> None:
+        """See ``TaskLaw.put``."""
         k = reference.swing_foot
-        self._turned = self._turned if self._turned == k else -1
+        if self._turned != k:
+            self._turned = -1
         if k < 0:
-            rows[:] = 0.0
-            return 0.0, 0.0, 0.0, 0.0, 0.0, 0.0
-        np.multiply(terms.sole_jacobian[k], scale, out=rows[:, :-12])
-        yielding = self._stops.yielding(terms, k, reference.swing_rotation) if self._stops else []
-        damping, R, velocity = self._gains[1], terms.contact_rotation[k], terms.sole_velocity[k]
-        wanted = self._linear(terms, reference, k)
-        if yielding:
-            forward, aside, _ = np.abs(R[2] - reference.swing_rotation[2]).tolist()
-            hangs = min(self._toe * forward, self._lifted) + (self._side * aside if reference.catching else 0.0)
-            wanted[2] += self._gains[0] * max(share for *_, share in yielding) * hangs
-        x, y, z = wanted.dot(R).tolist()
-        turning = damping * reference.swing_angular_velocity
-        turning += reference.swing_angular_acceleration
-        ahead = tuple(turning.dot(R).tolist())
-        ax, ay, az = angular_acceleration(self._gains, R, velocity[3:], reference.swing_rotation, ahead)
-        pitching = damping * reference.roll[1] + reference.roll[2] if k == reference.rolling_foot else 0.0
-        vx, vy, vz = velocity[:3].tolist()
-        bx, by, bz, px, py, pz = terms.sole_bias[k].tolist()
-        linear: tuple[float, ...] = (x - damping * vx - bx, y - damping * vy - by, z - damping * vz - bz)
-        turn = (ax - px, ay + pitching - py, az - pz)
-        self._turned = k if yielding else self._turned
-        if self._turned == k and k != reference.rolling_foot and self._stops:
-            linear = self._of_ankle(terms, reference, k, linear, self._stops.ankles[k])
-            rows[:3, :-12] -= scale[:3] * (pin.skew(self._stops.ankles[k]) @ terms.sole_jacobian[k, 3:])
-        for column, axis, share in yielding:
-            kept = np.eye(3) - share * np.outer(axis, axis)
-            rows[3:] = kept @ rows[3:]
-            turned = kept @ turn
-            if reference.catching and self._stops:
-                resting = _RESTING * share * axis
-                rows[3:, column] += scale[3:, 0] * resting
-                turned -= 2.0 * terms.v[column] / self._stops.ahead * resting
-            turn = tuple(turned.tolist())
-        return (*linear, *turn)
+            rows[:, :] = 0.0
+            target[:] = 0.0
+            return
+        linear.scale_rows(rows, 0, 1.0, scale, terms._J, 6 * k)
+        if self._stops is None:
+            self._aim(terms, reference, k, 0.0, target)
+        else:
+            self._put_with(self._stops, terms, reference, k, scale, rows, target)
 
-    def compiled(self, tick: CompiledTick, bench: Bound) -> Callable[[], None]:
-        """See ``CompiledTask.compiled``."""
-        stops, none = self._stops, np.zeros(1)
-        return tick.kernels.bind(
-            "task_swing_foot",
-            bench=bench,
-            stiffness=self._gains[0],
-            damping=self._gains[1],
-            toe=self._toe,
-            side=self._side,
-            lifted=self._lifted,
-            ankle_joints=len(stops.columns[0]) if stops else 0,
-            ankle_columns=np.array(stops.columns if stops else [0], dtype=np.int64),
-            ankles=stops.ankles if stops else none,
-            lower=np.ascontiguousarray(stops.lower, dtype=np.float64) if stops else none,
-            upper=np.ascontiguousarray(stops.upper, dtype=np.float64) if stops else none,
-            ahead=stops.ahead if stops else 0.0,
-            yielding=YIELDING,
-            turned_back=_TURNED_BACK,
-            resting=_RESTING,
-            turned=np.array([-1], dtype=np.int64),
+    def _put_with(
+        self,
+        stops: AnkleStops,
+        terms: RobotTerms,
+        reference: Setpoint,
+        k: int,
+        scale: Array,
+        rows: Array,
+        target: Array,
+    ) -> None:
+        """Write the target, and change the rows where the ankle comes to its end."""
+        most = 0.0
+        for n in range(stops.joints):
+            self._shares[n] = stops.yielding(terms, k, n, reference.swing_rotation)
+            most = max(most, self._shares[n])
+        if most > 0.0:
+            self._turned = k
+        self._aim(terms, reference, k, most, target)
+        if self._turned == k and k != reference.rolling_foot:
+            self._see_from_ankle(stops, terms, reference, k, scale, rows, target)
+        for n in range(stops.joints):
+            if self._shares[n] > 0.0:
+                self._yield(stops, terms, reference, k, n, scale, rows, target)
+
+    def _aim(self, terms: RobotTerms, reference: Setpoint, k: int, most: float, target: Array) -> None:
+        """Target of the sole's centre: K e - D (ẏ - ẏ_d) + ÿ_d - J' v, in the frame of the sole."""
+        R, R_d, v, bias = terms._R_contact[k], reference.swing_rotation, terms._v_sole[k], terms._bias_sole[k]
+        rolls = k == reference.rolling_foot
+        lift = self._k * most * self._hangs(R, reference) if most > 0.0 else 0.0
+        wanted = (
+            self._along(terms, reference, k, 0, rolls),
+            self._along(terms, reference, k, 1, rolls),
+            self._along(terms, reference, k, 2, rolls) + lift,
         )
+        turning = algebra.add(
+            algebra.vector(reference.swing_angular_acceleration),
+            algebra.scale(self._d, algebra.vector(reference.swing_angular_velocity)),
+        )
+        a = algebra.rotate_back(R, wanted)
+        ahead = algebra.rotate_back(R, turning)
+        alpha = law.angular_feedback(self._k, self._d, R, (v[3], v[4], v[5]), R_d, ahead)
+        pitching = self._d * reference.roll_rate + reference.roll_acceleration if rolls else 0.0
+        target[0] = a[0] + (-self._d * v[0] - bias[0])
+        target[1] = a[1] + (-self._d * v[1] - bias[1])
+        target[2] = a[2] + (-self._d * v[2] - bias[2])
+        target[3] = alpha[0] - bias[3]
+        target[4] = alpha[1] + pitching - bias[4]
+        target[5] = alpha[2] - bias[5]
 
-    def _of_ankle(
-        self, terms: RobotTerms, reference: WbcReference, k: int, linear: tuple[float, ...], ankle: Array
-    ) -> tuple[float, ...]:
-        """The linear target of the sole's centre made that of the ankle, in the sole's frame [m/s^2]."""
-        stiffness, damping = self._gains
-        R, spin, bias = terms.contact_rotation[k], terms.sole_velocity[k, 3:], terms.sole_bias[k, 3:]
-        there, turning = reference.swing_rotation @ ankle, reference.swing_angular_velocity
-        wanted = stiffness * (there - R @ ankle) + damping * cross(turning, there)
-        wanted += cross(reference.swing_angular_acceleration, there) + cross(turning, cross(turning, there))
-        moved = cross(damping * spin + bias, ankle) + cross(spin, cross(spin, ankle))
-        return tuple((np.array(linear) + wanted @ R - moved).tolist())
+    def _along(self, terms: RobotTerms, reference: Setpoint, k: int, i: int, rolls: bool) -> float:
+        """Acceleration along an axis of the world, but for the damping of the sole's own velocity [m/s^2].
 
-    def _linear(self, terms: RobotTerms, reference: WbcReference, k: int) -> Array:
-        """Linear acceleration in the world, but for the damping of the sole's own velocity, shape (3,) [m/s^2]."""
-        stiffness, damping = self._gains
-        wanted: Array = reference.swing_position - terms.contact_position[k]
-        if k == reference.rolling_foot:
-            wanted += self._toe * reference.swing_rotation[:, 0]
-        wanted *= stiffness
-        wanted += damping * reference.swing_velocity
-        wanted += reference.swing_acceleration
-        return wanted
+        The position of a rolling foot is that of its toe edge.
+        """
+        e = reference.swing_position[i] - terms._p_contact[k, i]
+        if rolls:
+            e += self._toe * reference.swing_rotation[i, 0]
+        a: float = self._k * e + self._d * reference.swing_velocity[i] + reference.swing_acceleration[i]
+        return a
+
+    def _hangs(self, R: Array, reference: Setpoint) -> float:
+        """How much lower an edge of the sole hangs than it should, as far as it is to be lifted for that [m]."""
+        R_d = reference.swing_rotation
+        beside = self._side * abs(R[2, 1] - R_d[2, 1]) if reference.catching else 0.0
+        hangs: float = min(self._toe * abs(R[2, 0] - R_d[2, 0]), self._lifted) + beside
+        return hangs
+
+    def _see_from_ankle(
+        self,
+        stops: AnkleStops,
+        terms: RobotTerms,
+        reference: Setpoint,
+        k: int,
+        scale: Array,
+        rows: Array,
+        target: Array,
+    ) -> None:
+        """Make the target of the sole's centre that of the ankle, and its rows.
+
+        With the ankle at r in the frame of the sole: J_r = J_p - [r]x J_w, and the target gets the same of what the
+        sole is to do, less what the sole does.
+        """
+        r, R, R_d = algebra.vector(stops._ankles[k]), terms._R_contact[k], reference.swing_rotation
+        w, bias = algebra.vector(terms._v_sole[k, 3:]), algebra.vector(terms._bias_sole[k, 3:])
+        w_d = algebra.vector(reference.swing_angular_velocity)
+        here, there = algebra.rotate(R, r), algebra.rotate(R_d, r)
+        along = algebra.cross(w_d, there)
+        wanted = algebra.add(algebra.scale(self._k, algebra.subtract(there, here)), algebra.scale(self._d, along))
+        wanted = algebra.add(wanted, algebra.cross(algebra.vector(reference.swing_angular_acceleration), there))
+        wanted = algebra.rotate_back(R, algebra.add(wanted, algebra.cross(w_d, along)))
+        moved = algebra.cross(algebra.add(algebra.scale(self._d, w), bias), r)
+        outward = algebra.cross(w, algebra.cross(w, r))
+        more = algebra.subtract(algebra.subtract(wanted, moved), outward)
+        for i in range(3):
+            for j in range(3):
+                linear.add_row(rows, i, -(scale[i] * stops._skew[k, i, j]), terms._J, 6 * k + 3 + j)
+        target[0] += more[0]
+        target[1] += more[1]
+        target[2] += more[2]
+
+    def _yield(
+        self,
+        stops: AnkleStops,
+        terms: RobotTerms,
+        reference: Setpoint,
+        k: int,
+        n: int,
+        scale: Array,
+        rows: Array,
+        target: Array,
+    ) -> None:
+        """Take a share of what turns about a joint's axis a out of the angular rows and their target: 1 - s a aᵀ.
+
+        While a step catches the body the joint is to rest instead.
+        """
+        a, column = stops.axis(terms, k, n), stops._columns[k, n]
+        sa = algebra.scale(self._shares[n], a)
+        for j in range(terms.nv):
+            part = algebra.inner(a, algebra.column(rows, j, 3))
+            rows[3, j] -= sa[0] * part
+            rows[4, j] -= sa[1] * part
+            rows[5, j] -= sa[2] * part
+        counted = self._resting if reference.catching else 0.0
+        resting = counted * -2.0 * terms._v[column] / stops.ahead
+        turn = resting - algebra.inner(a, (target[3], target[4], target[5]))
+        rows[3, column] += scale[3] * counted * self._shares[n] * a[0]
+        rows[4, column] += scale[4] * counted * self._shares[n] * a[1]
+        rows[5, column] += scale[5] * counted * self._shares[n] * a[2]
+        target[3] += sa[0] * turn
+        target[4] += sa[1] * turn
+        target[5] += sa[2] * turn

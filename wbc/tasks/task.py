@@ -5,10 +5,9 @@ from typing import Protocol
 
 import pinocchio as pin
 
-from surefoot.native.library import Bound
 from surefoot.values import dataclass
-from surefoot.wbc.compiled import CompiledTick
 from surefoot.wbc.model import BodyFrames, RobotTerms
+from surefoot.wbc.tasks import law
 from surefoot.wbc.tasks.registry import TaskLayout
 from surefoot.wbc.types import Array, WbcReference
 
@@ -53,13 +52,6 @@ class Task(Protocol):
         Returns:
             a, not scaled, ``size`` numbers [m/s^2, rad/s^2, as J makes it].
         """
-
-
-class CompiledTask(Protocol):
-    """A task that has a kernel which does what its ``write`` does."""
-
-    def compiled(self, tick: CompiledTick, bench: Bound) -> Callable[[], None]:
-        """The kernel, bound to the terms and the reference of a tick and to the rows of the task."""
 
 
 TaskFactory = Callable[[pin.Model, BodyFrames], Task]
@@ -111,12 +103,5 @@ def angular_acceleration(
         desired: R_d, shape (3, 3).
         ahead: u, the acceleration to be fed forward [rad/s^2].
     """
-    stiffness, damping = gains
-    ex, ey, ez = pin.log3(R.T.dot(desired)).tolist()
-    wx, wy, wz = velocity.tolist()
-    ux, uy, uz = ahead
-    return (
-        stiffness * ex - damping * wx + ux,
-        stiffness * ey - damping * wy + uy,
-        stiffness * ez - damping * wz + uz,
-    )
+    wx, wy, wz = velocity
+    return law.angular_feedback(*gains, R, (wx, wy, wz), desired, ahead)

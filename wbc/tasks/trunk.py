@@ -1,19 +1,19 @@
 """Pelvis and torso stay upright and turn with the heading."""
 
 import math
-from collections.abc import Callable
 from functools import lru_cache
 
 import numpy as np
 import pinocchio as pin
 
-from surefoot.native.library import Bound
-from surefoot.wbc.compiled import CompiledTick
+from surefoot import algebra, linear
 from surefoot.wbc.limits import JointLimits
 from surefoot.wbc.model import BodyFrames, RobotTerms
+from surefoot.wbc.setpoint import Setpoint
+from surefoot.wbc.tasks import law
+from surefoot.wbc.tasks.law import TaskLaw
 from surefoot.wbc.tasks.parameters import TaskGains, TaskWeights
-from surefoot.wbc.tasks.task import Vector, angular_acceleration
-from surefoot.wbc.types import Array, WbcReference
+from surefoot.wbc.types import Array
 
 SPARED, SOFTENED = 0.04, 0.02
 """Way to the end of its range that a hip keeps, and within which around it the pelvis begins to roll [rad]."""
@@ -37,11 +37,14 @@ class HipStops:
     """
 
     def __init__(self, model: pin.Model, frames: BodyFrames, limits: JointLimits) -> None:
-        self.hips: list[tuple[int, float, float, float]] = []
+        found = []
         for column, sign in _rolls(model, frames):
             lower, upper = float(limits.lower[column - 6]), float(limits.upper[column - 6])
             spared = min(SPARED, 0.25 * (upper - lower))
-            self.hips.append((column, sign, lower + spared, upper - spared))
+            found.append((column, sign, lower + spared, upper - spared))
+        self.hips, self._softened = tuple(found), SOFTENED
+        self._columns = np.array([hip[0] for hip in found], dtype=np.int64)
+        self._sign, self._lower, self._upper = np.array([hip[1:] for hip in found]).T.copy()
 
     def roll(self, terms: RobotTerms) -> tuple[float, float]:
         """Roll of the pelvis, left side up, and its rate [rad, rad/s].
@@ -49,17 +52,32 @@ class HipStops:
         Args:
             terms: of the state.
         """
-        _, y, z = terms.base_rotation[2].tolist()
-        now, turning = math.atan2(y, z), float(terms.base_angular_velocity[0])
-        roll = rate = 0.0
-        for column, sign, lower, upper in self.hips:
-            angle = float(terms.q[column + 1]) + sign * now
-            beyond, slope = _beyond(angle - upper) if angle > 0.5 * (lower + upper) else _beyond(lower - angle)
-            if slope:
-                toward = sign if angle > 0.5 * (lower + upper) else -sign
-                roll += toward * beyond
-                rate += slope * (sign * float(terms.v[column]) + turning)
+        now, turning = math.atan2(terms._R_base[2, 1], terms._R_base[2, 2]), terms._w_base[0]
+        roll, rate = 0.0, 0.0
+        for i in range(self._columns.shape[0]):
+            column, sign, lower, upper = self._columns[i], self._sign[i], self._lower[i], self._upper[i]
+            angle = terms._q[column + 1] + sign * now
+            above = angle > 0.5 * (lower + upper)
+            excess = angle - upper if above else lower - angle
+            slope = self._slope(excess)
+            if slope != 0.0:
+                roll += (sign if above else -sign) * self._taken(excess)
+                rate += slope * (sign * terms._v[column] + turning)
         return roll, rate
+
+    def _taken(self, excess: float) -> float:
+        """What of an excess the pelvis takes, setting in smoothly about zero [rad]."""
+        if excess <= -self._softened:
+            return 0.0
+        if excess >= self._softened:
+            return excess
+        return (excess + self._softened) * (excess + self._softened) / (4.0 * self._softened)
+
+    def _slope(self, excess: float) -> float:
+        """How that changes with it [-]."""
+        if excess <= -self._softened:
+            return 0.0
+        return 1.0 if excess >= self._softened else (excess + self._softened) / (2.0 * self._softened)
 
 
 @lru_cache(maxsize=8)
@@ -75,16 +93,7 @@ def _rolls(model: pin.Model, frames: BodyFrames) -> tuple[tuple[int, float], ...
     return tuple(found)
 
 
-def _beyond(excess: float) -> tuple[float, float]:
-    """What of an excess the pelvis takes, setting in smoothly about zero, and how that changes with it [rad, -]."""
-    if excess <= -SOFTENED:
-        return 0.0, 0.0
-    if excess >= SOFTENED:
-        return excess, 1.0
-    return (excess + SOFTENED) ** 2 / (4.0 * SOFTENED), (excess + SOFTENED) / (2.0 * SOFTENED)
-
-
-class _Upright:
+class Upright(TaskLaw):
     """Angular acceleration of a body towards upright at the heading of the reference.
 
     While a step catches the body its heading counts for less. What a push beside the CoM and a leg that is swung hard
@@ -100,67 +109,54 @@ class _Upright:
         self.weight = weights.orientation
         upright, turning = weights.upright_catching, weights.turning_catching
         self.catching_weight = np.array([upright, upright, turning])
-        self._gains = gains.orientation
-        self._desired = np.eye(3)
+        self._k, self._d = gains.orientation
+        self._R_d = np.eye(3)
 
-    def _wanted(self, reference: WbcReference, R: Array, velocity: Array) -> Vector:
+    def turn(self, reference: Setpoint, R: Array, velocity: Array) -> algebra.Vector:
+        """Angular acceleration of a body, in its frame [rad/s^2].
+
+        Args:
+            reference: of the tick.
+            R: orientation of the body, shape (3, 3).
+            velocity: angular, in its frame, shape (3,) [rad/s].
+        """
         cosine, sine = math.cos(reference.heading), math.sin(reference.heading)
-        desired = self._desired
-        desired[0, 0] = desired[1, 1] = cosine
-        desired[0, 1], desired[1, 0] = -sine, sine
-        turn = self._gains[1] * reference.heading_rate
-        x, y, z = R[2].tolist()
-        return angular_acceleration(self._gains, R, velocity, desired, (turn * x, turn * y, turn * z))
+        self._R_d[0, 0], self._R_d[1, 1] = cosine, cosine
+        self._R_d[0, 1], self._R_d[1, 0] = -sine, sine
+        ahead = algebra.scale(self._d * reference.heading_rate, algebra.row(R, 2))
+        return law.angular_feedback(self._k, self._d, R, algebra.vector(velocity), self._R_d, ahead)
 
 
-class Pelvis(_Upright):
+class Pelvis(Upright):
     """Angular acceleration of the floating base, which is the pelvis: rows of the identity.
 
     It rolls where the hips need it (see `HipStops`).
     """
 
     name = "pelvis"
-    _axes = np.eye(3)
 
     def __init__(self, weights: TaskWeights, gains: TaskGains, stops: HipStops | None = None) -> None:
         """Set up the task; without stops the hips end nowhere."""
         super().__init__(weights, gains)
         self._stops = stops
 
-    def write(self, terms: RobotTerms, reference: WbcReference, scale: Array, rows: Array) -> Vector:
-        """See ``Task.write``."""
-        np.multiply(self._axes, scale, out=rows[:, 3:6])
-        x, y, z = self._wanted(reference, terms.base_rotation, terms.base_angular_velocity)
-        roll, rate = self._stops.roll(terms) if self._stops else (0.0, 0.0)
-        return x + self._gains[0] * roll + self._gains[1] * rate, y, z
-
-    def compiled(self, tick: CompiledTick, bench: Bound) -> Callable[[], None]:
-        """See ``CompiledTask.compiled``."""
-        hips = np.array(self._stops.hips if self._stops else [(0.0, 0.0, 0.0, 0.0)])
-        return tick.kernels.bind(
-            "task_pelvis",
-            bench=bench,
-            stiffness=self._gains[0],
-            damping=self._gains[1],
-            hip_count=len(hips) if self._stops else 0,
-            hips=hips,
-            softened=SOFTENED,
-        )
+    def put(self, terms: RobotTerms, reference: Setpoint, scale: Array, rows: Array, target: Array) -> None:
+        """See ``TaskLaw.put``."""
+        for i in range(3):
+            rows[i, 3 + i] = scale[i]
+        algebra.put(target, self.turn(reference, terms._R_base, terms._w_base))
+        if self._stops is not None:
+            roll, rate = self._stops.roll(terms)
+            target[0] += self._k * roll + self._d * rate
 
 
-class Torso(_Upright):
+class Torso(Upright):
     """Angular acceleration of the torso."""
 
     name = "torso"
 
-    def write(self, terms: RobotTerms, reference: WbcReference, scale: Array, rows: Array) -> Vector:
-        """See ``Task.write``."""
-        np.multiply(terms.torso_jacobian, scale, out=rows[:, :-12])
-        x, y, z = self._wanted(reference, terms.torso_rotation, terms.torso_velocity)
-        bx, by, bz = terms.torso_bias.tolist()
-        return x - bx, y - by, z - bz
-
-    def compiled(self, tick: CompiledTick, bench: Bound) -> Callable[[], None]:
-        """See ``CompiledTask.compiled``."""
-        stiffness, damping = self._gains
-        return tick.kernels.bind("task_torso", bench=bench, stiffness=stiffness, damping=damping)
+    def put(self, terms: RobotTerms, reference: Setpoint, scale: Array, rows: Array, target: Array) -> None:
+        """See ``TaskLaw.put``."""
+        wanted = self.turn(reference, terms._R_torso, terms._w_torso)
+        linear.scale_rows(rows, 0, 1.0, scale, terms._J_torso, 0)
+        algebra.put(target, algebra.subtract(wanted, algebra.vector(terms._bias_torso)))

@@ -71,10 +71,10 @@ class TimedWalk:
                 yield time.thread_time() - start
 
 
-def _time(stack: ExitStack, owner: type, method: str, spent: list[float]) -> None:
+def _time(stack: ExitStack, owner: type | ModuleType, method: str, spent: list[float]) -> None:
     """Time a method while the stack is open; of a compiled class, which cannot be changed, in a class below it."""
     timed = _timed(getattr(owner, method), spent)
-    if owner.__flags__ & _CHANGEABLE:
+    if not isinstance(owner, type) or owner.__flags__ & _CHANGEABLE:
         stack.enter_context(patch.object(owner, method, timed))
         return
     below = type(owner.__name__, (owner,), {method: timed})

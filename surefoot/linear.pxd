@@ -5,6 +5,7 @@ cpdef double row_dot(const double[:, :] A, Py_ssize_t i, const double[:] x) noex
 cpdef void add_scaled(double[:] y, double a, const double[:] x) noexcept nogil
 cpdef void multiply(const double[:, :] A, const double[:] x, double[:] out) noexcept nogil
 cpdef double quadratic(const double[:, :] A, const double[:] x) noexcept nogil
+cpdef double part_dot(const double[:, :] A, Py_ssize_t i, const double[:] x, Py_ssize_t first, Py_ssize_t end) noexcept nogil
 cpdef double rows_dot(const double[:, :] A, Py_ssize_t i, const double[:, :] B, Py_ssize_t j) noexcept nogil
 cpdef bint factor(double[:, :] A) noexcept nogil
 cpdef void forward_solve(const double[:, :] U, double[:, :] B) noexcept nogil
@@ -14,6 +15,9 @@ cpdef void solve_tridiagonal(double[::1] lower, double[::1] diagonal, double[::1
 cpdef void add_gram(double[:, :] S, const double[:, :] Y) noexcept nogil
 cpdef void upper_product(const double[:, :] A, const double[:, :] B, double[:, :] out) noexcept nogil
 cpdef void mirror(double[:, :] A) noexcept nogil
+cpdef void inverse_columns(const double[:, :] U, double[:, :] out) noexcept nogil
+cpdef void row_sizes(const double[:, :] A, double[:] out) noexcept nogil
+cpdef void upper_solve(const double[:, :] R, Py_ssize_t count, double[:] x) noexcept nogil
 cpdef void subtract_products(double[:, :] S, const double[:, :] Y) noexcept nogil
 cpdef void copy_rows(double[:, :] out, Py_ssize_t i, const double[:, :] A, Py_ssize_t k, Py_ssize_t count) noexcept nogil
 cpdef void scale_rows(double[:, :] out, Py_ssize_t first, double factor, const double[:] scale, const double[:, :] A, Py_ssize_t k) noexcept nogil
@@ -46,3 +50,8 @@ cpdef vector3 fused_rotate(const double[:, :] A, vector3 x) noexcept nogil
 cpdef vector3 fused_rotate_back(const double[:, :] A, vector3 x) noexcept nogil
 cpdef void fused_compose(const double[:, :] A, const double[:, :] B, double[:, :] out) noexcept nogil
 cpdef void fill(double[:] out, Py_ssize_t start, const double[:] values) noexcept nogil
+cpdef void products(const double[:, :] Y, double[:, :] S) noexcept nogil
+cpdef void add_product(double scale, const double[:, :] A, const double[:] x, double[:] out) noexcept nogil
+cpdef void rotate_rows(double[:, :] A, Py_ssize_t i, double a, double b) noexcept nogil
+cpdef bint is_zero(const double[:, :] A) noexcept nogil
+cpdef double excess(const double[:] values, const double[:] lower, const double[:] upper) noexcept nogil

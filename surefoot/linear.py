@@ -4,6 +4,8 @@ These are the only functions that stand twice: a loop over matrices would take a
 Arguments are arrays whose last axis is contiguous. Sizes are those of the arrays.
 """
 
+import math
+
 import numpy as np
 from numpy.typing import NDArray
 from scipy.linalg import blas, lapack
@@ -38,6 +40,11 @@ def quadratic(A: Array, x: Array) -> float:
     return float(x @ A @ x)
 
 
+def part_dot(A: Array, i: int, x: Array, first: int, end: int) -> float:
+    """The same of the numbers from one place to before another one."""
+    return float(A[i, first:end] @ x[first:end])
+
+
 def rows_dot(A: Array, i: int, B: Array, j: int) -> float:
     """A row of one matrix times a row of another one, of n numbers each."""
     return float(A[i] @ B[j])
@@ -50,7 +57,8 @@ def factor(A: Array) -> bool:
         Whether A is not positive definite; it is of no use then.
     """
     U, info = lapack.dpotrf(A, lower=0, clean=1)
-    if info:
+    # LAPACK takes what is no number.
+    if info or not (np.diag(U) > 0.0).all():
         return True
     A[:] = np.tril(A, -1) + U
     np.fill_diagonal(A, 1.0 / np.diag(U))
@@ -95,6 +103,22 @@ def mirror(A: Array) -> None:
     """Make A symmetric, shape (n, n), by what is on and right of its diagonal."""
     lower = np.tril_indices(len(A), -1)
     A[lower] = A.T[lower]
+
+
+def inverse_columns(U: Array, out: Array) -> None:
+    """Write the columns of U⁻¹, of a factor of `factor`, as rows, shape (n, n)."""
+    out[:] = blas.dtrsm(1.0, _whole(U), np.eye(len(U))).T
+
+
+def row_sizes(A: Array, out: Array) -> None:
+    """Write the norm of each row, shape (m,)."""
+    out[:] = np.sqrt(np.einsum("ij,ij->i", A, A))
+
+
+def upper_solve(R: Array, count: int, x: Array) -> None:
+    """Solve R x = b in place of the first so many numbers, for an upper triangle that holds its diagonal itself."""
+    if count:
+        x[:count] = blas.dtrsv(R[:count, :count], x[:count])
 
 
 def subtract_products(S: Array, Y: Array) -> None:
@@ -208,6 +232,16 @@ def add_products(P: Array, A: Array, B: Array) -> None:
     P[:n, :n] += np.triu(A.T @ B)
 
 
+def products(Y: Array, S: Array) -> None:
+    """S = Y' Y in the upper triangle of S and right of it, shape (m, k), for Y of shape (n, k), k at least m."""
+    S[:] = np.triu(Y[:, : len(S)].T @ Y)
+
+
+def add_product(scale: float, A: Array, x: Array, out: Array) -> None:
+    """Add scale A x to `out`, for A of shape (m, n)."""
+    out += scale * (A @ x)
+
+
 def add_transposed_product(scale: float, A: Array, y: Array, out: Array) -> None:
     """Add scale A' y to `out`, row by row, for A of shape (m, n)."""
     out += scale * (y @ A)
@@ -228,6 +262,24 @@ def evaluate_polynomials(C: Array, t: float, out: Array) -> None:
 def fused_pair(a: float, x: float, b: float, y: float) -> float:
     """Sum a x + b y, rounded once a term, as numpy's library sums on processors that fuse."""
     return float(np.array([a, b]) @ np.array([x, y]))
+
+
+def rotate_rows(A: Array, i: int, a: float, b: float) -> None:
+    """Rotate rows i and i + 1 (Givens) as takes a pair of their numbers, (a, b), to (√(a² + b²), 0)."""
+    size = math.sqrt(a * a + b * b)
+    c, s = a / size, b / size
+    A[i], A[i + 1] = c * A[i] + s * A[i + 1], c * A[i + 1] - s * A[i]
+
+
+def is_zero(A: Array) -> bool:
+    """Whether a matrix is zero."""
+    return not A.any()
+
+
+def excess(values: Array, lower: Array, upper: Array) -> float:
+    """Largest violation of lower <= values <= upper, shape (n,) each; 0 for none, NaN where a value is no number."""
+    worst = float(np.maximum(lower - values, values - upper).max())
+    return worst if not worst < 0.0 else 0.0
 
 
 def fused_sum(a: float, x: float, b: float, y: float, c: float, z: float) -> float:

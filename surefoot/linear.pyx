@@ -94,6 +94,10 @@ cpdef double quadratic(const double[:, :] A, const double[:] x) noexcept nogil:
     return found
 
 
+cpdef double part_dot(const double[:, :] A, Py_ssize_t i, const double[:] x, Py_ssize_t first, Py_ssize_t end) noexcept nogil:
+    return _dot(&A[i, first], &x[first], end - first)
+
+
 cpdef double rows_dot(const double[:, :] A, Py_ssize_t i, const double[:, :] B, Py_ssize_t j) noexcept nogil:
     return _dot(&A[i, 0], &B[j, 0], A.shape[1])
 
@@ -133,12 +137,36 @@ cpdef void forward_solve_one(const double[:, :] U, double[:] b) noexcept nogil:
     _forward(&U[0, 0], U.shape[0], _stride(U), &b[0], 1, 1)
 
 
-cpdef void backward_solve(const double[:, :] U, double[:] x) noexcept nogil:
-    cdef Py_ssize_t size = U.shape[0], stride = _stride(U), i
+cdef void _backward(const double *U, Py_ssize_t size, Py_ssize_t stride, double *x) noexcept nogil:
+    cdef Py_ssize_t i
     cdef const double *row
     for i in range(size - 1, -1, -1):
-        row = &U[0, 0] + stride * i
-        x[i] = (x[i] - _dot(row + i + 1, &x[0] + i + 1, size - i - 1)) * row[i]
+        row = U + stride * i
+        x[i] = (x[i] - _dot(row + i + 1, x + i + 1, size - i - 1)) * row[i]
+
+
+cpdef void backward_solve(const double[:, :] U, double[:] x) noexcept nogil:
+    _backward(&U[0, 0], U.shape[0], _stride(U), &x[0])
+
+
+cpdef void inverse_columns(const double[:, :] U, double[:, :] out) noexcept nogil:
+    cdef Py_ssize_t k
+    out[:, :] = 0.0
+    for k in range(U.shape[0]):
+        out[k, k] = 1.0
+        _backward(&U[0, 0], U.shape[0], _stride(U), &out[k, 0])
+
+
+cpdef void row_sizes(const double[:, :] A, double[:] out) noexcept nogil:
+    cdef Py_ssize_t i
+    for i in range(A.shape[0]):
+        out[i] = sqrt(_dot(&A[i, 0], &A[i, 0], A.shape[1]))
+
+
+cpdef void upper_solve(const double[:, :] R, Py_ssize_t count, double[:] x) noexcept nogil:
+    cdef Py_ssize_t i
+    for i in range(count - 1, -1, -1):
+        x[i] = (x[i] - _dot(&R[i, 0] + i + 1, &x[0] + i + 1, count - 1 - i)) / R[i, i]
 
 
 cpdef void solve_tridiagonal(double[::1] lower, double[::1] diagonal, double[::1] upper, double[:, ::1] X) noexcept nogil:
@@ -441,6 +469,59 @@ cpdef void evaluate_polynomials(const double[:, ::1] C, double t, double[::1] ou
 
 cpdef double fused_pair(double a, double x, double b, double y) noexcept nogil:
     return fma(b, y, a * x)
+
+
+cpdef void products(const double[:, :] Y, double[:, :] S) noexcept nogil:
+    cdef Py_ssize_t e, c, width = S.shape[1]
+    cdef double *row
+    for e in range(S.shape[0]):
+        row = &S[e, 0]
+        for c in range(width):
+            row[c] = 0.0
+        _subtract_rows(row + e, width - e, &Y[0, e], _stride(Y), &Y[0, e], _stride(Y), Y.shape[0])
+        for c in range(e, width):
+            row[c] = -row[c]
+
+
+cpdef void add_product(double scale, const double[:, :] A, const double[:] x, double[:] out) noexcept nogil:
+    cdef Py_ssize_t i
+    for i in range(A.shape[0]):
+        out[i] += scale * _dot(&A[i, 0], &x[0], A.shape[1])
+
+
+cpdef void rotate_rows(double[:, :] A, Py_ssize_t i, double a, double b) noexcept nogil:
+    cdef double size = sqrt(a * a + b * b), one, other
+    cdef double c = a / size, s = b / size
+    cdef double *x = &A[i, 0]
+    cdef double *y = &A[i + 1, 0]
+    cdef Py_ssize_t j
+    for j in range(A.shape[1]):
+        one, other = x[j], y[j]
+        x[j] = c * one + s * other
+        y[j] = c * other - s * one
+
+
+cpdef bint is_zero(const double[:, :] A) noexcept nogil:
+    cdef Py_ssize_t i, j
+    for i in range(A.shape[0]):
+        for j in range(A.shape[1]):
+            if A[i, j] != 0.0:
+                return False
+    return True
+
+
+cpdef double excess(const double[:] values, const double[:] lower, const double[:] upper) noexcept nogil:
+    cdef double worst = 0.0, below, above
+    cdef Py_ssize_t i
+    for i in range(values.shape[0]):
+        below, above = lower[i] - values[i], values[i] - upper[i]
+        if not below <= worst:
+            worst = below
+        if not above <= worst:
+            worst = above
+        if worst != worst:
+            return worst
+    return worst
 
 
 cpdef double fused_sum(double a, double x, double b, double y, double c, double z) noexcept nogil:

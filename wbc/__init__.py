@@ -14,7 +14,6 @@ from surefoot.lazy import face
 
 if TYPE_CHECKING:
     from surefoot.forces import ExternalLoad
-    from surefoot.wbc.answer import WbcAnswer
     from surefoot.wbc.cone import Sole
     from surefoot.wbc.controller import WholeBodyController
     from surefoot.wbc.ik import PostureIk, PostureResult, PostureTarget
@@ -22,7 +21,7 @@ if TYPE_CHECKING:
     from surefoot.wbc.model import BodyFrames, RobotTerms
     from surefoot.wbc.parameters import WbcParameters
     from surefoot.wbc.qp import QpData, QpLayout
-    from surefoot.wbc.types import FootSensing, RobotState, SolveStatus, WbcReference, WbcReport
+    from surefoot.wbc.types import FootSensing, RobotState, SolveStatus, WbcAnswer, WbcReference, WbcReport
 
 __all__ = [
     "BodyFrames",
@@ -49,7 +48,6 @@ if not TYPE_CHECKING:  # a type checker shall still refuse names that are not th
     __getattr__, __dir__ = face(
         __name__,
         {
-            "answer": ("WbcAnswer",),
             "cone": ("Sole",),
             "controller": ("WholeBodyController",),
             "ik": ("PostureIk", "PostureResult", "PostureTarget"),
@@ -57,6 +55,14 @@ if not TYPE_CHECKING:  # a type checker shall still refuse names that are not th
             "model": ("BodyFrames", "RobotTerms"),
             "parameters": ("WbcParameters",),
             "qp": ("QpData", "QpLayout"),
-            "types": ("ExternalLoad", "FootSensing", "RobotState", "SolveStatus", "WbcReference", "WbcReport"),
+            "types": (
+                "ExternalLoad",
+                "FootSensing",
+                "RobotState",
+                "SolveStatus",
+                "WbcAnswer",
+                "WbcReference",
+                "WbcReport",
+            ),
         },
     )

@@ -2,9 +2,8 @@
 
 import math
 import time
-from collections.abc import Callable, Sequence
+from collections.abc import Sequence
 from dataclasses import replace
-from functools import partial
 
 import numpy as np
 import pinocchio as pin
@@ -12,7 +11,7 @@ from numpy.typing import NDArray
 
 from surefoot.forces import NO_LOAD
 from surefoot.values import maker
-from surefoot.wbc.answer import AnswerReader, WbcAnswer
+from surefoot.wbc.answer import AnswerReader
 from surefoot.wbc.arm_swing import ArmSwing
 from surefoot.wbc.balance import SupportRegion
 from surefoot.wbc.cone import CONE_ROWS, TOE_DEPTH, Sole
@@ -26,7 +25,7 @@ from surefoot.wbc.parameters import WbcParameters
 from surefoot.wbc.qp import UNBOUNDED, WRENCH_UNIT, QpData, QpLayout, allocate
 from surefoot.wbc.separation import Separation
 from surefoot.wbc.setpoint import Setpoint
-from surefoot.wbc.solvers import EqualityFirst, QpSolution, QpSolver, equalities_only, in_turn
+from surefoot.wbc.solvers import QpSolution, QpSolver, equalities_only, in_turn
 from surefoot.wbc.tasks.default import default_tasks
 from surefoot.wbc.tasks.diagonal import ForceDistribution, Posture, Regularisation
 from surefoot.wbc.tasks.registry import TaskLayout
@@ -34,7 +33,16 @@ from surefoot.wbc.tasks.stack import TaskStack
 from surefoot.wbc.tasks.swing import AnkleStops
 from surefoot.wbc.tasks.task import Task
 from surefoot.wbc.tasks.trunk import HipStops
-from surefoot.wbc.types import GRAVITY, Array, FootSensing, RobotState, SolveStatus, WbcReference, WbcReport
+from surefoot.wbc.types import (
+    GRAVITY,
+    Array,
+    FootSensing,
+    RobotState,
+    SolveStatus,
+    WbcAnswer,
+    WbcReference,
+    WbcReport,
+)
 
 ACCEPTED_VIOLATION = 1e-3
 """A solution that breaks a row by more than this (N, N·m, m/s^2) is not used, whatever its solver says."""
@@ -140,15 +148,15 @@ class WholeBodyController:
         )
         self.tasks = TaskStack(self.qp, (*default, *tasks), diagonal)
         self.schedule = ContactSchedule(parameters.schedule, self.terms.mass * GRAVITY, control_period)
-        self._observer = LoadObserver(self.terms.mass, control_period, size, self.terms.compiled)
+        self._observer = LoadObserver(self.terms.mass, control_period, size)
         self.driven = None if driven is None or not driven.any() else DrivenRows(self.layout, driven, control_period)
         fixed = None if self.driven is None else self.driven.fixed
         self._limits, self._toe = limits, sole.half_length
         self._seen: list[tuple[int, Array]] = []
-        self._reader = AnswerReader(
-            self.qp, self.layout, self.tasks, limits.torque, control_period, size, self.terms.compiled
+        self._reader = AnswerReader(self.qp, self.layout, self.tasks, limits.torque, control_period, size)
+        self._solvers: tuple[QpSolver, ...] = in_turn(
+            parameters.solver, parameters.second_solver, self.layout.soft, fixed
         )
-        self._ask(in_turn(parameters.solver, parameters.second_solver, self.layout.soft, fixed))
 
     @property
     def task_layout(self) -> TaskLayout:
@@ -176,20 +184,12 @@ class WholeBodyController:
             self.schedule.weight = terms.mass * GRAVITY
         contacts = self.schedule.update(reference, sensing)
         qp = self.build(terms, reference, contacts)
-        built, at_once = time.perf_counter(), None if fail_solvers else self._at_once
-        violation = math.inf if at_once is None else at_once()
-        if violation <= self._sure:
-            answer, status, iterations, dual = self._reader.answer, _SOLVED, 0, math.nan
-            if self._seen:
-                self._reader.see_soles(self._seen)
-        else:
-            status, solution = (
-                self.solve(qp, fail_solvers) if at_once is None else self._settle(qp, self._first_goes_on(violation))
-            )
-            answer = self.interpret(terms, solution)
-            iterations, violation, dual = 0, math.inf, math.nan
-            if solution is not None:
-                iterations, violation, dual = solution.iterations, solution.violation, solution.dual_residual
+        built = time.perf_counter()
+        status, solution = self.solve(qp, fail_solvers)
+        answer = self.interpret(terms, solution)
+        iterations, violation, dual = 0, math.inf, math.nan
+        if solution is not None:
+            iterations, violation, dual = solution.iterations, solution.violation, solution.dual_residual
         return _a_report(
             answer.torque, status, iterations, violation, dual, answer.acceleration, answer.wrench, contacts.active,
             contacts.felt, answer.task_error, built - start, time.perf_counter() - built, terms.load,
@@ -231,19 +231,15 @@ class WholeBodyController:
         What holds no limits at all throws the robot. So before that some of the soft ones are broken, and where that
         does not do soles slide, lift or turn: one that is torn off the ground by what it carries cannot be held.
         """
-        return _of_equalities(qp) if fail_solvers else self._settle(qp, self._solvers[0].solve(qp))
-
-    def _settle(self, qp: QpData, solution: QpSolution | None) -> tuple[SolveStatus, QpSolution | None]:
-        """The same after what the first solver says."""
-        for status, solver in zip(_IN_TURN, self._solvers, strict=True):
-            if status is not _SOLVED:
-                solution = solver.solve(qp)
+        for status, solver in zip(_IN_TURN, () if fail_solvers else self._solvers, strict=False):
+            solution = solver.solve(qp)
             if solution is not None and solution.violation <= ACCEPTED_VIOLATION:
                 # What may break limits has broken none where it answers for a solver that failed.
                 if status is _SOFTENED and qp.violation(solution.x) <= ACCEPTED_VIOLATION:
                     status = SolveStatus.SECOND_SOLVER
                 return status, solution
-        return _of_equalities(qp)
+        solution = equalities_only(qp)
+        return (SolveStatus.HELD if solution is None else SolveStatus.EQUALITIES_ONLY), solution
 
     def interpret(self, terms: RobotTerms, solution: QpSolution | None) -> WbcAnswer:
         """Torque, acceleration, wrenches and task errors of a solution of the QP last built, from the same terms.
@@ -254,25 +250,10 @@ class WholeBodyController:
         if solution is None:
             reader.fade(terms.v)
         else:
-            reader.read(terms, solution.x, terms is self.terms)
-            reader.see_soles(self._seen)
+            reader.read(terms, solution.x)
+            if self._seen:
+                reader.see_soles(self._seen)
         return reader.answer
-
-    def _ask(self, solvers: tuple[QpSolver, ...]) -> None:
-        """Ask these in turn from now on.
-
-        The kernels of the first one also read its answer, in one call, unless a class below solves or reads otherwise.
-        """
-        self._solvers, first, own = solvers, solvers[0], type(self)
-        self._at_once: Callable[[], float] | None = None
-        self._sure = -math.inf
-        bound = self._reader.bound
-        if bound is None or not isinstance(first, EqualityFirst) or (equalities := first.prepare(self.qp)) is None:
-            return
-        self._reader.read_from(equalities.x)
-        if own.solve is WholeBodyController.solve and own.interpret is WholeBodyController.interpret:
-            self._at_once, self._sure = equalities.answering(bound), equalities.accuracy
-            self._first_goes_on = partial(first.go_on, equalities)
 
     def _shift(self, terms: RobotTerms, reference: WbcReference, contacts: ContactState) -> None:
         """See a rolling foot from its toe edge, a leaning one from its line, others from their soles."""
@@ -284,9 +265,3 @@ class WholeBodyController:
                 self._seen.append((foot, terms.shift_foot(foot, 0.0, 0.0)))
             else:
                 terms.unshift(foot)
-
-
-def _of_equalities(qp: QpData) -> tuple[SolveStatus, QpSolution | None]:
-    """What holds the equalities alone, which is the last resort."""
-    solution = equalities_only(qp)
-    return (SolveStatus.HELD if solution is None else SolveStatus.EQUALITIES_ONLY), solution

@@ -19,16 +19,13 @@ robots of any size: a push lasts as long for a small one.
 """
 
 import math
-from collections import deque
-from collections.abc import Callable
-from typing import Any
 
 import numpy as np
 
+from surefoot import algebra
 from surefoot.forces import NO_LOAD, ExternalLoad
 from surefoot.similarity import REFERENCE_SIZE, Similarity
-from surefoot.wbc.compiled import CompiledTerms
-from surefoot.wbc.model import RobotTerms, cross
+from surefoot.wbc.model import RobotTerms
 from surefoot.wbc.types import GRAVITY, Array
 
 SPAN = 0.02
@@ -76,6 +73,9 @@ PAST = 64
 _ROWS = (2, 3, 1)
 """Numbers of an estimate: force x, y; moment x, y, z; share of the weight."""
 
+_PULLS = 5
+"""All of these but the last one."""
+
 
 class LoadObserver:
     """Estimates what lasts of an external force, and the true mass.
@@ -84,82 +84,31 @@ class LoadObserver:
         mass: the model's [kg].
         period: time between two updates [s].
         size: of the robot.
-        compiled: terms on which the kernel works; None for plain Python.
 
     Attributes:
         load: as estimated; `NO_LOAD` while there is none.
+        found: force, moment and share of the weight in the last span, shape (6,) [N, N·m, -].
     """
 
-    def __init__(
-        self,
-        mass: float,
-        period: float,
-        size: Similarity = REFERENCE_SIZE,
-        compiled: CompiledTerms | None = None,
-    ) -> None:
-        self._mass, self._ticks = mass, max(1, round(SPAN / period))
+    def __init__(self, mass: float, period: float, size: Similarity = REFERENCE_SIZE) -> None:
+        self._mass, self._weight, self._ticks = mass, mass * GRAVITY, max(1, round(SPAN / period))
         self._span = self._ticks * period
-        self._felt, self._com = np.zeros(6), np.zeros(3)
-        self._momentum: Array | None = None
-        # Of each tick the CoM's velocity, the angular momentum about it, and the CoM.
-        self._past: deque[Array] = deque(maxlen=PAST)
-        self._age, self._period = 0.0, period
-        self._count = 0 if compiled is None else -1
-        self._spans = np.empty((0, sum(_ROWS)))
-        self._most = np.repeat(size.times(RATES, "N/s, N·m/s, 1/s"), _ROWS) * self._span
+        self._age, self._count, self._begun = 0.0, 0, False
+        # Sums over a span, and the momentum at its beginning.
+        self._felt, self._com, self._momentum = np.zeros(6), np.zeros(3), np.zeros(6)
+        # Momenta of past ticks, the last one in a row of its own, in turn.
+        self._past, self._newest = np.zeros((PAST, 6)), 0
+        self._spans, self._filled, self._waits = np.zeros((SPANS, sum(_ROWS))), 0, False
+        self._most_change = np.repeat(size.times(RATES, "N/s, N·m/s, 1/s"), _ROWS) * self._span
         pull = np.repeat([size.factor("N"), size.factor("N·m")], _ROWS[:2])
-        self._bound, self._push = np.repeat(BOUND, _ROWS[:2]) * pull, size.times(PUSH, "N")
-        self._kept, self._sudden = (tuple(limit * pull for limit in limits) for limits in (KEPT, SUDDEN))
-        self._estimate = np.zeros(sum(_ROWS))
-        self._deviation = self._wide_for = (0.0, 0.0)
-        self._late = False
-        self._ramps = self._ramps_now()
-        self.load = NO_LOAD
-        self._wrench = np.zeros((2, 6))
-        self._add: Callable[[], None] | None = None
-        if compiled is not None:
-            self._compile(compiled)
-
-    def _compile(self, compiled: CompiledTerms) -> None:
-        """Bind the kernels that do what `_moving` and `_end_span` do."""
-        bind, self._knows = compiled.kernels.bind, np.ones(1, dtype=np.int64)
-        self._limits = np.array(WEIGHT), np.array(self._kept), np.array(self._sudden)
-        share_limits, kept, sudden = self._limits
-        sums = compiled.kernels.fill(
-            "LoadSums",
-            terms=compiled.bound,
-            wrench=self._wrench,
-            felt=self._felt,
-            com=self._com,
-            past=np.zeros((PAST, 6)),
-            past_count=PAST,
-            newest=np.zeros(1, dtype=np.int64),
-        )
-        span = compiled.kernels.fill(
-            "LoadSpan",
-            sums=sums,
-            weight=self._mass * GRAVITY,
-            span=self._span,
-            ticks=self._ticks,
-            spans_count=SPANS,
-            latest_count=LATEST,
-            most_share=MOST,
-            least_press=LEAST_PRESS,
-            share_limits=share_limits,
-            kept=kept,
-            sudden=sudden,
-            bound=self._bound,
-            push=np.array(self._push, dtype=np.float64),
-            most_change=self._most,
-            known=self._knows,
-            waits=np.zeros(1, dtype=np.int64),
-            momentum=np.zeros(6),
-            spans=np.zeros((SPANS, sum(_ROWS))),
-            filled=np.zeros(1, dtype=np.int64),
-            estimate=self._estimate,
-        )
-        self._begin, self._end = (bind(name, span) for name in ("load_moving", "load_span_end"))
-        self._add = bind("load_sums_add", sums)
+        self._bound, self._push = np.repeat(BOUND, _ROWS[:2]) * pull, np.array(size.times(PUSH, "N"))
+        self._kept, self._sudden = (np.multiply.outer(KEPT, pull), np.multiply.outer(SUDDEN, pull))
+        self._share, self._lasting_wide, self._acting_wide = np.array(WEIGHT), np.array(LASTING), np.array(ACTING)
+        self._estimate, self._wanted, self._sorted = np.zeros(sum(_ROWS)), np.zeros(sum(_ROWS)), np.zeros(SPANS)
+        self._now, self._change, self._deviation = np.zeros(6), np.zeros(6), np.zeros(_PULLS)
+        self.found, self.load, self._given = np.zeros(sum(_ROWS)), NO_LOAD, np.zeros((2, 6))
+        # The same memory.
+        self._found, self._wrench = self.found, self._given.reshape(12)
 
     def update(
         self, terms: RobotTerms, wrench: Array, deviation: tuple[float, float] = (0.0, 0.0), age: float = 0.0
@@ -174,147 +123,158 @@ class LoadObserver:
             age: time since these wrenches acted [s].
         """
         self._age += age
-        if self._add is not None:
-            self._count += 1
-            self._wrench[...] = wrench
-            if 0 < self._count < self._ticks:
-                self._add()
-                return self.load
-        self._deviation = deviation
-        if self._add is not None:
-            return self._turn_compiled()
-        self._past.append(np.concatenate((terms.com_velocity, terms.angular_momentum, terms.com)))
-        if self._momentum is None:
-            self._momentum, self._age = self._moving(-1), 0.0
-            return self.load
-        self._felt += terms.sole_wrench_map.dot(wrench.ravel())
-        self._com += terms.com
-        self._count += 1
-        if self._count == self._ticks:
-            late = self._late_by()
-            self._end_span(self._momentum, self._then(late), late * self._period)
-        return self.load
-
-    def _late_by(self) -> float:
-        """Mean age of a span's wrenches [ticks]; the next span's begins at nothing."""
-        late = self._age / (self._ticks * self._period)
-        self._age = 0.0
-        return max(0.0, min(late, PAST - 2.0))
-
-    def _then(self, late: float) -> Array:
-        """What `_moving` was so many ticks ago, or at the first one, shape (6,) [N·s, N·m·s]."""
-        whole = min(int(late), len(self._past) - 1)
-        younger, more = self._moving(-1 - whole), late - int(late)
-        if not more:
-            return younger
-        return younger + more * (self._moving(max(-2 - whole, -len(self._past))) - younger)
-
-    def _turn_compiled(self) -> ExternalLoad:
-        """Begin the first span, or end one, by kernels, for the terms that they are bound to."""
-        age, self._age = self._age, 0.0
-        if self._count == 0:
+        self._note(terms)
+        if not self._begun:
             self._begin()
             return self.load
-        self._count = 0
-        if self._deviation != self._wide_for:
-            self._wide_for = self._deviation
-            self._knows[0] = self._known
-            if self._known:
-                for limits, now in zip(self._limits, self._limits_now(), strict=True):
-                    limits[:] = now
-        if self._end(age):
-            self._tell()
+        self._given[...] = wrench
+        self._feel(terms)
+        self._count += 1
+        if self._count == self._ticks:
+            self._count = 0
+            self._end(deviation[0], deviation[1])
         return self.load
 
-    @property
-    def _known(self) -> bool:
-        """Whether anything is known: what comes before that says least, and must not count when the rest is known."""
-        return math.isfinite(sum(self._deviation))
+    def _note(self, terms: RobotTerms) -> None:
+        """Remember momentum and moment of momentum about the origin, by the model's masses [N·s, N·m·s]."""
+        com, velocity, spin = terms.com, terms.com_velocity, terms.angular_momentum
+        self._newest = (self._newest + 1) % len(self._past)
+        past = self._past[self._newest]
+        for i in range(3):
+            past[i] = self._mass * velocity[i]
+        turning = algebra.cross(algebra.vector(com), algebra.vector(past))
+        past[3], past[4], past[5] = spin[0] + turning[0], spin[1] + turning[1], spin[2] + turning[2]
 
-    def _limits_now(self) -> tuple[tuple[Any, ...], tuple[Any, ...], tuple[Any, ...]]:
-        """Limits of the share of the weight, of what lasts, and of what acts, as wide as what is not known asks."""
-        unsure, turning = self._deviation
-        wider = np.repeat([unsure, turning], _ROWS[:2])
-        share = _wider(WEIGHT, unsure / (self._mass * GRAVITY), LASTING)
-        return share, _wider(self._kept, wider, LASTING), _wider(self._sudden, wider, ACTING)
+    def _begin(self) -> None:
+        """Let the past be as it is now, where the first span begins."""
+        self._begun, self._age = True, 0.0
+        self._momentum[:] = self._past[self._newest]
+        for k in range(len(self._past)):
+            self._past[k] = self._momentum
 
-    def _ramps_now(self) -> list[Any]:
-        """The same as plain numbers: none and all of the share, and of each number of what lasts and of what acts."""
-        return [np.transpose(limits).tolist() for limits in self._limits_now()]
+    def _feel(self, terms: RobotTerms) -> None:
+        """Add force and moment about the origin that the soles feel, and the CoM."""
+        wrench_map, com = terms.sole_wrench_map, terms.com
+        for i in range(6):
+            felt = 0.0
+            for j in range(12):
+                felt += wrench_map[i, j] * self._wrench[j]
+            self._felt[i] += felt
+        for i in range(3):
+            self._com[i] += com[i]
 
-    def _moving(self, at: int) -> Array:
-        """Momentum and moment of momentum about the origin, by the model's masses, shape (6,) [N·s, N·m·s].
+    def _end(self, unsure: float, turning: float) -> None:
+        """End a span, whose load has that deviation of its force and moment [N, N·m]."""
+        is_found, is_known = self._balance(self._late()), math.isfinite(unsure + turning)
+        # What comes before it is known would say least, and must not count.
+        if not is_known:
+            self._waits, self._filled = True, 0
+        if is_found and is_known and not (self._waits and self._filled < SPANS):
+            for i in range(_PULLS):
+                self._deviation[i] = unsure if i < 2 else turning
+            self._follow(unsure / self._weight)
+            self._tell()
 
-        Args:
-            at: place in the past [ticks].
-        """
-        velocity, spin, com = self._past[at].reshape(3, 3)
-        momentum = self._mass * velocity
-        return np.concatenate((momentum, spin + cross(com, momentum)))
+    def _late(self) -> float:
+        """Mean age of the span's wrenches [ticks]; the next span's begins at nothing."""
+        late = self._age / self._span
+        self._age = 0.0
+        return max(0.0, min(late, len(self._past) - 2.0))
 
-    def _end_span(self, before: Array, moving: Array, age: float) -> None:
-        """Hold the forces of a span, of that age, against its change of momentum."""
-        # Plain floats: at this size they are faster than arrays.
-        felt, com = (self._felt / self._ticks).tolist(), self._com / self._ticks
-        com -= 0.5 * age / self._mass * (before[:3] + moving[:3])
-        change = ((moving - before) / self._span).tolist()
-        self._momentum, self._count = moving, 0
-        self._felt[:], self._com[:] = 0.0, 0.0
-        weight = self._mass * GRAVITY
-        pressing = change[2] + weight
-        known = min(pressing, felt[2]) > LEAST_PRESS * weight
-        scale = felt[2] / pressing if known else 1.0 + float(self._estimate[-1])
-        x, y, _, *moment = (scale * rate - force for rate, force in zip(change, felt, strict=True))
-        turning = cross(com, np.array([x, y, -scale * weight])).tolist()
-        span = [x, y, *(n - t for n, t in zip(moment, turning, strict=True)), scale - 1.0]
-        if math.isfinite(sum(span)):
-            self._spans = np.concatenate((self._spans[1 - SPANS :], [span]))
-            if not self._known:
-                self._spans, self._late = self._spans[:0], True
-            elif not self._late or len(self._spans) == SPANS:
-                self._follow()
+    def _balance(self, late: float) -> bool:
+        """Hold the forces of a span, late by so many ticks, against its change of momentum; whether it found a load."""
+        self._see(late)
+        now, before, change, found = self._now, self._momentum, self._change, self._found
+        # By how much the CoM was farther back when the forces acted, in the time of a momentum.
+        back = 0.5 * late * self._span / (self._ticks * self._mass)
+        for i in range(3):
+            self._com[i] = self._com[i] / self._ticks - back * (before[i] + now[i])
+        for i in range(6):
+            self._felt[i] /= self._ticks
+            change[i] = (now[i] - before[i]) / self._span
+            before[i] = now[i]
+        felt, least = self._felt, LEAST_PRESS * self._weight
+        pressing = change[2] + self._weight
+        is_pressed = pressing > least and felt[2] > least
+        scale = felt[2] / pressing if is_pressed else 1.0 + self._estimate[_PULLS]
+        x, y = scale * change[0] - felt[0], scale * change[1] - felt[1]
+        turning = algebra.cross(algebra.vector(self._com), (x, y, -scale * self._weight))
+        found[0], found[1], found[5] = x, y, scale - 1.0
+        found[2] = scale * change[3] - felt[3] - turning[0]
+        found[3] = scale * change[4] - felt[4] - turning[1]
+        found[4] = scale * change[5] - felt[5] - turning[2]
+        self._felt[:] = 0.0
+        self._com[:] = 0.0
+        for i in range(len(found)):
+            if not math.isfinite(found[i]):
+                return False
+        self._keep()
+        return True
 
-    def _follow(self) -> None:
-        """Let the load follow what lasts."""
-        if self._deviation != self._wide_for:
-            self._wide_for, self._ramps = self._deviation, self._ramps_now()
-        weight_limits, kept_limits, sudden_limits = self._ramps
-        lasting, latest = _median(self._spans).tolist(), _median(self._spans[-LATEST:]).tolist()
-        wanted = [0.0] * len(kept_limits)
-        if len(self._spans) == SPANS:
-            none, push = self._push
-            # The span in which a push ends has only part of it.
-            hardest = max(math.hypot(x, y) for x, y in self._spans[-LATEST:, :2].tolist())
-            soft = min(max((push - hardest) / (push - none), 0.0), 1.0)
-            for k, bound in enumerate(self._bound.tolist()):
-                one, other = lasting[k], latest[k]
-                both = min(abs(one), abs(other)) if one * other > 0.0 else 0.0
-                kept = _ramp(math.copysign(both, other), *kept_limits[k])
-                sudden = min(max(_ramp(other, *sudden_limits[k]), -bound), bound) * soft
-                wanted[k] = sudden if abs(sudden) > abs(kept) else kept
-        wanted.append(_ramp(min(max(lasting[-1], -MOST), MOST), *weight_limits))
-        steps = zip(self._estimate.tolist(), wanted, self._most.tolist(), strict=True)
-        self._estimate = np.array([now + min(max(then - now, -most), most) for now, then, most in steps])
-        self._tell()
+    def _see(self, late: float) -> None:
+        """Momenta as they were when the forces acted, so many ticks ago."""
+        whole, count = int(late), len(self._past)
+        younger = self._past[(self._newest + count - whole) % count]
+        older = self._past[(self._newest + count - whole - 1) % count]
+        for i in range(6):
+            self._now[i] = younger[i] + (late - whole) * (older[i] - younger[i])
+
+    def _keep(self) -> None:
+        """Keep what a span found, in the place of the oldest one."""
+        if self._filled == SPANS:
+            for k in range(1, SPANS):
+                self._spans[k - 1] = self._spans[k]
+        else:
+            self._filled += 1
+        self._spans[self._filled - 1] = self._found
+
+    def _follow(self, unsure: float) -> None:
+        """Let the load follow what lasts, where the share of the weight has that deviation."""
+        calm, wanted = self._calm(), self._wanted
+        wanted[:] = 0.0
+        for i in range(_PULLS if self._filled == SPANS else 0):
+            lasting, latest, deviation = self._median(i, SPANS), self._median(i, LATEST), self._deviation[i]
+            least = min(abs(lasting), abs(latest)) if lasting * latest > 0.0 else 0.0
+            kept = _ramp(math.copysign(least, latest), self._kept[:, i], deviation, self._lasting_wide)
+            sudden = _ramp(latest, self._sudden[:, i], deviation, self._acting_wide)
+            sudden = algebra.clamp(sudden, -self._bound[i], self._bound[i]) * calm
+            wanted[i] = sudden if abs(sudden) > abs(kept) else kept
+        share = algebra.clamp(self._median(_PULLS, SPANS), -MOST, MOST)
+        wanted[_PULLS] = _ramp(share, self._share, unsure, self._lasting_wide)
+        for i in range(len(wanted)):
+            most = self._most_change[i]
+            self._estimate[i] += algebra.clamp(wanted[i] - self._estimate[i], -most, most)
+
+    def _calm(self) -> float:
+        """How far the latest spans are from a push: of the one in which a push ends only a part is in it."""
+        none, full, hardest = self._push[0], self._push[1], 0.0
+        for k in range(max(self._filled - LATEST, 0), self._filled):
+            hardest = max(hardest, math.hypot(self._spans[k, 0], self._spans[k, 1]))
+        return algebra.clamp((full - hardest) / (full - none), 0.0, 1.0)
+
+    def _median(self, number: int, count: int) -> float:
+        """Median of a number of the estimate over the last spans, by insertion."""
+        count = min(count, self._filled)
+        for k in range(count):
+            value, place = self._spans[self._filled - count + k, number], k
+            while place > 0 and self._sorted[place - 1] > value:
+                self._sorted[place] = self._sorted[place - 1]
+                place -= 1
+            self._sorted[place] = value
+        middle: float = self._sorted[count // 2]
+        return middle
 
     def _tell(self) -> None:
         """The estimate as a load."""
-        self.load, estimate = NO_LOAD, self._estimate.tolist()
-        if any(estimate):
-            x, y, *moment, more = estimate
-            self.load = ExternalLoad(np.array([x, y, 0.0]), np.array(moment), 1.0 + more)
+        x, y, *moment, more = np.asarray(self._estimate).tolist()
+        is_any = any((x, y, *moment, more))
+        self.load = ExternalLoad(np.array([x, y, 0.0]), np.array(moment), 1.0 + more) if is_any else NO_LOAD
 
 
-def _wider(limits: tuple[Any, ...], deviation: Any, times: tuple[float, float]) -> tuple[Any, ...]:
-    """Limits that are wider by so many deviations: what disturbs and what is not known are independent."""
-    return np.hypot(limits[0], times[0] * deviation), np.hypot(limits[1], times[1] * deviation)
+def _ramp(value: float, limits: Array, deviation: float, times: Array) -> float:
+    """A value of which nothing counts up to the first limit, all from the second one on.
 
-
-def _ramp(value: float, none: float, full: float) -> float:
-    """A value of which nothing counts up to the first limit, all from the second one on."""
-    return value * min(max((abs(value) - none) / (full - none), 0.0), 1.0)
-
-
-def _median(spans: Array) -> Array:
-    """The median of each column; `numpy.median` takes ten times as long."""
-    return np.asarray(np.sort(spans, axis=0)[len(spans) // 2])
+    Limits are wider by so many deviations: what disturbs and what is not known are independent.
+    """
+    none, full = math.hypot(limits[0], times[0] * deviation), math.hypot(limits[1], times[1] * deviation)
+    return value * algebra.clamp((abs(value) - none) / (full - none), 0.0, 1.0)

@@ -5,7 +5,7 @@ from surefoot.algebra cimport vector3
 from surefoot.wbc.frame cimport Frame
 
 cdef class RobotTerms:
-    cdef readonly object model, data, leaning, load, compiled
+    cdef readonly object model, data, leaning, load
     cdef readonly double mass, model_mass, wrench_unit
     cdef readonly Py_ssize_t nv
     cdef readonly bint waist, is_finite, is_shifted

@@ -7,9 +7,8 @@ import pinocchio as pin
 
 from surefoot import algebra
 from surefoot.forces import NO_LOAD, ExternalLoad
-from surefoot.native.library import library
 from surefoot.values import dataclass
-from surefoot.wbc.compiled import CompiledTerms
+from surefoot.wbc import soles
 from surefoot.wbc.frame import Frame
 from surefoot.wbc.leaning import line_centre, line_frame
 from surefoot.wbc.qp import WRENCH_UNIT
@@ -83,7 +82,6 @@ class RobotTerms:
         torso_jacobian: from v to the torso's angular velocity, shape (3, nv).
         torso_velocity: angular, in its frame, shape (3,) [rad/s].
         torso_bias: angular acceleration with v' = 0, shape (3,) [rad/s^2].
-        compiled: these terms as kernels take them; None without kernels.
     """
 
     def __init__(self, model: pin.Model, frames: BodyFrames, wrench_unit: float = WRENCH_UNIT) -> None:
@@ -115,8 +113,6 @@ class RobotTerms:
         self._torso = Frame(model, data, torso, *motion)
         self.torso_jacobian, self.torso_velocity, self.torso_bias = (part[3:] for part in motion)
         self._name()
-        kernels = library()
-        self.compiled = CompiledTerms(kernels, self) if kernels else None
 
     def _view(self, data: pin.Data, torso: int) -> None:
         """Views of Pinocchio's own memory, which need no copy."""
@@ -275,13 +271,7 @@ class RobotTerms:
         position = self.sole_position
         if self.leaning is not None:
             position = np.array([line_centre(k, position[k], self.sole_rotation[k], self.leaning) for k in (0, 1)])
-        level = np.empty((2, 3))
-        for k, ((x, y, z), (at_x, at_y, at_z)) in enumerate(
-            zip(self.sole_rotation[:, :, 0].tolist(), position.tolist(), strict=True)
-        ):
-            long = max(math.sqrt(x * x + y * y), 1e-9)
-            level[k] = at_x + toe * (x - x / long), at_y + toe * (y - y / long), at_z + toe * z
-        return level
+        return soles.level(position, self.sole_rotation, toe)
 
     def shift_foot(self, k: int, forward: float, pitch: float) -> Array:
         """See foot k from a frame at a point ahead of its sole's centre, turned back by a pitch, until it is unshifted.

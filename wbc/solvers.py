@@ -2,22 +2,18 @@
 
 import math
 from collections.abc import Callable
-from functools import cache
-from typing import Any, Protocol
+from typing import Protocol
 
 import daqp
 import numpy as np
 from numpy.typing import NDArray
 from proxsuite import proxqp
 
-from surefoot.native.library import Bound, Library, library
 from surefoot.values import dataclass
 from surefoot.wbc.parameters import SOLVER_NAMES
 from surefoot.wbc.qp import EQUALITY_ROWS, FOOT_ROWS, QpData
+from surefoot.wbc.range_space import EqualityQp, InequalityQp
 from surefoot.wbc.types import Array
-
-MOST_ACTIVE = 16
-"""Active inequalities that the kernel takes; with more of them DAQP is as fast [-]."""
 
 
 @dataclass(frozen=True, slots=True)
@@ -160,8 +156,9 @@ class Daqp:
 
 
 class EqualityFirst:
-    """The minimiser under the equalities alone where it breaks no inequality, which makes it the minimiser; else DAQP.
+    """The minimiser under the equalities alone where it breaks no inequality, which makes it the minimiser.
 
+    Else it goes on from there while few inequalities are active, and DAQP answers for the rest.
     A robot that walks within its limits rarely touches an inequality, and the equalities cost half of the full problem.
     """
 
@@ -171,138 +168,35 @@ class EqualityFirst:
         """``accuracy``: largest violation that counts as none."""
         self._accuracy = accuracy
         self._full = Daqp(accuracy)
-        self._kernels = library()
-        self._compiled: CompiledEqualities | None = None
-
-    def prepare(self, qp: QpData) -> "CompiledEqualities | None":
-        """The kernels bound to a QP that is to be solved, which else its first ``solve`` does; None without kernels."""
-        if self._kernels is not None:
-            self._compiled = CompiledEqualities(self._kernels, self._accuracy, qp)
-        return self._compiled
+        self._equalities: EqualityQp | None = None
 
     def solve(self, qp: QpData) -> QpSolution | None:
         """See ``QpSolver.solve``."""
-        compiled = self._compiled
-        if compiled is None or compiled.qp is not qp:
-            compiled = self.prepare(qp)
-        if compiled is not None:
-            return self.go_on(compiled, compiled.run())
-        solution = equalities_only(qp)
-        if solution is not None and solution.violation <= self._accuracy:
-            return solution
-        return self._full.solve(qp)
-
-    def go_on(self, compiled: "CompiledEqualities", violation: float) -> QpSolution | None:
-        """The minimiser of a QP whose solution under the equalities alone, just found, has that violation."""
+        equalities = self._equalities
+        if equalities is None or equalities.qp is not qp:
+            equalities = self._equalities = EqualityQp(qp)
+            self._inequalities = InequalityQp(equalities, self._accuracy)
+        violation = equalities.solve()
         if violation <= self._accuracy:
-            return compiled.solution(violation)
-        active = compiled.activate() if math.isfinite(violation) else None
-        return active or self._full.solve(compiled.qp)
+            return QpSolution(equalities.x.copy(), violation, 0)
+        if math.isfinite(violation):
+            rounds = self._inequalities.solve()
+            violation = equalities.violation()
+            # Beside what counts as none there is rounding, as of DAQP, which scales its rows.
+            if rounds >= 0 and violation <= 100.0 * self._accuracy:
+                return QpSolution(equalities.x.copy(), violation, rounds)
+        return self._full.solve(qp)
 
 
 def equalities_only(qp: QpData) -> QpSolution | None:
-    """Minimiser under the equalities alone; None if H is not positive definite or the equalities contradict each other.
+    """Minimiser under the equalities alone.
 
-    By the Schur complement (Boyd and Vandenberghe, Convex Optimization, 2004, section 10.4.2): with H = L Lᵀ,
-    Y = L⁻¹ Eᵀ and w = L⁻¹ g, the multipliers solve YᵀY λ = e + Yᵀ w, and x = L⁻ᵀ (Y λ - w).
+    Returns:
+        It; None if H is not positive definite or the equalities contradict each other.
     """
-    n, eq, (dpotrf, dtrtrs, dposv) = qp.g.shape[0], EQUALITY_ROWS, _lapack()
-    L, failed = dpotrf(qp.H.T, lower=1, clean=0)
-    if failed:
-        return None
-    Y, _ = dtrtrs(L, np.concatenate((qp.A[:eq], qp.g[None])).T, lower=1, overwrite_b=1)
-    S = Y.T @ Y
-    _, multipliers, failed = dposv(S[:eq, :eq], qp.bounds_lower[n : n + eq] + S[:eq, eq])
-    if failed:
-        return None
-    y = Y[:, :eq] @ multipliers
-    y -= Y[:, eq]
-    x, _ = dtrtrs(L, y, lower=1, trans=1, overwrite_b=1)
-    violation = qp.violation(x)
-    return QpSolution(x, violation, 0) if math.isfinite(violation) else None
-
-
-@cache
-def _lapack() -> tuple[Any, Any, Any]:
-    """LAPACK's routines, which plain Python alone imports."""
-    from scipy.linalg import lapack
-
-    return lapack.dpotrf, lapack.dtrtrs, lapack.dposv
-
-
-class CompiledEqualities:
-    """Does for one QP what ``equalities_only`` does, by a kernel; another goes on from there.
-
-    Args:
-        kernels: the library.
-        accuracy: largest violation that counts as none.
-        qp: which is solved as it is at each call.
-
-    Attributes:
-        accuracy: likewise.
-        qp: likewise.
-        x: the solution found last, shape (n,).
-    """
-
-    def __init__(self, kernels: Library, accuracy: float, qp: QpData) -> None:
-        self._kernels, self.accuracy, self.qp = kernels, accuracy, qp
-        self._bind(qp)
-
-    def run(self) -> float:
-        """Solve; returns the violation at x, which is not finite where there is no solution."""
-        return float(self._run(self._split))
-
-    def solution(self, violation: float, iterations: int = 0) -> QpSolution:
-        """What was found last as a value."""
-        return QpSolution(self.x.copy(), violation, iterations)
-
-    def answering(self, answer: Bound) -> Callable[[], float]:
-        """``run`` by a kernel that also fills an answer, of the same x, where the violation counts as none."""
-        return self._kernels.bind("qp_answer", qp=self._bound, answer=answer, split=self._split, accuracy=self.accuracy)
-
-    def activate(self) -> QpSolution | None:
-        """The minimiser of the QP last solved under all of its constraints; None where few active ones do not do."""
-        rounds = self._activate()
-        if rounds < 0:
-            return None
-        violation = self._violation()
-        # Beside what counts as none there is rounding, as of DAQP, which scales its rows.
-        return self.solution(violation, rounds) if violation <= 100.0 * self.accuracy else None
-
-    def _bind(self, qp: QpData) -> None:
-        n, rows, eq = qp.g.shape[0], qp.A.shape[0], EQUALITY_ROWS
-        # A right side for each equality and for the gradient, and room to make their number a multiple of four.
-        width = eq + 4
-        self.x, self._split = np.zeros(n), n - 2 * FOOT_ROWS
-        self._bound = bound = self._kernels.fill(
-            "EqualityQp",
-            variables=n,
-            equalities=eq,
-            rows=rows,
-            H=qp.H,
-            g=qp.g,
-            A=qp.A,
-            lower=qp.bounds_lower,
-            upper=qp.bounds_upper,
-            factor=np.zeros((n, n)),
-            right_sides=np.zeros((n, width)),
-            schur=np.zeros((eq, width)),
-            multipliers=np.zeros(eq),
-            x=self.x,
-        )
-        self._run = self._kernels.bind("equality_qp_solve", bound)
-        self._violation = self._kernels.bind("qp_violation", bound)
-        self._activate = self._kernels.bind(
-            "active_qp_solve",
-            qp=bound,
-            most=MOST_ACTIVE,
-            tolerance=self.accuracy,
-            normals=np.zeros((MOST_ACTIVE, n)),
-            columns=np.zeros((MOST_ACTIVE + 1, eq + MOST_ACTIVE)),
-            multipliers=np.zeros(MOST_ACTIVE),
-            active=np.zeros(MOST_ACTIVE, dtype=np.int64),
-            work=np.zeros(2 * n + eq + MOST_ACTIVE),
-        )
+    equalities = EqualityQp(qp)
+    violation = equalities.solve()
+    return QpSolution(equalities.x, violation, 0) if math.isfinite(violation) else None
 
 
 SOLVERS: dict[str, Callable[[], QpSolver]] = dict(zip(SOLVER_NAMES, (EqualityFirst, Daqp, ProxQp), strict=True))

@@ -256,3 +256,20 @@ class WbcReport:
     build_time: float
     solve_time: float
     load: ExternalLoad = NO_LOAD
+
+
+@dataclass(frozen=True, slots=True)
+class WbcAnswer:
+    """What a solution means for the robot. Arrays are overwritten by the next one.
+
+    Attributes:
+        torque: joint torques within their limits, shape (nj,) [N·m].
+        acceleration: planned generalised acceleration, shape (nv,) [m/s^2, rad/s^2].
+        wrench: planned contact wrenches, in the sole frames, shape (2, 6) [N, N·m].
+        task_error: residuals of all tasks before weighting, shape (rows,) [m/s^2, rad/s^2, N, N m].
+    """
+
+    torque: Array
+    acceleration: Array
+    wrench: Array
+    task_error: Array

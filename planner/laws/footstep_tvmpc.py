@@ -36,7 +36,6 @@ class FootstepTvmpc:
         self._blocks = prediction.basis.argmax(axis=1)
         self._moves = len(parameters.moves)
         self._qps, self._solver = FootstepQps(parameters, prediction), AxesSolver(parameters.solvers)
-        self._solver.prepare(self._qps.rows, self._qps.size)
 
     def plan(self, problem: MotionProblem) -> Motion:
         """See `MotionPlanner`."""

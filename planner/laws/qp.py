@@ -1,12 +1,11 @@
 """The QP of one axis, and its solution by the first solver that succeeds."""
 
-from collections.abc import Callable, Sequence
 from typing import TYPE_CHECKING, Any
 
 import daqp
 import numpy as np
 
-from surefoot.native.library import Bound, Library, library
+from surefoot.planner.laws.bounded_qp import BoundedQp
 from surefoot.planner.parameters import SOLVERS
 from surefoot.planner.types import Array
 from surefoot.values import dataclass
@@ -19,9 +18,6 @@ OPTIONS: dict[str, dict[str, Any]] = {
     "piqp": dict.fromkeys(("eps_abs", "eps_rel", "eps_duality_gap_abs", "eps_duality_gap_rel"), 1e-12),
 }
 """Tolerances that make the solvers exact to the last digits that matter, by name."""
-
-_TOLERANCE = 1e-12
-"""Violation that the kernel allows, over the size of a variable or row, since rounding is as large [-]."""
 
 _UNBOUNDED = 1e30
 """A bound that DAQP takes for none, as its manual says [-]."""
@@ -88,7 +84,7 @@ def solve(qp: Qp, solvers: tuple[str, ...] = SOLVERS) -> QpSolution:
 
 
 class AxesSolver:
-    """Solves QPs that share P and G, which a kernel does in place of DAQP, as far as it can.
+    """Solves QPs that share P and G, by `BoundedQp` in place of DAQP as far as that can.
 
     Args:
         solvers: as of `solve`.
@@ -96,71 +92,29 @@ class AxesSolver:
 
     def __init__(self, solvers: tuple[str, ...]) -> None:
         self._solvers = solvers
-        self._kernels = library() if solvers[:1] == ("daqp",) else None
-        self._given: tuple[Array, ...] = ()
-        self._run: Callable[[int], int]
-
-    @property
-    def compiled(self) -> bool:
-        """Whether the kernel is asked first."""
-        return self._kernels is not None
-
-    def prepare(self, rows: int, variables: int) -> None:
-        """Bind the kernel to QPs of a size, which else the first `solve` does."""
-        if self._kernels is not None:
-            self._bind(rows, variables)
+        self._bounded, self._shape = BoundedQp(0, 0), (0, 0)
+        self._is_factorised = False
 
     def solve(self, x: Qp, y: Qp) -> tuple[QpSolution, QpSolution]:
         """Their solutions, as those of `solve`."""
-        if self._kernels is None:
+        if self._solvers[:1] != ("daqp",):
             return solve(x, self._solvers), solve(y, self._solvers)
-        one = self._solved(x, False)
-        return one, self._solved(y, one.attempt == 0 and y.P is x.P and y.G is x.G)
+        self._factorise(x)
+        one = self._solved(x)
+        if y.P is not x.P or y.G is not x.G:
+            self._factorise(y)
+        return one, self._solved(y)
 
-    def _solved(self, qp: Qp, same: bool) -> QpSolution:
-        if not self._given or self._given[2].shape != qp.G.shape:
-            self._bind(*qp.G.shape)
-        P, q, G, h, lower, upper = self._given
-        if not same:
-            P[:], G[:] = qp.P, qp.G
-        q[:], h[:], lower[:], upper[:] = qp.q, qp.h, qp.lower, qp.upper
-        return solve(qp, self._solvers) if self._run(same) else QpSolution(qp, self._x.copy(), 0)
+    def _factorise(self, qp: Qp) -> None:
+        if self._shape != qp.G.shape:
+            self._bounded, self._shape = BoundedQp(*qp.G.shape), qp.G.shape
+        self._is_factorised = self._bounded.factorise(np.ascontiguousarray(qp.P), np.ascontiguousarray(qp.G))
 
-    def _bind(self, rows: int, n: int) -> None:
-        vectors, self._x = np.zeros((3, n)), np.zeros(n)
-        self._given = np.zeros((n, n)), vectors[0], np.zeros((rows, n)), np.zeros(rows), vectors[1], vectors[2]
-        assert self._kernels is not None
-        (bound,) = bind_qps(self._kernels, [(Qp(*self._given), self._x)])
-        self._run = self._kernels.bind("bounded_qp_solve", bound)
-
-
-def bind_qps(kernels: Library, axes: Sequence[tuple[Qp, Array]]) -> list[Bound]:
-    """Structs of QPs of a size with their solutions, which share their scratch and what is made of P and G alone."""
-    rows, n = axes[0][0].G.shape
-    square = np.zeros((4, n, n))
-    scratch = {
-        "factor": square[0],
-        "inverse": square[1],
-        "rotated": square[2],
-        "triangle": square[3],
-        "share": np.zeros(rows),
-        "multipliers": np.zeros(n),
-        "work": np.zeros(4 * n),
-        "active": np.zeros(n, dtype=np.int64),
-        "taken": np.zeros(2 * n + rows, dtype=np.int64),
-    }
-    return [
-        kernels.fill(
-            "BoundedQp",
-            variables=n,
-            rows=rows,
-            tolerance=_TOLERANCE,
-            **{name: getattr(qp, name) for name in ("P", "q", "G", "h", "lower", "upper")},
-            x=x,
-            **scratch,
-        )
-        for qp, x in axes
-    ]
+    def _solved(self, qp: Qp) -> QpSolution:
+        vectors = (np.ascontiguousarray(vector) for vector in (qp.q, qp.h, qp.lower, qp.upper))
+        if self._is_factorised and self._bounded.minimise(*vectors):
+            return QpSolution(qp, self._bounded.x, 0)
+        return solve(qp, self._solvers)
 
 
 def _wrapped(qp: Qp, name: str) -> Array | None:

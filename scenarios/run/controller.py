@@ -31,6 +31,7 @@ from surefoot.wbc.estimation.parameters import SensorNoise
 from surefoot.wbc.estimation.torques import TorqueWrench
 from surefoot.wbc.falling import GivingWay
 from surefoot.wbc.model import RobotTerms
+from surefoot.wbc.soles import yaws
 from surefoot.wbc.types import NONE_TOUCHES, Array, RobotState, WbcReport
 from surefoot.wbc.zmp import measured_zmp
 
@@ -284,20 +285,15 @@ class Controller:
     def _measured(self) -> Measured:
         """What the planner may measure, without noise."""
         terms, wrench = self.terms, self.wrench
-        R = terms.sole_rotation
-        if terms.compiled is not None and terms.leaning is None:
-            soles, yaw, zmp = terms.compiled.feet(wrench, self._toe)
-        else:
-            soles, yaw = terms.level_soles(self._toe), np.arctan2(R[:, 1, 0], R[:, 0, 0])
-            zmp = np.array(measured_zmp(wrench, terms.sole_position, R))
+        zmp = measured_zmp(wrench, terms.sole_position, terms.sole_rotation)
         state = CentroidalState(self._now, terms.com.copy(), terms.com_velocity.copy(), self._lasting())
         if False in self._landed and self.planning.plan.balance.catching:
             arrives = self._output.period + self.planning.planner.parameters.freeze_catching
             self._arriving = self._comes_down(arrives, due=True)
-        feet = FeetState(soles, yaw, self._landed, arriving=self._arriving)
+        feet = FeetState(terms.level_soles(self._toe), yaws(terms.sole_rotation), self._landed, arriving=self._arriving)
         if self.estimate.deviation is not None:
             state, feet = unsure(self.estimate.deviation, state, feet)
-        return state, zmp[:2], feet
+        return state, np.array(zmp[:2]), feet
 
     def _lasting(self) -> ExternalLoad | None:
         """The load that the controller counted with a tick ago, per mass."""

@@ -125,16 +125,6 @@ static inline double clamp(double value, double least, double most) {
     return value < least ? least : value > most ? most : value;
 }
 
-/* U with A = U'U in the upper triangle of A; its diagonal holds the reciprocals. Returns whether A is not positive. */
-int cholesky(double *A, int64_t size, int64_t stride);
-
-/* Solves U'Y = B and U x = b in place, of such a factor; Y has `width` right sides, which lie row by row. */
-void forward_solve(const double *U, int64_t size, int64_t stride, double *B, int64_t width);
-void backward_solve(const double *U, int64_t size, int64_t stride, double *x);
-
-/* The least multiple of four from a count on: right sides of `equality_qp_solve` take so much. */
-int64_t padded(int64_t count);
-
 /* Twice the area of a triangle, positive where the way from a by b to c turns left. */
 static inline double left_turn(const double *a, const double *b, const double *c) {
     return (b[0] - a[0]) * (c[1] - a[1]) - (b[1] - a[1]) * (c[0] - a[0]);

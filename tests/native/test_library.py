@@ -1,6 +1,5 @@
 """The library: built from its sources, known by them, laid out as its header says, and never needed."""
 
-import ctypes
 import os
 import platform
 import shlex
@@ -9,7 +8,6 @@ import subprocess
 import sys
 from pathlib import Path
 
-import numpy as np
 import pytest
 from needs import COMPILER
 
@@ -88,34 +86,3 @@ def test_plain_python_can_be_asked_for(checkout, monkeypatch):
     assert say(checkout, **{VARIABLE: "0"}) == (f"plain Python, since {VARIABLE} is 0\n", "")
     monkeypatch.setenv(VARIABLE, "0")
     assert library() is None
-
-
-def test_structs_are_as_large_as_the_compiler_makes_them(kernels, tmp_path):
-    COMPILER.or_skip()
-    sizes = "".join(f'  printf("%zu\\n", sizeof({name}));\n' for name in kernels.structs)
-    source, program = tmp_path / "sizes.c", tmp_path / "sizes"
-    source.write_text(f'#include <stdio.h>\n#include "kernels.h"\nint main(void) {{\n{sizes}  return 0;\n}}\n')
-    subprocess.run([os.environ.get("CC", "cc"), "-I", str(FOLDER), "-o", str(program), str(source)], check=True)
-    told = subprocess.run([str(program)], check=True, capture_output=True, text=True).stdout.split()
-    assert [int(size) for size in told] == [ctypes.sizeof(kernels._layouts[name]) for name in kernels.structs]
-    assert len(told) > 10
-
-
-def test_a_struct_is_filled_whole_and_with_what_it_points_to(kernels):
-    noise, value = kernels.fill("Noise", size=3, silent=0, drawn=np.zeros(3)), np.zeros(3)
-    assert noise.struct.size == 3
-    drift = kernels.fill("Drift", steps=noise, value=value)
-    with pytest.raises(TypeError, match="has the fields"):
-        kernels.fill("Drift", steps=noise)
-    with pytest.raises(TypeError, match="has the fields"):
-        kernels.fill("Drift", steps=noise, value=value, more=1)
-    with pytest.raises(TypeError, match=r"Drift\.steps points to Noise"):
-        kernels.fill("Drift", steps=drift, value=value)
-    with pytest.raises(TypeError, match="works on a Feet"):
-        kernels.bind("feet_sample", noise)
-    numbers = {"terms": kernels.fill("Terms"), "wrench": np.zeros((2, 6)), "felt": np.zeros(6), "com": np.zeros(3)}
-    numbers |= {"past": np.zeros((4, 6)), "past_count": 4, "newest": np.zeros(1, dtype=np.int64)}
-    kernels.fill("LoadSums", **numbers)
-    for wrong in (np.zeros(6, dtype=np.float32), np.zeros((6, 2))[:, 0]):
-        with pytest.raises(TypeError, match=r"LoadSums\.felt points to double"):
-            kernels.fill("LoadSums", **{**numbers, "felt": wrong})

@@ -97,7 +97,7 @@ def test_between_two_ticks_the_motion_is_as_far_from_each_as_the_age_says():
             wrench = np.zeros((2, 6))
             wrench[0, [0, 2]] = 1000.0 * then, MASS * GRAVITY
             observer.update(terms, wrench, (0.0, 0.0), told * PERIOD)
-        found[told] = observer._spans[-1, 0]
+        found[told] = observer.found[0]
     np.testing.assert_allclose([found[told] for told in (1.0, 1.5, 2.0)], [1.0, 0.0, -1.0], atol=1e-9)
 
 

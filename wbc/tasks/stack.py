@@ -95,13 +95,6 @@ class TaskStack:
             self._H[i, i] += self._D[i]
             self._g[i] = -(self._g[i] + self._d[i])
 
-    def residual(self, x: Array) -> Array:
-        """Residuals J x - a of all tasks at the solution x, shape (rows,); those of a task without weight are zero."""
-        residual: Array = self.rows @ x
-        residual -= self.target
-        residual *= self.unscale
-        return residual
-
 
 def _weight(task: Task, catching: bool) -> Array:
     """Weight of each row of a task, in a walk or where a step catches the body."""

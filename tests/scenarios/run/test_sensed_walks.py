@@ -13,6 +13,7 @@ from surefoot.scenarios.run.run import closed_loop
 from surefoot.scenarios.run.sensed import sensed_state, sensor_noise
 from surefoot.scenarios.setup.walk import resolve
 from surefoot.sim.sensor_errors import CHEAP, GOOD, PERFECT
+from surefoot.wbc import controller
 from surefoot.wbc.estimation import estimator
 from surefoot.wbc.estimation.estimate import Deviation, Estimate, Planned
 from surefoot.wbc.estimation.torques import TorqueWrench
@@ -166,17 +167,18 @@ def test_without_a_wrench_of_the_estimator_the_controller_has_that_of_the_sensor
 @pytest.mark.unit
 def test_the_load_observer_is_told_how_old_wrenches_are(tmp_path, monkeypatch):
     """By the latency of their sensors and by what filters add; the truth is of now."""
-    ages, update = [], LoadObserver.update
+    ages = []
 
-    def noted(self, terms, wrench, deviation, age):
-        ages.append(age)
-        return update(self, terms, wrench, deviation, age)
+    class Noted(LoadObserver):
+        def update(self, terms, wrench, deviation, age):
+            ages.append(age)
+            return super().update(terms, wrench, deviation, age)
 
     class Bare(Listening):
         def sense(self, readings):
             return Estimate(self.inner.sense(readings).state)
 
-    monkeypatch.setattr(LoadObserver, "update", noted)
+    monkeypatch.setattr(controller, "LoadObserver", Noted)
     found = {}
     for name, estimator_, keys in (
         ("truth", None, {"sensing.source": "truth"}),

@@ -1,0 +1,31 @@
+"""Soles turned level, and where they point: what a planner, to which feet are flat, is told of them."""
+
+import math
+
+import numpy as np
+
+from surefoot.wbc.types import Array
+
+
+def level(position: Array, rotation: Array, toe: float) -> Array:
+    """Where the soles' centres would be if each foot turned level about its toe edge, shape (2, 3) [m].
+
+    Args:
+        position: of the soles' centres in the world, shape (2, 3) [m].
+        rotation: of the soles in the world, shape (2, 3, 3).
+        toe: toe edge from the sole's centre [m].
+    """
+    found = np.empty((2, 3))
+    for k in range(2):
+        x, y, z = rotation[k, 0, 0], rotation[k, 1, 0], rotation[k, 2, 0]
+        # A foot on its toes points nowhere.
+        flat = 1.0 / max(math.hypot(x, y), 1e-9)
+        found[k, 0] = position[k, 0] + toe * (x - x * flat)
+        found[k, 1] = position[k, 1] + toe * (y - y * flat)
+        found[k, 2] = position[k, 2] + toe * z
+    return np.asarray(found)
+
+
+def yaws(rotation: Array) -> Array:
+    """Angles about the world's vertical of the soles' long axes, shape (2,) [rad]; rotations of shape (2, 3, 3)."""
+    return np.array([math.atan2(rotation[k, 1, 0], rotation[k, 0, 0]) for k in range(2)])

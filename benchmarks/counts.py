@@ -8,7 +8,7 @@ from typing import Any
 import numpy as np
 
 from benchmarks.table import Section
-from surefoot.native.library import library
+from surefoot.native import modules
 from surefoot.scenarios.log import NoLog
 from surefoot.scenarios.run.run import closed_loop
 from surefoot.scenarios.run.skeleton import ClosedLoop
@@ -67,5 +67,5 @@ def _bytes(loop: ClosedLoop) -> int:
 
 def counts(quick: bool) -> Section:
     """The same as a table."""
-    made = "plain Python" if library() is None else "compiled kernels"
+    made = "modules interpreted" if modules.missing() else "modules compiled"
     return Section("counts", ("of diagonal-walk", "count"), tuple(counted().items()), f"with {made}, without a log")

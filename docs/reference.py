@@ -253,7 +253,6 @@ TABLES: dict[str, tuple[str, Callable[[], str]]] = {
 
 
 _LIMITS = json.loads((FOLDER.parent / "benchmarks" / "limits.json").read_text(encoding="utf-8"))
-_CALLS = {"": "diagonal-walk, compiled kernels", "plain_": "diagonal-walk, plain Python"}
 _COMMANDS = {"help": "--help", "list": "list", "show": "show walk", "schema": "schema", "run": "run diagonal-walk"}
 
 
@@ -262,8 +261,8 @@ VALUES: dict[str, str] = {
     "scenarios": str(len(catalogue.OWN)),
     "models": result_tables.models_held(),
     "knees": f"{standing.measured('walk', 'knee_angle_mean'):.0f}",
-    **{f"{kind}calls": str(_LIMITS[name]["calls of a tick without a plan"]) for kind, name in _CALLS.items()},
-    **{f"{kind}calls_plan": str(_LIMITS[name]["calls of a tick with a plan"]) for kind, name in _CALLS.items()},
+    "calls": str(_LIMITS["diagonal-walk"]["calls of a tick without a plan"]),
+    "calls_plan": str(_LIMITS["diagonal-walk"]["calls of a tick with a plan"]),
     **{
         f"modules_{word}": str(_LIMITS["surefoot's modules that a command imports"][command])
         for word, command in _COMMANDS.items()

@@ -1,6 +1,5 @@
 """A robot with meshes for the tests of every folder."""
 
-import os
 import signal
 from collections.abc import Iterator
 from dataclasses import dataclass, replace
@@ -14,12 +13,8 @@ from skips import pytest_sessionfinish, pytest_terminal_summary
 
 import surefoot.engine  # noqa: F401  before a test imports MuJoCo, which a wrong MUJOCO_GL in the shell would end
 from surefoot.models import RobotDescription, RobotOptions, describe
-from surefoot.native.library import VARIABLE, library
 
 __all__ = ["from_sensors", "pytest_addoption", "pytest_configure", "pytest_sessionfinish", "pytest_terminal_summary"]
-
-if library() is None:  # nobody is to be told in test after test that they are missed
-    os.environ[VARIABLE] = "0"
 
 
 def _heeding() -> Iterator[None]:

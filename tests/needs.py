@@ -99,7 +99,7 @@ def _lacks_compiler() -> str:
     return f"'{shlex.join(command)}' compiles nothing" if made.returncode else ""
 
 
-def _lacks_kernels() -> str:
+def _lacks_compiled() -> str:
     return modules.missing()
 
 
@@ -133,7 +133,7 @@ def _lacks_linux() -> str:
 BROWSER = Need("a browser", "CI servers need not have one", _lacks_browser)
 OPENGL = Need("off-screen OpenGL", "a machine may draw nothing", _lacks_opengl)
 COMPILER = Need("a C compiler", "without one all else must pass", _lacks_compiler)
-KERNELS = Need("compiled kernels", "without a compiler all else must pass", _lacks_kernels)
+COMPILED = Need("compiled modules", "without a compiler all else must pass", _lacks_compiled)
 SITE = Need(
     "the extra docs",
     "what builds the documentation site is no part of .[dev]",
@@ -144,4 +144,4 @@ MJLAB = Need("the package mjlab", "a package of others, which has one MJCF", _la
 RERUN = Need("the package rerun", "a viewer of others, whose format changes with each version", _lacks_rerun)
 LINUX = Need("Linux", "other systems do not tell it", _lacks_linux)
 
-NEEDS = (BROWSER, OPENGL, COMPILER, KERNELS, SITE, AXE, MJLAB, RERUN, LINUX)
+NEEDS = (BROWSER, OPENGL, COMPILER, COMPILED, SITE, AXE, MJLAB, RERUN, LINUX)

@@ -7,7 +7,6 @@ from pathlib import Path
 import needs
 import pytest
 
-from surefoot.native.library import VARIABLE
 from surefoot.sim import gl
 
 pytestmark = pytest.mark.unit
@@ -60,8 +59,6 @@ def test_a_compiler_is_one_that_compiles(programs, monkeypatch, there, said):
     monkeypatch.delenv("CC", raising=False)
     programs(**there)
     assert needs.COMPILER.lacks() == said
-    monkeypatch.setenv(VARIABLE, "0")
-    assert needs.KERNELS.lacks() == said
 
 
 @pytest.mark.parametrize("library", ["libNoSuch.so.1", "libm.so.6"])

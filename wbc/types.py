@@ -144,7 +144,8 @@ class WbcReference:
             sole as if it lay flat.
         roll: (pitch, rate, acceleration) of that foot, heel up positive [rad, rad/s, rad/s^2].
         catching: whether the next footstep is being adapted to catch the body, but on stairs and blocks.
-        numbers: the kernels' struct ``Reference`` that says the same, shape (55,) [SI]; None where no kernel made it.
+        numbers: the same side by side, in the order of `in_numbers`, shape (55,) [SI]; None where it was made field by
+            field.
     """
 
     com: Array
@@ -186,12 +187,12 @@ class WbcReference:
         rolling_foot: int,
         catching: bool = False,
     ) -> "WbcReference":
-        """A reference out of the numbers of the kernels' struct ``Reference``, and what they do not know of it.
+        """A reference out of its numbers side by side, and what they do not know of it.
 
         Those numbers become fields when they are first read.
 
         Args:
-            numbers: of the struct, shape (n,) [SI].
+            numbers: in the order of `in_numbers`, shape (55,) [SI].
             planned_contact: as of the attribute.
             time_to_switch: likewise [s].
             lifting_foot: likewise.

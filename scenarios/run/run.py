@@ -14,7 +14,7 @@ from surefoot.errors import PartError
 from surefoot.guard import said, shown
 from surefoot.models.facts import knees_straight, named_roles
 from surefoot.models.mjcf import without_looks
-from surefoot.native.library import library
+from surefoot.native import modules
 from surefoot.planner.laws.profiles import Profile
 from surefoot.scenarios.errors import LogError, ScenarioError, SetupError
 from surefoot.scenarios.file.schema import Scenario
@@ -178,7 +178,7 @@ def _own_folder(out: Path, walk: Walk) -> Iterator[Path]:
 
 def one_thread() -> threadpool_limits:
     """One thread for linear algebra: matrices of this size lose more in waiting than they gain in sharing."""
-    if library() is None:  # here, since what is loaded later has as many threads as it likes
+    if modules.missing():  # here, since what is loaded later has as many threads as it likes
         import scipy.linalg  # noqa: F401
     return cast("threadpool_limits", _libraries(len(sys.modules)).limit(limits=1))
 

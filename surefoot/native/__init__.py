@@ -1,1 +1,1 @@
-"""The modules that are compiled, and the kernels in C that are yet to become such modules."""
+"""How modules are compiled: which, when, and what they run as where they are not."""

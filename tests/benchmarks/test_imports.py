@@ -5,7 +5,7 @@ import sys
 from pathlib import Path
 
 import pytest
-from needs import KERNELS
+from needs import COMPILED
 
 ROOT = Path(__file__).parents[2]
 sys.path.insert(0, str(ROOT))
@@ -35,7 +35,7 @@ NEVER = {
 def command(request):
     """A command by name, and the modules that it has imported; a run on plain Python has others."""
     if request.param.startswith("run"):
-        KERNELS.or_skip()
+        COMPILED.or_skip()
     return request.param, imported(COMMANDS[request.param])
 
 

@@ -483,12 +483,10 @@ def test_output_that_nobody_takes_is_no_verdict(ended, code, said):
 
 
 @pytest.mark.parametrize("missed", [True, False])
-def test_a_run_says_once_that_it_went_without_compiled_kernels(surefoot, scenario, tmp_path, monkeypatch, missed):
-    native = importlib.import_module("surefoot.native.library")
-    monkeypatch.setattr(native, "library", lambda: None if missed else object())
-    monkeypatch.delenv(native.VARIABLE, raising=False)
+def test_a_run_says_once_that_it_was_interpreted_and_why(surefoot, scenario, tmp_path, monkeypatch, missed):
+    modules = importlib.import_module("surefoot.native.modules")
+    monkeypatch.setattr(modules, "missing", lambda: "there is no C compiler 'cc'; install one" if missed else "")
     _, out, err = surefoot("run", scenario, "--out", tmp_path, "--json")
     assert json.loads(out)
-    assert err.count("plain Python, which is slower") == missed
-    monkeypatch.setenv(native.VARIABLE, "0")
-    assert "plain Python" not in surefoot("run", scenario, "--out", tmp_path)[2], "it was asked for"
+    told = f"run interpreted, about {modules.SLOWER} times slower: there is no C compiler 'cc'; install one\n"
+    assert err.count(told) == missed

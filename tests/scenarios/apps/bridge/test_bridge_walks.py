@@ -29,17 +29,15 @@ ROBOTS = {
 
 
 @pytest.mark.parametrize(
-    ("robot", "kernels"),
+    "robot",
     [
-        ("humanoid100", "1"),
-        pytest.param("position targets", "1", marks=pytest.mark.long),
-        ("g1 by its sensors", "1"),
-        ("g1 that catches itself", "1"),
-        pytest.param("g1 by its sensors", "0", marks=pytest.mark.long),
+        "humanoid100",
+        pytest.param("position targets", marks=pytest.mark.long),
+        "g1 by its sensors",
+        "g1 that catches itself",
     ],
 )
-def test_two_processes_walk_as_one_to_the_bit(bridge, robot, kernels, same_content, monkeypatch, tmp_path):
-    monkeypatch.setenv("SUREFOOT_NATIVE", kernels)
+def test_two_processes_walk_as_one_to_the_bit(bridge, robot, same_content, tmp_path):
     plant = bridge.serve(
         "walk", "--set", "gait.steps=1", "--set", "duration=2.5", *PUSHED, *ROBOTS[robot], "--seed", "3"
     )

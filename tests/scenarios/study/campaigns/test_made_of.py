@@ -97,7 +97,7 @@ def test_machines_of_a_cluster_may_differ_in_what_is_of_a_machine():
     assert digest(there, anywhere=True) == digest(anywhere=True)
 
 
-def test_results_of_other_kernels_are_others():
-    there = MadeOf(lambda: {**relevant_versions(), "native": "compiled kernels, gcc 1.0 -Ofast"})
+def test_results_of_modules_that_were_compiled_otherwise_are_others():
+    there = MadeOf(lambda: {**relevant_versions(), "native": "Cython 3.3, gcc 1.0 -Ofast"})
     assert digest(there) != digest()
     assert digest(there, anywhere=True) != digest(anywhere=True)

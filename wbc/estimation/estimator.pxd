@@ -17,7 +17,7 @@ cdef class SensedState:
     cdef Py_ssize_t _count, _every, _tick, _imu_at, _torques_at, _told_count
     cdef bint _begun, _lost
     cdef list _still
-    cdef tuple _always, _maybe
+    cdef tuple _shapes
     cdef SensedBody _body
     cdef JointObserver _joints
     cdef RateFilter _rate

@@ -1,6 +1,7 @@
 """The state of a robot from its sensors: joint observer, contacts, invariant filter, and how sure all of that is."""
 
 from dataclasses import replace
+from typing import Any
 
 import numpy as np
 import pinocchio as pin
@@ -66,9 +67,9 @@ class SensedState:
         self._above = np.zeros(2)
         self._load = np.zeros((2, 6))
         joints, axes = (self._count,), (3,)
-        self._always = (("joint_position", joints), ("joint_torque", joints), ("angular_velocity", axes))
-        self._always += (("mean_angular_velocity", axes), ("specific_force", axes))
-        self._maybe = (("joint_velocity", joints), ("wrench", (2, 6)))
+        shapes: dict[str, tuple[int, ...]] = {"joint_position": joints, "joint_torque": joints}
+        shapes |= {"angular_velocity": axes, "mean_angular_velocity": axes, "specific_force": axes}
+        self._shapes = tuple({**shapes, "joint_velocity": joints, "wrench": (2, 6)}.items())
 
     @property
     def filter(self) -> InvariantFilter:
@@ -126,13 +127,11 @@ class SensedState:
 
     def _fitting(self, readings: Readings) -> Readings:
         """Readings of arrays of doubles in their shapes, which are the same where they are that already."""
-        for name, shape in self._always:
-            if not _fits(getattr(readings, name), shape):
-                readings = replace(readings, **{name: _fitted(getattr(readings, name), shape, name)})
-        for name, shape in self._maybe:
+        for name, shape in self._shapes:
             reading = getattr(readings, name)
             if reading is not None and not _fits(reading, shape):
-                readings = replace(readings, **{name: _fitted(reading, shape, name)})
+                fitted: Any = {name: _fitted(reading, shape, name)}
+                readings = replace(readings, **fitted)
         return readings
 
     def _begin(self, readings: Readings) -> None:

@@ -75,10 +75,11 @@ def states(log: ForeignLog, start: Array, every: int) -> Array:
     R, v, p = start[1:10].reshape(3, 3), start[10:13], start[13:16]
     y, Y = log.sole(0)
     stand = Stand(R.copy(), np.vstack((v, p, p + y @ R.T)), R @ Y, np.zeros(3), np.zeros(3), np.zeros(AXES))
-    filter_ = InvariantFilter(stand, sensors, ground, float(np.median(np.diff(time))))
+    filter_ = InvariantFilter(stand, sensors, ground)
     filter_.P[TURN, TURN] = START[0] ** 2 * np.eye(3)
     filter_.P[VELOCITY, VELOCITY] = START[1] ** 2 * np.eye(3)
-    filter_.standing = [False, False]
+    for k in (0, 1):
+        filter_.lift(k)
     J = np.zeros((2, 6, AXES))
     found = np.empty((len(time), 16))
     for i in range(len(time)):

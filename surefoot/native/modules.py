@@ -132,13 +132,14 @@ def stamp() -> Mapping[str, str]:
 
 
 def stale() -> list[str]:
-    """Modules without an extension module of their present source."""
+    """Modules without an extension module of their present source, and built ones that have none any more."""
     built, found = stamp(), sources()
-    return [
+    late = [
         name
         for name, digest in digests().items()
         if built.get(name) != digest or not (ROOT / target(found[name])).exists()
     ]
+    return [*late, *(name for name in built if name.startswith("surefoot.") and name not in found)]
 
 
 def made() -> str:
@@ -230,7 +231,9 @@ def build(names: Iterable[str] | None = None) -> None:
 
     compiler, found, fresh, kept = _compiler(), sources(), digests(), stamp()
     how = _how(compiler)
-    wanted = list(found) if names is None or kept.get("made") != how else list(names)
+    wanted = list(found) if names is None or kept.get("made") != how else [name for name in names if name in found]
+    for gone in kept.keys() - found.keys():
+        (ROOT / target(Path(*gone.split(".")).with_suffix(".py"))).unlink(missing_ok=True)
     with tempfile.TemporaryDirectory(prefix="surefoot-") as folder:
         if kept.get("made") != how or not (ROOT / shared_path()).exists():
             _compile_shared(compiler, Path(folder))

@@ -55,10 +55,19 @@ def test_a_law_that_was_edited_is_compiled_anew(checkout):
     (checkout / "surefoot" / "law.py").write_text(LAW.replace("1.0", "2.0"))
     assert python(checkout, "-c", ASK) == f"4.0 {path}\n"
     assert python(checkout, "-m", "surefoot.native").startswith("compiled: Cython 3.")
-    # It is no module of that name any more that is left behind.
     assert python(checkout, "-m", "surefoot.native", "--interpreted").startswith("interpreted, slower: that was asked")
     assert python(checkout, "-c", ASK) == f"4.0 {checkout / 'surefoot' / 'law.py'}\n"
     assert not path.exists()
+
+
+def test_a_module_that_is_gone_leaves_nothing_behind(checkout):
+    COMPILER.or_skip()
+    python(checkout, "-c", ASK)
+    for end in (".py", ".pxd"):
+        (checkout / "surefoot" / f"law{end}").rename(checkout / "surefoot" / f"other{end}")
+    assert "No module named 'surefoot.law'" in python(checkout, "-c", ASK, code=1)
+    there = sorted(path.name for path in (checkout / "surefoot").glob(f"*{modules.SUFFIX}"))
+    assert there == [f"other{modules.SUFFIX}"]
 
 
 def test_a_law_that_cannot_be_compiled_is_an_error_that_names_its_line(checkout):

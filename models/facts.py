@@ -10,6 +10,7 @@ from typing import TYPE_CHECKING
 import numpy as np
 from numpy.typing import NDArray
 
+from surefoot.models.convert import Coordinates
 from surefoot.models.inertia import LEAST_MASS
 from surefoot.models.types import RobotDescription
 from surefoot.similarity import REFERENCE_SIZE, Similarity
@@ -258,7 +259,8 @@ def shank_outline(robot: RobotDescription, foot: int) -> Array:
     model, data = _upright(robot)
     _, knee, ankle = pitch_joints(robot, foot)
     leg = (robot.roles.left_leg, robot.roles.right_leg)[foot]
-    below = (int(model.joint(name).bodyid[0]) for name in leg[leg.index(knee) :])
+    behind = [one.follower for one in robot.couplings if one.leader == knee]
+    below = (int(model.joint(name).bodyid[0]) for name in (*(behind or [knee])[-1:], *leg[leg.index(knee) + 1 :]))
     shank = next(body for body in below if model.body_mass[body] > LEAST_MASS)
     knee, ankle = (model.joint(name).id for name in (knee, ankle))
     up = data.xanchor[knee] - data.xanchor[ankle]
@@ -300,6 +302,6 @@ def _compiled(mjcf: str, angles: tuple[float, ...]) -> "tuple[mujoco.MjModel, mu
 
     model = mujoco.MjModel.from_xml_string(mjcf)
     data = mujoco.MjData(model)
-    data.qpos[7:] = angles
+    Coordinates(model).bend(np.array(angles), data.qpos)
     mujoco.mj_forward(model, data)
     return model, data

@@ -5,6 +5,7 @@ import math
 import numpy as np
 
 from surefoot.engine import mujoco
+from surefoot.models.convert import Coordinates
 from surefoot.models.types import ImuPlace
 from surefoot.sim.measurement import Array
 from surefoot.values import dataclass
@@ -70,9 +71,9 @@ class ImuChain:
 
     def __init__(self, model: mujoco.MjModel, base: int, place: ImuPlace, turn: Array, shift: Array) -> None:
         body = base if place.body is None else model.body(place.body).id
-        links: list[Link] = []
+        links, coordinates = list[Link](), Coordinates(model)
         while body != base:
-            links.append(_link(model, body))
+            links.append(_link(model, body, coordinates))
             body = int(model.body_parentid[body])
         self.links = tuple(reversed(links))
         self.mount = rotation_of(np.array(place.quaternion)) @ turned(turn)
@@ -97,13 +98,13 @@ class ImuChain:
 _UNIT = np.eye(3)
 
 
-def _link(model: mujoco.MjModel, body: int) -> Link:
+def _link(model: mujoco.MjModel, body: int, coordinates: Coordinates) -> Link:
     joint = int(model.body_jntadr[body])
     twist, point = skew(np.array(model.jnt_axis[joint])), np.array(model.jnt_pos[joint])
     return Link(
         rotation=rotation_of(model.body_quat[body]),
         lever=skew(np.array(model.body_pos[body])),
-        joint=joint - 1,  # joint 0 is the floating base
+        joint=coordinates.number_of(joint),
         axis=np.array(model.jnt_axis[joint]),
         twist=(twist, twist @ twist),
         point=point if point.any() else None,

@@ -5,7 +5,7 @@ from collections.abc import Callable
 import numpy as np
 
 from surefoot.engine import mujoco
-from surefoot.models.convert import mujoco_to_pinocchio
+from surefoot.models.convert import Coordinates, mujoco_to_pinocchio
 from surefoot.models.types import RobotDescription
 from surefoot.native.library import Library, library
 from surefoot.sim.contacts import ContactSense
@@ -34,16 +34,24 @@ class SensorReader:
     """
 
     def __init__(
-        self, model: mujoco.MjModel, data: mujoco.MjData, description: RobotDescription, pushes: PushSchedule
+        self,
+        model: mujoco.MjModel,
+        data: mujoco.MjData,
+        description: RobotDescription,
+        pushes: PushSchedule,
+        coordinates: Coordinates,
     ) -> None:
-        """Look at a world; `pushes` are those of its latest steps."""
-        self.model, self._data, self._pushes = model, data, pushes
+        """Look at a world; `pushes` are those of its latest steps, and `coordinates` those of its robot."""
+        self.model, self._data, self._pushes, self._coordinates = model, data, pushes, coordinates
         base = model.body(description.pelvis_body).id
         _check_imu(model, description, base)
         soles = [model.site(name).id for name in description.sole_sites]
         feet = [int(model.site_bodyid[sole]) for sole in soles]
         self._qpos, self._qvel, self._qacc_base = data.qpos, data.qvel, data.qacc[:3]
-        self._joint_force = data.qfrc_actuator[6:]
+        self._joint_force, self._couples = data.qfrc_actuator[6:], coordinates.G is not None
+        if self._couples:
+            size = len(description.joint_names)
+            self._qpos, self._qvel, self._joint_force = np.zeros(7 + size), np.zeros(6 + size), np.zeros(size)
         self._base_rotation = data.xmat[base].reshape(3, 3)
         self._gravity = model.opt.gravity.copy()
         self._com, self._body_com = data.subtree_com[base], data.xipos
@@ -53,7 +61,7 @@ class SensorReader:
         self._external = data.cfrc_ext
         self._contact: Array = np.zeros((model.nbody, 6))
         self._touch = ContactSense(model, data, feet)
-        self._allocate(model.nq, model.nv)
+        self._allocate(len(self._qpos), len(self._qvel))
         kernels = library()
         self._read_compiled = self._compiled(kernels, data) if kernels else None
 
@@ -72,6 +80,8 @@ class SensorReader:
         pushed = bool(self._pushes.active)
         if pushed:
             self._without_pushes()
+        if self._couples:
+            self._gather()
         if self._read_compiled is None:
             self._read(self._contact if pushed else self._external)
         else:
@@ -89,6 +99,13 @@ class SensorReader:
         com = self._com.tolist()
         for wrench, (foot, position, rotation) in zip(self._wrench, self._soles, strict=True):
             wrench[:] = _at_sole(contact[foot].tolist(), com, position.tolist(), rotation.tolist())
+
+    def _gather(self) -> None:
+        """Put what is of the independent joints side by side, and what follows them away."""
+        data, own = self._data, self._coordinates
+        self._qpos[:7], self._qvel[:6] = data.qpos[:7], data.qvel[:6]
+        self._qpos[7:], self._qvel[6:] = data.qpos[own.positions], data.qvel[own.velocities]
+        self._joint_force[:] = data.qfrc_actuator[own.velocities]
 
     def _compiled(self, kernels: Library, data: mujoco.MjData) -> Callable[[int], None]:
         """The kernel that does what `_read` does."""

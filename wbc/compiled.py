@@ -10,6 +10,7 @@ import numpy as np
 import pinocchio as pin
 
 from surefoot.forces import ExternalLoad
+from surefoot.mimic import moving_columns
 from surefoot.native.library import Bound, Library
 from surefoot.wbc.types import Array, WbcReference
 from surefoot.wbc.zmp import UNLOADED
@@ -62,7 +63,7 @@ class CompiledTerms:
             mass=self._mass,
             load_force=self._force,
             load_moment=self._moment,
-            joint_jacobian_columns=terms.data.J,
+            joint_jacobian_columns=terms.columns.values,
             momentum=terms.data.h[0].vector,
             linear_momentum=terms.data.hg.linear,
             base_rotation_columns=terms.base_rotation,
@@ -144,12 +145,6 @@ class CompiledTerms:
             velocity=velocity,
             bias=bias,
         )
-
-
-def moving_columns(model: pin.Model, joint: int) -> list[int]:
-    """Columns of the generalised velocity that move the body of a joint."""
-    chain = [model.joints[above] for above in model.supports[joint] if above]
-    return [column for moving in chain for column in range(moving.idx_v, moving.idx_v + moving.nv)]
 
 
 _VECTORS = attrgetter(

@@ -6,6 +6,7 @@ import numpy as np
 import pinocchio as pin
 
 from surefoot.forces import NO_LOAD, ExternalLoad
+from surefoot.mimic import Dynamics, JointColumns
 from surefoot.native.library import library
 from surefoot.values import dataclass
 from surefoot.wbc.compiled import CompiledTerms
@@ -49,6 +50,7 @@ class RobotTerms:
     Attributes:
         model: Pinocchio's.
         data: Pinocchio's, as ``pin.computeAllTerms`` leaves it, but for a load.
+        columns: of its Jacobian, one for each velocity.
         q: configuration of the last update, shape (nq,) [m, -, rad].
         v: velocity of the last update, shape (nv,) [m/s, rad/s].
         model_mass: total mass of the model [kg].
@@ -96,6 +98,7 @@ class RobotTerms:
             )
         self.model = model
         self.data = data = model.createData()
+        self.columns, self._dynamics = JointColumns(model, data), Dynamics(model, data)
         self.q: Array = pin.neutral(model)
         self.v: Array = np.zeros(model.nv)
         left, right = frames.soles
@@ -138,7 +141,8 @@ class RobotTerms:
         """Compute every term at configuration q, shape (nq,), and velocity v, shape (nv,)."""
         self.q[...], self.v[...] = q, v  # numpy.copyto goes through Python first
         # Leaves in data.a the velocity-product accelerations, those of zero generalised acceleration.
-        pin.computeAllTerms(self.model, self.data, q, v)
+        self._dynamics.all_terms(q, v)
+        self.columns.update()
         compiled = self.compiled
         if self.load is not NO_LOAD:
             self.mass, self.load = self.model_mass, NO_LOAD

@@ -10,6 +10,7 @@ from collections.abc import Callable
 import numpy as np
 import pinocchio as pin
 
+from surefoot.mimic import JointColumns
 from surefoot.native.library import Bound, Library, library
 from surefoot.values import dataclass
 from surefoot.wbc.estimation.stand import AXES
@@ -61,6 +62,7 @@ class SensedBody:
             if not model.existFrame(name):
                 raise ValueError(f"robot '{model.name}' has no frame '{name}'")
         self.model, self._data = model, model.createData()
+        self._columns = JointColumns(model, self._data)
         self._soles = tuple(model.getFrameId(name) for name in soles)
         self._placement = pin.SE3(np.array(mount.rotation), np.array(mount.position))
         self._carrier = model.getFrameId(mount.body) if mount.body else None
@@ -104,7 +106,7 @@ class SensedBody:
             mounting=self._mounting,
             left=left,
             right=right,
-            joint_jacobian_columns=data.J.T,
+            joint_jacobian_columns=self._columns.values.T,
             com=data.com[0],
             com_jacobian_columns=data.Jcom.T,
             imu_rotation=self._imu_rotation,
@@ -164,6 +166,7 @@ class SensedBody:
             IMU. At the angles last taken; the next call writes over them.
         """
         pin.computeJointJacobians(self.model, self._data)
+        self._columns.update()
         if self.compiled is not None:
             self._move()
             return self._jacobian
@@ -182,7 +185,7 @@ class SensedBody:
 
     def _motion(self, at: Array) -> Array:
         """How joints move a point of the base's frame, shape (3,) [m], fixed to what they carry, shape (6, nj)."""
-        J = self._data.J[:, 6:]
+        J = self._columns.values[:, 6:]
         found: Array = np.vstack((J[:3] - pin.skew(at) @ J[3:], J[3:]))
         return found
 
@@ -312,7 +315,7 @@ def _between(model: pin.Model, carrier: int, soles: tuple[int, ...]) -> Array:
     found: set[int] = set()
     for sole in soles:
         found |= up ^ set(_ancestors(model, model.frames[sole].parentJoint))
-    return np.array(sorted(model.idx_vs[joint] - 6 for joint in found), dtype=np.intp)
+    return np.array(sorted({model.idx_vs[joint] - 6 for joint in found}), dtype=np.intp)
 
 
 def sole_of(kernels: Library, model: pin.Model, data: pin.Data, number: int) -> Bound:

@@ -6,6 +6,7 @@ from collections.abc import Callable
 import numpy as np
 import pinocchio as pin
 
+from surefoot.mimic import Dynamics, JointColumns
 from surefoot.native.library import Library, library
 from surefoot.wbc.estimation.kinematics import sole_of, supporting
 from surefoot.wbc.estimation.parameters import SensorNoise
@@ -61,6 +62,7 @@ class TorqueWrench:
         self, model: pin.Model, soles: tuple[str, str], period: float, sensors: SensorNoise, held: bool = True
     ) -> None:
         self._model, self._data, self._period, self._held = model, model.createData(), period, held
+        self._columns, self._dynamics = JointColumns(model, self._data), Dynamics(model, self._data)
         self._soles = tuple(model.getFrameId(name) for name in soles)
         # As in an α-β filter the noise grows with the bandwidth faster than the lag falls.
         quiet = min((FINE / sensors.encoder) ** 0.4, 1.0) if sensors.encoder > 0.0 else 1.0
@@ -97,9 +99,9 @@ class TorqueWrench:
             torque_noise=self._torque_noise,
             least=1.0 / LARGEST**2,
             M=data.M.T,
-            C_columns=data.C.T,
+            C_columns=self._dynamics.C.T,
             gravity=data.g,
-            joint_jacobian_columns=data.J.T,
+            joint_jacobian_columns=self._columns.values.T,
             left=left,
             right=right,
             rows=self._rows,
@@ -130,10 +132,11 @@ class TorqueWrench:
             passed: since the call before; None for a control period [s].
         """
         model, data, q, v = self._model, self._data, state.q, state.v
-        pin.computeCoriolisMatrix(model, data, q, v)
-        pin.crba(model, data, q)
+        self._dynamics.coriolis(q, v)
+        self._dynamics.mass_matrix(q)
         pin.computeGeneralizedGravity(model, data, q)
         pin.computeJointJacobians(model, data, q)
+        self._columns.update()
         # At first there is no span.
         span, self._begun = (passed or self._period) if self._begun else 0.0, True
         share = 1.0 - (1.0 - self._gain) ** (span / self._period)
@@ -151,7 +154,7 @@ class TorqueWrench:
 
     def _observe(self, M: Array, v: Array, torque: Array, span: float, share: float) -> None:
         """Take what drives the momentum beside all that is known, a share of it in a span."""
-        driven, momentum = self._data.C.T @ v - self._data.g, M @ v
+        driven, momentum = self._dynamics.C.T @ v - self._data.g, M @ v
         if span > 0.0:
             # The exact discrete low pass. Half a tick in the torque is a force where a command jumps.
             lacking = (momentum - self._momentum) / span - 0.5 * (driven + self._driven)

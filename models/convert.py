@@ -70,8 +70,8 @@ class Coordinates:
     """The independent joints of a robot in MuJoCo, and the joints that follow them.
 
     Args:
-        model: of a robot, or of a world with one, whose first joint is its floating base. Its equalities of joints are
-            linear.
+        model: of a robot, or of a world with one, whose first joint is its floating base. A joint follows another one
+            that has no motor and a linear equality with it.
 
     Attributes:
         positions: places of the independent joints in `qpos`, shape (nj,); a slice where no joint follows.
@@ -85,21 +85,25 @@ class Coordinates:
     def __init__(self, model: "mujoco.MjModel") -> None:
         self.positions: slice | NDArray[np.intp] = slice(7, None)
         self.velocities: slice | NDArray[np.intp] = slice(6, None)
-        self.followers, self.G, self.size = np.zeros(0, dtype=np.intp), None, int(model.nq)
+        self.followers, self.size = np.zeros(0, dtype=np.intp), int(model.nq)
+        self.G: Array | None = None
         self._leaders, self._ratio, self._offset = self.followers, np.zeros(0), np.zeros(0)
         if model.neq:
             self._follow(model)
 
     def _follow(self, model: "mujoco.MjModel") -> None:
-        joints = np.flatnonzero((model.eq_type == _EQUALITY_OF_JOINTS) & (model.eq_obj2id >= 0))
+        of_joints = (model.eq_type == _EQUALITY_OF_JOINTS) & (model.eq_obj2id >= 0)
+        joints = np.flatnonzero(of_joints & ~np.isin(model.eq_obj1id, model.actuator_trnid[:, 0]))
+        if not len(joints):
+            return
         follower, leader = model.eq_obj1id[joints], model.eq_obj2id[joints]
         own = np.setdiff1d(np.arange(1, model.njnt), follower)
         self.positions, self.velocities = 6 + own, 5 + own
         self.followers, self._leaders, self.size = 6 + follower, 6 + leader, 7 + len(own)
         self._offset, self._ratio = model.eq_data[joints, 0], model.eq_data[joints, 1]
-        self.G = np.zeros((model.nv, 6 + len(own)))
-        self.G[np.concatenate((np.arange(6), self.velocities)), np.arange(6 + len(own))] = 1.0
-        self.G[self.followers - 1] = self._ratio[:, None] * self.G[self._leaders - 1]
+        self.G = G = np.zeros((model.nv, 6 + len(own)))
+        G[np.concatenate((np.arange(6), self.velocities)), np.arange(6 + len(own))] = 1.0
+        G[self.followers - 1] = self._ratio[:, None] * G[self._leaders - 1]
 
     def bend(self, angles: Array, qpos_out: Array) -> None:
         """Write the angles of the independent joints, shape (nj,), and of those that follow them [rad]."""

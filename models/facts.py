@@ -189,6 +189,28 @@ def knees_straight(robot: RobotDescription) -> tuple[float, ...]:
     return angles if any(angles) else ()
 
 
+def knees_turn(robot: RobotDescription) -> tuple[float, ...]:
+    """Turn of each shank for an angle of its knee, in the order of the joints; empty where all are 1 [-]."""
+    knees = [name for name in robot.joint_names if name in robot.roles.knees]
+    turns = tuple(_turn(robot, knee) for knee in knees)
+    return turns if any(turn != 1.0 for turn in turns) else ()
+
+
+def knee_turn(robot: RobotDescription, foot: int) -> float:
+    """By how much a shank turns against its thigh for an angle of the knee, more than 1 where joints follow it [-]."""
+    return _turn(robot, robot.roles.knees[foot])
+
+
+def _turn(robot: RobotDescription, joint: str) -> float:
+    following = [one for one in robot.couplings if one.leader == joint]
+    if not following:
+        return 1.0
+    model, data = _upright(robot)
+    axis = data.xaxis[model.joint(joint).id]
+    shares = (one.ratio * float(axis @ data.xaxis[model.joint(one.follower).id]) for one in following)
+    return abs(1.0 + sum(shares))
+
+
 def named_roles(robot: RobotDescription) -> dict[str, tuple[str, ...]]:
     """What the robot's joints and bodies are for, by the names of its description."""
     roles = robot.roles

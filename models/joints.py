@@ -52,8 +52,8 @@ def turn_of(model: pin.Model, data: pin.Data, joint: int) -> float:
 def pivot(model: pin.Model, data: pin.Data, joint: int) -> Array:
     """A point about which a joint, with what follows it, turns what is behind them, in the world, shape (3,) [m].
 
-    Of parallel axes at p_i that turn by k_i it is Σ k_i p_i / Σ k_i: the centre of a knee whose bones roll on each other
-    is the point where they touch.
+    Of parallel axes at p_i that turn by k_i it is Σ k_i p_i / Σ k_i: the centre of a knee whose bones roll on each
+    other is the point where they touch.
     """
     of = members(model, joint)
     if len(of) == 1:

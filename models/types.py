@@ -117,7 +117,7 @@ class ImuPlace:
 
 @dataclass(frozen=True, slots=True)
 class Coupling:
-    """A joint without a motor that turns with another one, as the second hinge of a knee whose bones roll on each other.
+    """A joint without a motor that turns with another one, as the second of a knee whose bones roll on each other.
 
     Attributes:
         follower: it.
@@ -260,7 +260,8 @@ class RobotDescription:
         for number, one in enumerate(self.couplings):
             self._check_names(("couplings", str(number), "leader"), (one.leader,), self.joint_names, "joint")
             if one.follower in self.joint_names or not 0.0 < abs(one.ratio) < np.inf or not np.isfinite(one.offset):
-                what = f"'{one.follower}' of {self.name} follows '{one.leader}' by {one.ratio:.6g} from {one.offset:.6g}"
+                law = f"{one.ratio:.6g} times '{one.leader}' and {one.offset:.6g}"
+                what = f"'{one.follower}' of {self.name} follows by {law}"
                 raise RobotError(("couplings", number), what, "it must have no motor, and a finite ratio other than 0")
 
     def _check_names(self, key: tuple[str, ...], names: tuple[str, ...], valid: tuple[str, ...], kind: str) -> None:

@@ -122,6 +122,11 @@ class World:
         found: Array = self._qpos[self._coordinates.positions]
         return found
 
+    @property
+    def apart(self) -> Array:
+        """Of each joint that follows another one from where it belongs now, shape (nf,) [rad]."""
+        return self._coordinates.apart(self._qpos)
+
     def mjcf(self) -> str:
         """The whole world as one MJCF text, exactly what is simulated."""
         return self._mjcf

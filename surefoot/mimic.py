@@ -110,7 +110,7 @@ class Dynamics:
         pin.forwardKinematics(model, data, q, v, self._still)
 
     def mass_matrix(self, q: Array) -> None:
-        """As `pin.crba`, both triangles, in `data.M`; with followers that is right on fresh data only (Pinocchio 4.1)."""
+        """As `pin.crba`, both triangles, in `data.M`."""
         tree = self._tree
         if tree is None:
             pin.crba(self._model, self._data, q)
@@ -167,4 +167,5 @@ def axis_of_follower(model: pin.Model, joint: int) -> Array:
     one = model.joints[joint]
     data = one.createData()
     one.calc(data, pin.neutral(model))
-    return np.asarray(data.S).reshape(6)[3:] / one.extract().scaling
+    axis: Array = np.asarray(data.S).reshape(6)[3:] / one.extract().scaling
+    return axis

@@ -7,7 +7,6 @@ from operator import attrgetter
 from typing import TYPE_CHECKING, Any
 
 import numpy as np
-import pinocchio as pin
 
 from surefoot.forces import ExternalLoad
 from surefoot.mimic import moving_columns

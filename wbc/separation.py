@@ -5,7 +5,8 @@ from collections.abc import Callable, Sequence
 import numpy as np
 import pinocchio as pin
 
-from surefoot.wbc.compiled import CompiledTerms, moving_columns
+from surefoot.mimic import moving_columns
+from surefoot.wbc.compiled import CompiledTerms
 from surefoot.wbc.model import cross
 from surefoot.wbc.parameters import SeparationParameters
 from surefoot.wbc.types import Array

@@ -134,7 +134,10 @@ def rolling(model: pin.Model, joints: Sequence[int]) -> tuple[str, str] | None:
 def told_rolling(pair: tuple[str, str]) -> str:
     """A line on such a pair."""
     what = f"left out: a coupling of {pair[0]} and {pair[1]}, if they roll on each other as one"
-    return f"{what}: their axes, ranges and torques are alike, and each has a motor of its own here"
+    return (
+        f"{what}: their axes, ranges and torques are alike, and each has a motor of its own here; say it by mimic in a "
+        "URDF, by an equality in an MJCF"
+    )
 
 
 def _limits(model: pin.Model, joint: int) -> Array:

@@ -78,7 +78,7 @@ def _plain(value: Any) -> Any:
 def _description(values: dict[str, Any]) -> RobotDescription:
     """Back from JSON: lists of numbers are arrays, other lists are tuples."""
     roles, imu = ({name: _tuples(value) for name, value in values.pop(group).items()} for group in ("roles", "imu"))
-    found = {"couplings": tuple(Coupling(**one) for one in values.pop("couplings"))}
+    found: dict[str, Any] = {"couplings": tuple(Coupling(**one) for one in values.pop("couplings"))}
     for field in fields(RobotDescription):
         if field.name in ("roles", "imu", "couplings"):
             continue

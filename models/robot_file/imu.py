@@ -42,7 +42,8 @@ def find_imu(reduced: Reduced, file: RobotFile, torso: int) -> tuple[ImuPlace, s
     try:
         moving_columns(model, frame.parentJoint)
     except ValueError as error:
-        raise RobotError(("imu",), f"imu of {file.name} is '{frame.name}', which moves by half a joint", str(error)) from None
+        what = f"imu of {file.name} is '{frame.name}', between two joints that turn as one"
+        raise RobotError(("imu",), what, "name a link above or below both") from error
     body = reduced.bodies[frame.parentJoint - 1]
     at, turn = frame.placement.translation, pin.Quaternion(frame.placement.rotation).normalized()
     x, y, z = (float(value) for value in at)

@@ -88,7 +88,7 @@ def find_legs(reduced: Reduced, file: RobotFile) -> tuple[Leg, Leg]:
     for side, chain in zip(SIDES, chains, strict=True):
         own = len(_own(model, chain))
         if not FEWEST <= own <= MOST:
-            what = f"the {side} leg of {file.name}, to link '{getattr(feet, side)}', has {own} joints"
+            what = f"the {side} leg of {file.name}, to link '{getattr(feet, side)}', has {_counted(model, chain)}"
             right = f"legs need {FEWEST} to {MOST}, so that a sole can be put anywhere, with {FEWEST} but for its roll"
             raise RobotError(("feet", side), what, right)
     legs = [_leg(reduced, file, side, chain) for side, chain in enumerate(chains)]
@@ -131,8 +131,8 @@ def _leg(reduced: Reduced, file: RobotFile, side: int, chain: tuple[int, ...]) -
     lower, upper = _ends_of(model, joints[knee])
     bend = 1.0 if upper - straight >= straight - lower else -1.0
     sole = _sole(reduced, file, side, data, chain[-1])
-    below = chain[chain.index(max(members(model, joints[knee]))) :]
-    shank = next(joint for joint in below if model.inertias[joint].mass > LEAST_MASS)
+    behind = chain[chain.index(max(members(model, joints[knee]))) :]
+    shank = next(joint for joint in behind if model.inertias[joint].mass > LEAST_MASS)
     turn, hip = turn_of(model, data, joints[knee]), meeting_point(model, data, joints[:knee])
     return Leg(chain, joints, knee, bend, turn, straight, sole, hip, shank)
 
@@ -140,6 +140,13 @@ def _leg(reduced: Reduced, file: RobotFile, side: int, chain: tuple[int, ...]) -
 def _own(model: pin.Model, chain: tuple[int, ...]) -> tuple[int, ...]:
     """Joints of a chain that have a coordinate."""
     return tuple(joint for joint in chain if model.nvs[joint])
+
+
+def _counted(model: pin.Model, chain: tuple[int, ...]) -> str:
+    """How many joints a chain has, and which follow others."""
+    following = [f"'{model.names[joint]}'" for joint in chain if not model.nvs[joint]]
+    count = f"{len(_own(model, chain))} joints"
+    return f"{count} with a motor, which {' and '.join(following)} follow" if following else count
 
 
 def coordinate(model: pin.Model, joint: int) -> int:
@@ -163,7 +170,7 @@ def _longest(model: pin.Model, joints: tuple[int, ...], knee: int) -> float:
         grid = np.linspace(*ends, _GRID)
         best = int(np.argmax([squares(angle) for angle in grid]))
         around = float(grid[max(best - 1, 0)]), float(grid[min(best + 1, _GRID - 1)])
-        return _extreme(squares, *around)
+        return round(_extreme(squares, *around), 9) + 0.0  # 0.0 and not -0.0
     ahead, aside, behind = (squares(angle) for angle in (0.0, np.pi / 2, np.pi))
     middle = (ahead + behind) / 2
     return float(np.clip(np.arctan2(aside - middle, ahead - middle), *ends))
@@ -249,8 +256,8 @@ def _check_rolls(reduced: Reduced, file: RobotFile, legs: list[Leg]) -> None:
         if leg.leans and min(resting["rolls"], level["rolls"]) < _MADE:
             lacks = max(("pitches", "yaws"), key=resting.__getitem__)
             what = (
-                f"the {side} leg of {file.name}, to link '{getattr(feet, side)}', has {len(leg.joints)} joints, "
-                f"none of which {lacks} the foot"
+                f"the {side} leg of {file.name}, to link '{getattr(feet, side)}', has "
+                f"{_counted(reduced.model, leg.chain)}, none of which {lacks} the foot"
             )
             raise RobotError(("feet", side), what, "a leg of five joints can do without the roll of its foot only")
 

@@ -27,7 +27,7 @@ _BALL = 0.02
 _GIVEN, _FOLLOWS = "given in the file", "follow others"
 _MOTORS = "legs need revolute joints with a motor each; write it into lock if it may be frozen"
 _ITS_MOTOR = (
-    "it may follow the joint next to it in the leg, about a parallel axis and by a constant ratio; otherwise it needs a "
+    "it may follow the joint next to it in the leg, about a parallel axis and by a constant ratio; else it needs a "
     "motor, or write it into lock if it may be frozen"
 )
 
@@ -103,7 +103,7 @@ def reduced(file: RobotFile, source: Source, path: Path) -> Reduced:
     left, right = (set(chain) for chain in chains)
     above = _above(full, left, right)
     given = _given(full, file, source, left | right)
-    legs = [[joint for joint in chain if joint not in above] for chain in chains]
+    legs = [[joint for joint in chain if joint not in above and full.names[joint] not in given] for chain in chains]
     following = {name: one for name, one in source.followers.items() if name not in given}
     couplings = kept(full, legs, {name: one for name, one in following.items() if one.leader not in given})
     locked = _locked(full, file, source, (left | right) - above, above, given, couplings)

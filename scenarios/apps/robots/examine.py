@@ -227,7 +227,8 @@ def print_examination(explained: Explanation, found: Examination) -> None:
 
 def _facts(robot: RobotDescription) -> Iterator[tuple[str, str]]:
     yield "mass", f"{robot.mass:.2f} kg"
-    yield "joints", f"{len(robot.joint_names)}, {len(robot.roles.legs)} of them in the legs"
+    following = f"; {', '.join(one.follower for one in robot.couplings)} follow" if robot.couplings else ""
+    yield "joints", f"{len(robot.joint_names)}, {len(robot.roles.legs)} of them in the legs{following}"
     for side, leg in (("left", robot.roles.left_leg), ("right", robot.roles.right_leg)):
         yield f"{side} leg", ", ".join(leg)
     yield "knees", ", ".join(robot.roles.knees)

@@ -14,8 +14,6 @@ from surefoot.models.types import Array
 _AXES = {"JointModelRX": (1.0, 0.0, 0.0), "JointModelRY": (0.0, 1.0, 0.0), "JointModelRZ": (0.0, 0.0, 1.0)}
 _FOLLOWS = "JointModelMimic"
 _MEET = 1e-9
-_TURNS = 1e-6
-"""Turn for that of a joint below which what is behind it and its followers keeps its orientation [-]."""
 
 
 def is_revolute(model: pin.Model, joint: int) -> bool:
@@ -60,8 +58,6 @@ def pivot(model: pin.Model, data: pin.Data, joint: int) -> Array:
         return np.array(data.oMi[joint].translation)
     axis, at = world_axis(model, data, joint), np.zeros(3)
     turn = turn_of(model, data, joint)
-    if abs(turn) < _TURNS:
-        return np.array(data.oMi[joint].translation)
     for one, ratio in of.items():
         at += ratio * float(axis @ world_axis(model, data, one)) / turn * data.oMi[one].translation
     return at

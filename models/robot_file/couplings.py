@@ -15,8 +15,8 @@ from surefoot.models.joints import is_revolute, world_axis
 from surefoot.models.robot_file.bindings import Follower
 from surefoot.models.types import Array, Coupling, RobotError
 
-_PARALLEL = 1e-3
-"""Sine of the angle between axes above which joints do not turn as one [-]."""
+_PARALLEL, _TURN = 1e-3, 0.1
+"""Sine of the angle between axes above which joints do not turn as one; least turn of all for that of the first [-]."""
 
 
 def kept(model: pin.Model, legs: Iterable[Sequence[int]], followers: Mapping[str, Follower]) -> tuple[Coupling, ...]:
@@ -33,8 +33,7 @@ def kept(model: pin.Model, legs: Iterable[Sequence[int]], followers: Mapping[str
     for leg in legs:
         names = [str(model.names[joint]) for joint in leg]
         for group in _groups(names, followers):
-            joints = [leg[names.index(name)] for name in group]
-            if _as_one(model, data, leg, joints):
+            if _as_one(model, data, leg, {leg[names.index(name)]: ratio for name, (ratio, _) in group.items()}):
                 found += _from_first(names, group)
     return tuple(found)
 
@@ -65,13 +64,17 @@ def _root(name: str, followers: Mapping[str, Follower]) -> tuple[str, _Law | Non
     return name, (ratio, offset)
 
 
-def _as_one(model: pin.Model, data: pin.Data, leg: Sequence[int], joints: list[int]) -> bool:
-    """Whether joints follow each other in a leg and turn about parallel axes."""
-    first = leg.index(min(joints))
-    if sorted(joints) != list(leg[first : first + len(joints)]) or not all(is_revolute(model, one) for one in joints):
+def _as_one(model: pin.Model, data: pin.Data, leg: Sequence[int], ratios: Mapping[int, float]) -> bool:
+    """Whether joints, with their ratios, stand one after the other in a leg and turn what is below about one axis."""
+    joints = sorted(ratios)
+    first = leg.index(joints[0])
+    if joints != list(leg[first : first + len(joints)]) or not all(is_revolute(model, one) for one in joints):
         return False
     axes = [world_axis(model, data, joint) for joint in joints]
-    return all(float(np.linalg.norm(np.cross(axes[0], axis))) < _PARALLEL for axis in axes[1:])
+    if any(float(np.linalg.norm(np.cross(axes[0], axis))) > _PARALLEL for axis in axes[1:]):
+        return False
+    turn = sum(ratios[joint] * float(axes[0] @ axis) for joint, axis in zip(joints, axes, strict=True))
+    return abs(turn) > _TURN * abs(ratios[joints[0]])
 
 
 def _from_first(names: Sequence[str], group: dict[str, _Law]) -> Iterator[Coupling]:

@@ -24,9 +24,6 @@ _ENDS = 0.02
 _GRID, _SLOPE, _HALVINGS = 181, 1e-4, 60
 """Angles at which a knee with followers is tried, half of the span of its slope [rad], and halvings of an interval."""
 
-_TURNS = 0.1
-"""Turn of the shank for that of a knee's joint below which it is no knee [-]."""
-
 _BENT, _MADE = 0.65, 0.02
 """Bend of a knee with which it is seen what a leg can do [rad], and least share of a twist that it has to make [-]."""
 
@@ -115,7 +112,7 @@ def _leg(reduced: Reduced, file: RobotFile, side: int, chain: tuple[int, ...]) -
     candidates, joints = {}, _own(model, chain)
     for place in range(1, len(joints) - 1):
         axis = world_axis(model, data, joints[place])
-        if abs(axis[1]) < _LATERAL or abs(turn_of(model, data, joints[place])) < _TURNS:
+        if abs(axis[1]) < _LATERAL:
             continue
         on = pivot(model, data, joints[place])
         ends = (meeting_point(model, data, group) - on for group in (joints[:place], joints[place + 1 :]))
@@ -146,7 +143,8 @@ def _counted(model: pin.Model, chain: tuple[int, ...]) -> str:
     """How many joints a chain has, and which follow others."""
     following = [f"'{model.names[joint]}'" for joint in chain if not model.nvs[joint]]
     count = f"{len(_own(model, chain))} joints"
-    return f"{count} with a motor, which {' and '.join(following)} follow" if following else count
+    follow = "follow" if following[1:] else "follows"
+    return f"{count} with a motor, one of which {' and '.join(following)} {follow}" if following else count
 
 
 def coordinate(model: pin.Model, joint: int) -> int:

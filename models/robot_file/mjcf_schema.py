@@ -87,8 +87,8 @@ _SERIAL = (
 )
 
 FOLLOWING = (
-    "it may follow the joint next to it in the leg, about a parallel axis and by a constant ratio; another joint of a leg "
-    "needs a motor of its own"
+    "it may follow the joint next to it in the leg, about a parallel axis and by a constant ratio; else a joint of a "
+    "leg needs a motor"
 )
 
 _POSE = "pos quat axisangle xyaxes zaxis euler"

@@ -13,6 +13,7 @@ from surefoot.models.robot_file.bindings import check_bindings, told_locked
 from surefoot.models.robot_file.couplings import joined, kept, told
 from surefoot.models.robot_file.files import srdf_of
 from surefoot.models.robot_file.magnitudes import check_angle, check_joints
+from surefoot.models.robot_file.mjcf_schema import FOLLOWING
 from surefoot.models.robot_file.motors import read_srdf, require_limits, set_armature, set_limits
 from surefoot.models.robot_file.schema import RobotFile, matched
 from surefoot.models.robot_file.shapes import Shape, placed
@@ -26,10 +27,7 @@ _BALL = 0.02
 
 _GIVEN, _FOLLOWS = "given in the file", "follow others"
 _MOTORS = "legs need revolute joints with a motor each; write it into lock if it may be frozen"
-_ITS_MOTOR = (
-    "it may follow the joint next to it in the leg, about a parallel axis and by a constant ratio; else it needs a "
-    "motor, or write it into lock if it may be frozen"
-)
+_ITS_MOTOR = f"{FOLLOWING}; or write it into lock if it may be frozen"
 
 _TURNS = {"x": 0, "y": 1, "-x": 2, "-y": 3}
 """Quarter turns about z from the base's x to the axis that points ahead."""

@@ -34,21 +34,16 @@ class SensorReader:
     """
 
     def __init__(
-        self,
-        model: mujoco.MjModel,
-        data: mujoco.MjData,
-        description: RobotDescription,
-        pushes: PushSchedule,
-        coordinates: Coordinates,
+        self, model: mujoco.MjModel, data: mujoco.MjData, description: RobotDescription, pushes: PushSchedule
     ) -> None:
-        """Look at a world; `pushes` are those of its latest steps, and `coordinates` those of its robot."""
-        self.model, self._data, self._pushes, self._coordinates = model, data, pushes, coordinates
+        """Look at a world; `pushes` are those of its latest steps."""
+        self.model, self._data, self._pushes, self._coordinates = model, data, pushes, Coordinates(model)
         base = model.body(description.pelvis_body).id
         _check_imu(model, description, base)
         soles = [model.site(name).id for name in description.sole_sites]
         feet = [int(model.site_bodyid[sole]) for sole in soles]
         self._qpos, self._qvel, self._qacc_base = data.qpos, data.qvel, data.qacc[:3]
-        self._joint_force, self._couples = data.qfrc_actuator[6:], coordinates.G is not None
+        self._joint_force, self._couples = data.qfrc_actuator[6:], self._coordinates.G is not None
         if self._couples:
             size = len(description.joint_names)
             self._qpos, self._qvel, self._joint_force = np.zeros(7 + size), np.zeros(6 + size), np.zeros(size)

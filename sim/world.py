@@ -73,7 +73,7 @@ class World:
         self.data = mujoco.MjData(self._model)
         self._drives, self._coordinates = drives, Coordinates(self._model)
         self._pushes = PushSchedule(pushes, [self._model.body(push.body).id for push in pushes], physics_rate)
-        self._sensors = SensorReader(self._model, self.data, description, self._pushes, self._coordinates)
+        self._sensors = SensorReader(self._model, self.data, description, self._pushes)
         self._ctrl, self._qpos, self._qvel = self.data.ctrl, self.data.qpos, self.data.qvel
         self._qacc, self._xfrc = self.data.qacc, self.data.xfrc_applied
         self._last_qpos, self._last_qvel = self._qpos.copy(), self._qvel.copy()

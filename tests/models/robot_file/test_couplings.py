@@ -322,6 +322,13 @@ def test_it_walks_from_sensors_and_its_log_tells_that_the_coupling_holds(tmp_pat
 
 
 @pytest.mark.physics
+def test_damped_joints_give_way_more_and_the_log_tells_it(tmp_path):
+    keys = {"robot": str(biped.write(tmp_path, urdf())), "gait.steps": 4, "motors": {"damping": 0.5}, "criteria": {}}
+    verdict = run_scenario(surefoot.load("walk", keys), tmp_path).verdict
+    assert not verdict["fell"] and 5e-5 < verdict["coupling_error"] < 1e-3
+
+
+@pytest.mark.physics
 def test_without_the_equality_the_log_tells_that_nothing_holds(tmp_path, monkeypatch):
     """The negative control: a world that has lost what couples its joints is no walk, and no small error either."""
     robot = of_urdf(tmp_path)

@@ -8,6 +8,7 @@ from surefoot import algebra, linear
 from surefoot.algebra import Vector
 from surefoot.engine import mujoco
 from surefoot.models import convert
+from surefoot.models.convert import Coordinates
 from surefoot.models.types import ImuPlace
 from surefoot.sim.measurement import Array
 
@@ -36,9 +37,10 @@ class Link:
     Args:
         model: of the world.
         body: its number.
+        coordinates: of the robot's joints.
 
     Attributes:
-        joint: number of the joint.
+        joint: number of the joint among the independent ones.
         rotation: of its axes in its parent at zero angle, shape (3, 3).
         lever: cross product matrix of its origin in its parent, shape (3, 3) [m].
         axis: of the joint in the body.
@@ -48,11 +50,11 @@ class Link:
         point: of the joint in the body [m].
     """
 
-    def __init__(self, model: mujoco.MjModel, body: int) -> None:
+    def __init__(self, model: mujoco.MjModel, body: int, coordinates: Coordinates) -> None:
         joint = int(model.body_jntadr[body])
         axis, point = np.array(model.jnt_axis[joint]), np.array(model.jnt_pos[joint])
         twist = skew(axis)
-        self.joint = joint - 1  # joint 0 is the floating base
+        self.joint = coordinates.number_of(joint)
         self.rotation = rotation_of(model.body_quat[body])
         self.lever = skew(np.array(model.body_pos[body]))
         self.axis, self.twist, self.square = algebra.vector(axis), twist, twist @ twist
@@ -83,9 +85,9 @@ class ImuChain:
 
     def __init__(self, model: mujoco.MjModel, base: int, place: ImuPlace, turn: Array, shift: Array) -> None:
         body = base if place.body is None else model.body(place.body).id
-        links: list[Link] = []
+        links, coordinates = list[Link](), Coordinates(model)
         while body != base:
-            links.append(Link(model, body))
+            links.append(Link(model, body, coordinates))
             body = int(model.body_parentid[body])
         self._links = links[::-1]
         # Orientation of the IMU in the last body, and cross product matrix of its place there [m].

@@ -114,9 +114,17 @@ class Coordinates:
         apart: Array = qpos[self.followers] - self._ratio * qpos[self._leaders] - self._offset
         return apart
 
-    def number_of(self, joint: int) -> int:
-        """Number of an independent joint among them, by its number in MuJoCo."""
-        return joint - 1 if isinstance(self.velocities, slice) else int(np.searchsorted(self.velocities, joint + 5))
+    def law_of(self, joint: int) -> tuple[int, float, float]:
+        """Independent joint with which a joint of MuJoCo turns, itself or its leader: its number among them, k, b.
+
+        The joint's angle is k times that of the independent one and b [-, rad].
+        """
+        place, ratio, offset = joint + 6, 1.0, 0.0
+        if isinstance(self.positions, slice):
+            return place - 7, ratio, offset
+        for k in np.flatnonzero(self.followers == place):
+            place, ratio, offset = self._leaders[k], float(self._ratio[k]), float(self._offset[k])
+        return int(np.searchsorted(self.positions, place)), ratio, offset
 
     def to_mujoco(self, q: Array, v: Array, qpos_out: Array, qvel_out: Array) -> None:
         """State from Pinocchio's into MuJoCo's convention."""

@@ -40,7 +40,9 @@ class Link:
         coordinates: of the robot's joints.
 
     Attributes:
-        joint: number of the joint among the independent ones.
+        joint: number of the independent joint with which it turns.
+        ratio: angle of the joint for one of that [-].
+        offset: angle of the joint where that has none [rad].
         rotation: of its axes in its parent at zero angle, shape (3, 3).
         lever: cross product matrix of its origin in its parent, shape (3, 3) [m].
         axis: of the joint in the body.
@@ -54,7 +56,7 @@ class Link:
         joint = int(model.body_jntadr[body])
         axis, point = np.array(model.jnt_axis[joint]), np.array(model.jnt_pos[joint])
         twist = skew(axis)
-        self.joint = coordinates.number_of(joint)
+        self.joint, self.ratio, self.offset = coordinates.law_of(joint)
         self.rotation = rotation_of(model.body_quat[body])
         self.lever = skew(np.array(model.body_pos[body]))
         self.axis, self.twist, self.square = algebra.vector(axis), twist, twist @ twist
@@ -104,7 +106,8 @@ class ImuChain:
         algebra.put_row(self._R, 2, z)
         at.velocity, at.angular_velocity = (v[0], v[1], v[2]), (v[3], v[4], v[5])
         for link in self._links:
-            self._pass(link, q[7 + link.joint], v[6 + link.joint], at)
+            angle = link.ratio * q[7 + link.joint] + link.offset
+            self._pass(link, angle, link.ratio * v[6 + link.joint], at)
         arm = algebra.subtract(at.velocity, linear.fused_rotate(self._lever, at.angular_velocity))
         at.velocity = linear.fused_rotate(self._R, arm)
         linear.fused_compose(self._R, self._mount, at.rotation)

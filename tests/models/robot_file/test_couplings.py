@@ -20,8 +20,9 @@ from surefoot.models.robot_file.reduced import reduced
 from surefoot.models.robot_file.schema import read
 from surefoot.models.robot_file.source import read_source
 from surefoot.models.similar import scaled
-from surefoot.models.types import Coupling
+from surefoot.models.types import Coupling, ImuPlace
 from surefoot.scenarios.run.run import run_scenario
+from surefoot.sim.imu_motion import ImuChain, rotation_of
 from surefoot.sim.world import World
 
 WIDE = '<limit lower="-2" upper="2" effort="60" velocity="12"/>'
@@ -286,6 +287,25 @@ def test_a_leg_that_a_coupling_leaves_too_few_joints_is_refused_and_says_so(tmp_
 def test_an_imu_between_the_hinges_is_refused(tmp_path):
     with pytest.raises(RobotError, match="imu of biped is 'left_roller', between two joints that turn as one"):
         of_urdf(tmp_path, None, "imu: left_roller\n")
+
+
+@pytest.mark.unit
+@pytest.mark.parametrize("body", ["left_thigh", "left_shank", "left_foot"])
+def test_an_imu_behind_the_hinges_moves_with_both(robot, body):
+    place, rng = ImuPlace(body, (0.05, -0.02, 0.1), (0.5, 0.5, -0.5, 0.5)), np.random.default_rng(2)
+    model, ours = mujoco.MjModel.from_xml_string(robot.mjcf), pinocchio_model(robot)
+    q = pin.integrate(ours, pin.neutral(ours), 0.5 * rng.normal(size=ours.nv))
+    v, data, motion = rng.normal(size=ours.nv), mujoco.MjData(model), np.zeros(6)
+    Coordinates(model).to_mujoco(q, v, data.qpos, data.qvel)
+    mujoco.mj_forward(model, data)
+    found = ImuChain(model, model.body(robot.pelvis_body).id, place, np.zeros(3), np.zeros(3)).motion(q, v)
+    at = model.body(body).id
+    R = data.xmat[at].reshape(3, 3)
+    mujoco.mj_objectVelocity(model, data, mujoco.mjtObj.mjOBJ_XBODY, at, motion, 0)
+    expected = motion[3:] + np.cross(motion[:3], R @ np.array(place.position))
+    np.testing.assert_allclose(found.rotation, R @ rotation_of(np.array(place.quaternion)), rtol=0.0, atol=1e-11)
+    np.testing.assert_allclose(np.asarray(found.rotation) @ found.angular_velocity, motion[:3], rtol=0.0, atol=1e-11)
+    np.testing.assert_allclose(found.velocity, expected, rtol=0.0, atol=1e-11)
 
 
 @pytest.mark.unit

@@ -73,13 +73,14 @@ CHANNELS = (
         channels.torque,
     ),
     channels.command,
+    channels.coupling,
     channels.link,
     channels.shadow,
     channels.timing,
     channels.process,
 )
-SIZES = Sizes(nj=1009, nq=1013, nv=1019, horizon=1031)
-_SYMBOLS = {1009: "nj", 1013: "nq", 1019: "nv", 1031: "N", 1032: "N+1"}
+SIZES = Sizes(nj=1009, nq=1013, nv=1019, horizon=1031, nf=1021)
+_SYMBOLS = {1009: "nj", 1013: "nq", 1019: "nv", 1021: "nf", 1031: "N", 1032: "N+1"}
 _LISTS: dict[str, type[BaseModel]] = {
     "pushes": PushSettings,
     "faults": Fault,

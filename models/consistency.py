@@ -6,7 +6,8 @@ import numpy as np
 import pinocchio as pin
 
 from surefoot.engine import mujoco
-from surefoot.models.convert import Array, mujoco_acceleration_to_pinocchio, pinocchio_to_mujoco, velocity_map
+from surefoot.mimic import Dynamics
+from surefoot.models.convert import Array, Coordinates, mujoco_acceleration_to_pinocchio, velocity_map
 from surefoot.models.pinocchio import pinocchio_model
 from surefoot.models.types import RobotDescription
 from surefoot.values import dataclass
@@ -28,7 +29,8 @@ class EngineDifference:
         com: centre of mass [m].
         jacobian: linear and angular frame Jacobians of both soles and of the torso [1, m].
         momentum: linear and angular centroidal momentum [N s, N m s].
-        others: forces that MuJoCo alone knows: of springs, losses, tendons and equalities [N, N m].
+        others: forces that MuJoCo alone knows: of springs, losses, tendons and equalities, but for those of joints that
+            follow others, which do no work in their motion [N, N m].
     """
 
     mass_matrix: float
@@ -56,8 +58,9 @@ class EnginePair:
         self.description = description
         self.mj_model = mujoco.MjModel.from_xml_string(description.mjcf)
         self.pin_model = pinocchio_model(description)
-        self._mj = mujoco.MjData(self.mj_model)
+        self._mj, self._coordinates = mujoco.MjData(self.mj_model), Coordinates(self.mj_model)
         self._pin = self.pin_model.createData()
+        self._dynamics = Dynamics(self.pin_model, self._pin)
 
     def random_state(self, rng: np.random.Generator) -> tuple[Array, Array]:
         """A state (q, v) in Pinocchio's convention: any base pose, joints within limits, speeds of some rad/s."""
@@ -71,27 +74,37 @@ class EnginePair:
     def difference(self, q: Array, v: Array) -> EngineDifference:
         """Compare the engines at the state (q, v) in Pinocchio's convention."""
         self._forward(q, v)
-        T = velocity_map(self._mj.qpos, self.mj_model.nv)
+        T = self._velocity_map()
         momentum = np.concatenate(
             (self.description.mass * self._mj.subtree_linvel[1], self._mj.subtree_angmom[1])
         )  # body 1 is the floating base
         return EngineDifference(
-            mass_matrix=_largest(T.T @ self._mj_mass_matrix() @ T, pin.crba(self.pin_model, self._pin, q)),
+            mass_matrix=_largest(T.T @ self._mj_mass_matrix() @ T, self._pin_mass_matrix(q)),
             bias=_largest(T.T @ self._mj.qfrc_bias, self._pin_bias(q, v)),
             com=_largest(self._mj.subtree_com[1], pin.centerOfMass(self.pin_model, self._pin, q)),
             jacobian=self._jacobian_difference(q, T),
             momentum=_largest(momentum, pin.computeCentroidalMomentum(self.pin_model, self._pin, q, v).vector),
-            others=_largest(self._others(), 0.0),
+            others=_largest(T.T @ self._others(), 0.0),
         )
 
+    def _velocity_map(self) -> Array:
+        """From Pinocchio's velocities to MuJoCo's, those of joints that follow others among them."""
+        T, G = velocity_map(self._mj.qpos, self.pin_model.nv), self._coordinates.G
+        return T if G is None else np.asarray(G @ T)
+
     def _forward(self, q: Array, v: Array) -> None:
-        pinocchio_to_mujoco(q, v, self._mj.qpos, self._mj.qvel)
+        self._coordinates.to_mujoco(q, v, self._mj.qpos, self._mj.qvel)
         mujoco.mj_forward(self.mj_model, self._mj)
         mujoco.mj_subtreeVel(self.mj_model, self._mj)
 
     def _mj_mass_matrix(self) -> Array:
         M = np.zeros((self.mj_model.nv, self.mj_model.nv))
         mujoco.mj_fullM(self.mj_model, self._mj, M)
+        return M
+
+    def _pin_mass_matrix(self, q: Array) -> Array:
+        self._dynamics.mass_matrix(q)
+        M: Array = self._pin.M
         return M
 
     def _others(self) -> Array:
@@ -105,8 +118,9 @@ class EnginePair:
 
     def _pin_bias(self, q: Array, v: Array) -> Array:
         """Inverse dynamics for MuJoCo's acceleration zero, which is not Pinocchio's."""
-        a = np.zeros_like(v)
-        mujoco_acceleration_to_pinocchio(self._mj.qpos, self._mj.qvel, np.zeros_like(v), a)
+        a, base = np.zeros_like(v), np.zeros(6)
+        mujoco_acceleration_to_pinocchio(self._mj.qpos[:7], self._mj.qvel[:6], np.zeros(6), base)
+        a[:6] = base
         return np.asarray(pin.rnea(self.pin_model, self._pin, q, v, a))
 
     def _jacobian_difference(self, q: Array, T: Array) -> float:

@@ -10,6 +10,7 @@ from typing import TYPE_CHECKING
 import numpy as np
 from numpy.typing import NDArray
 
+from surefoot.models.convert import Coordinates
 from surefoot.models.inertia import LEAST_MASS
 from surefoot.models.types import RobotDescription
 from surefoot.similarity import REFERENCE_SIZE, Similarity
@@ -188,6 +189,28 @@ def knees_straight(robot: RobotDescription) -> tuple[float, ...]:
     return angles if any(angles) else ()
 
 
+def knees_turn(robot: RobotDescription) -> tuple[float, ...]:
+    """Turn of each shank for an angle of its knee, in the order of the joints; empty where all are 1 [-]."""
+    knees = [name for name in robot.joint_names if name in robot.roles.knees]
+    turns = tuple(_turn(robot, knee) for knee in knees)
+    return turns if any(turn != 1.0 for turn in turns) else ()
+
+
+def knee_turn(robot: RobotDescription, foot: int) -> float:
+    """By how much a shank turns against its thigh for an angle of the knee, more than 1 where joints follow it [-]."""
+    return _turn(robot, robot.roles.knees[foot])
+
+
+def _turn(robot: RobotDescription, joint: str) -> float:
+    following = [one for one in robot.couplings if one.leader == joint]
+    if not following:
+        return 1.0
+    model, data = _upright(robot)
+    axis = data.xaxis[model.joint(joint).id]
+    shares = (one.ratio * float(axis @ data.xaxis[model.joint(one.follower).id]) for one in following)
+    return abs(1.0 + sum(shares))
+
+
 def named_roles(robot: RobotDescription) -> dict[str, tuple[str, ...]]:
     """What the robot's joints and bodies are for, by the names of its description."""
     roles = robot.roles
@@ -258,7 +281,8 @@ def shank_outline(robot: RobotDescription, foot: int) -> Array:
     model, data = _upright(robot)
     _, knee, ankle = pitch_joints(robot, foot)
     leg = (robot.roles.left_leg, robot.roles.right_leg)[foot]
-    below = (int(model.joint(name).bodyid[0]) for name in leg[leg.index(knee) :])
+    behind = [one.follower for one in robot.couplings if one.leader == knee]
+    below = (int(model.joint(name).bodyid[0]) for name in (*(behind or [knee])[-1:], *leg[leg.index(knee) + 1 :]))
     shank = next(body for body in below if model.body_mass[body] > LEAST_MASS)
     knee, ankle = (model.joint(name).id for name in (knee, ankle))
     up = data.xanchor[knee] - data.xanchor[ankle]
@@ -300,6 +324,6 @@ def _compiled(mjcf: str, angles: tuple[float, ...]) -> "tuple[mujoco.MjModel, mu
 
     model = mujoco.MjModel.from_xml_string(mjcf)
     data = mujoco.MjData(model)
-    data.qpos[7:] = angles
+    Coordinates(model).bend(np.array(angles), data.qpos)
     mujoco.mj_forward(model, data)
     return model, data

@@ -6,7 +6,7 @@ import numpy as np
 import pinocchio as pin
 from numpy.typing import NDArray
 
-from surefoot.models.joints import meeting_point, world_axis
+from surefoot.models.joints import meeting_point, pivot, world_axis
 from surefoot.values import dataclass
 
 Array = NDArray[np.float64]
@@ -129,14 +129,17 @@ class _Leg:
 def _leg(model: pin.Model, data: pin.Data, sole: str, leg_joints: NDArray[np.bool_], R: Array) -> _Leg:
     """A leg of a body whose axes are the columns of R."""
     frame = model.getFrameId(sole)
-    chain = [j for j in model.supports[model.frames[frame].parentJoint] if j > 1 and leg_joints[j - 2]]
-    at = [data.oMi[j].translation.copy() for j in chain]
+    whole = [j for j in model.supports[model.frames[frame].parentJoint] if j > 1 and leg_joints[model.idx_vs[j] - 6]]
+    chain = [j for j in whole if model.nvs[j]]
+    at = [pivot(model, data, j) for j in chain]
     apart = np.linalg.norm(np.diff(at, axis=0), axis=1)
     knee = 1 + int(np.argmax(apart[1:] * apart[:-1]))
     groups = chain[:knee], chain[knee : knee + 1], chain[knee + 1 :]
     hip, ankle = (_pivot(model, data, group) for group in (groups[0], groups[2]))
     plane = _beside_roll(model, data, groups[0], at[knee], ankle, R) or _Plane(R, hip, at[knee], hip, 0)
-    thigh, shank, foot = (_lumped(model, data, group) for group in (groups[0][plane.first :], groups[1], groups[2]))
+    first, knees, ankles = (whole.index(chain[place]) for place in (plane.first, knee, knee + 1))
+    bodies = whole[first:knees], whole[knees:ankles], whole[ankles:]
+    thigh, shank, foot = (_lumped(model, data, group) for group in bodies)
     below, rolls_first = data.oMf[frame].translation.copy(), _pitching(model, data, groups[2]) != groups[2][0]
     return _Leg(plane, ankle, below, thigh, shank, foot, rolls_first)
 
@@ -152,7 +155,7 @@ def _beside_roll(
     forward /= np.linalg.norm(forward)
     axes = np.column_stack((forward, left, np.cross(forward, left)))
     # An axis of pitch goes through it at a point as far aside as the ankle.
-    hip, knee = (point + left * float(left @ (ankle - point)) for point in (data.oMi[pitching].translation, knee))
+    hip, knee = (point + left * float(left @ (ankle - point)) for point in (pivot(model, data, pitching), knee))
     first = hips.index(pitching)
     for joint in hips[:first]:
         lever = axes.T @ (hip - data.oMi[joint].translation) * (0.0, 1.0, 1.0)
@@ -172,7 +175,7 @@ def _pivot(model: pin.Model, data: pin.Data, joints: list[int]) -> Array:
     """The point of a hip or an ankle on its pitch axis, nearest to all its axes: what a link swings about."""
     meeting = meeting_point(model, data, joints)
     pitch = _pitching(model, data, joints)
-    axis, origin = world_axis(model, data, pitch), data.oMi[pitch].translation
+    axis, origin = world_axis(model, data, pitch), pivot(model, data, pitch)
     return np.asarray(origin + axis * float(axis @ (meeting - origin)))
 
 

@@ -14,7 +14,11 @@ from xml.etree import ElementTree
 
 from surefoot.models.actuator import Actuator
 from surefoot.models.inertia import Inertial, Vector
+from surefoot.models.types import Coupling
 from surefoot.values import dataclass
+
+_RIGID = "1e-06 1.0", "0.9999 0.9999 0.001 0.5 2.0"
+"""Time constant and damping ratio of an equality, of which MuJoCo takes two steps at least; and its impedance."""
 
 AXES: dict[str, Vector] = {"roll": (1.0, 0.0, 0.0), "pitch": (0.0, 1.0, 0.0), "yaw": (0.0, 0.0, 1.0)}
 """Joint axes in the body frame; positive angles follow the right-hand rule."""
@@ -143,6 +147,18 @@ def add_defaults(root: ElementTree.Element) -> None:
         contype, conaffinity = ("0", "0") if role is Role.VISUAL else ("2", "3")
         attributes = {"contype": contype, "conaffinity": conaffinity, "condim": "3", "group": group}
         ElementTree.SubElement(ElementTree.SubElement(top, "default", {"class": role.value}), "geom", attributes)
+
+
+def add_couplings(root: ElementTree.Element, couplings: Iterable[Coupling]) -> None:
+    """Add an equality for each joint that follows another one, as stiff as the physics step lets it be."""
+    couplings = tuple(couplings)
+    if not couplings:
+        return
+    section = ElementTree.SubElement(root, "equality")
+    for one in couplings:
+        ends = {"name": f"{one.follower}-{one.leader}", "joint1": one.follower, "joint2": one.leader}
+        law = {"polycoef": numbers((one.offset, one.ratio, 0.0, 0.0, 0.0)), "solref": _RIGID[0], "solimp": _RIGID[1]}
+        ElementTree.SubElement(section, "joint", {**ends, **law})
 
 
 @lru_cache(maxsize=8)

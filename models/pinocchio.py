@@ -10,23 +10,27 @@ from pathlib import Path
 import numpy as np
 import pinocchio as pin
 
+from surefoot.mimic import names_of
+from surefoot.models.coupling import coupled
 from surefoot.models.types import RobotDescription, RobotError
 
 
 def pinocchio_model(description: RobotDescription) -> pin.Model:
     """Read the robot's MJCF with Pinocchio; sites are frames, armatures are inside the mass matrix.
 
+    Joints that follow others have no coordinate (see `surefoot.mimic`).
+
     Effort and velocity limits come from the description, because the MJCF reader does not take them from motors.
 
     Raises:
         RobotError: Pinocchio's total mass or joint order is not the description's.
     """
-    model = pin.Model(_read(description.mjcf))
+    model = coupled(pin.Model(_read(description.mjcf)), description.couplings)
     mass = sum(inertia.mass for inertia in model.inertias)
     if abs(mass - description.mass) > 1e-9 * description.mass:
         what = f"Pinocchio reads {mass:.12g} kg from the MJCF of {description.name}"
         raise RobotError(("mass",), what, f"it must be {description.mass:.12g} kg")
-    joints = tuple(model.names)[2:]
+    joints = names_of(model)
     if joints != description.joint_names:
         what = f"Pinocchio reads the joints {joints} of {description.name}"
         raise RobotError(("joint_names",), what, f"they must be {description.joint_names}")

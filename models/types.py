@@ -115,6 +115,23 @@ class ImuPlace:
     quaternion: tuple[float, float, float, float] = (1.0, 0.0, 0.0, 0.0)
 
 
+@dataclass(frozen=True, slots=True)
+class Coupling:
+    """A joint without a motor that turns with another one, as the second of a knee whose bones roll on each other.
+
+    Attributes:
+        follower: it.
+        leader: joint with a motor that moves both.
+        ratio: angle of the follower for that of the leader, not 0 [-].
+        offset: angle of the follower where that of the leader is 0 [rad].
+    """
+
+    follower: str
+    leader: str
+    ratio: float
+    offset: float = 0.0
+
+
 _OF_JOINTS = (
     "torque_limit",
     "velocity_limit",
@@ -129,8 +146,8 @@ _OF_JOINTS = (
 class RobotDescription:
     """A robot, complete: `mjcf` is read by MuJoCo and by Pinocchio, the rest repeats facts of that text.
 
-    Joints are revolute, one motor each, in the order of the MJCF, which is the order of both engines. Arrays are
-    read-only.
+    Joints are revolute, one motor each, in the order of the MJCF, which is the order of both engines. What follows them
+    by a coupling has no place in the arrays. Arrays are read-only.
 
     Raises:
         RobotError: a name or a shape does not fit the others.
@@ -162,6 +179,8 @@ class RobotDescription:
         kept_apart: pairs of named contact shapes of different limbs that the controller keeps apart.
         imu: where its own IMU is, whose readings an estimator gets.
         left_out: parts of its model that this description has not, one line each; the verdict of each run tells them.
+        couplings: joints of the text that follow others, by an equality there; torque and speed limits, ranges and
+            rotors of a leader are those of all that it moves.
     """
 
     name: str
@@ -189,6 +208,7 @@ class RobotDescription:
     kept_apart: tuple[tuple[str, str], ...]
     imu: ImuPlace = ImuPlace()
     left_out: tuple[str, ...] = ()
+    couplings: tuple[Coupling, ...] = ()
 
     def __post_init__(self) -> None:
         """Refuse what contradicts itself."""
@@ -198,6 +218,7 @@ class RobotDescription:
         if self.imu.body is not None:
             self._check_names(("imu", "body"), (self.imu.body,), self.bodies, "body")
         self._check_roles()
+        self._check_couplings()
         if not 0.0 < self.shank_spacing < np.inf:
             what = f"shank_spacing of {self.name} is {self.shank_spacing:.6g} m"
             raise RobotError(("shank_spacing",), what, "it must be a positive distance")
@@ -234,6 +255,14 @@ class RobotDescription:
             if knee not in leg[1:-1]:
                 what = f"knee '{knee}' of {self.name} is not inside its leg {', '.join(leg)}"
                 raise RobotError(("roles", "knees"), what, "it must have joints of the leg above and below it")
+
+    def _check_couplings(self) -> None:
+        for number, one in enumerate(self.couplings):
+            self._check_names(("couplings", str(number), "leader"), (one.leader,), self.joint_names, "joint")
+            if one.follower in self.joint_names or not 0.0 < abs(one.ratio) < np.inf or not np.isfinite(one.offset):
+                law = f"{one.ratio:.6g} times '{one.leader}' and {one.offset:.6g}"
+                what = f"'{one.follower}' of {self.name} follows by {law}"
+                raise RobotError(("couplings", number), what, "it must have no motor, and a finite ratio other than 0")
 
     def _check_names(self, key: tuple[str, ...], names: tuple[str, ...], valid: tuple[str, ...], kind: str) -> None:
         for name in names:

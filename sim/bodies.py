@@ -1,6 +1,7 @@
 """Where the bodies of a robot are, by MuJoCo's kinematics."""
 
 from surefoot.engine import mujoco
+from surefoot.models.convert import Coordinates
 from surefoot.sim.measurement import Array
 
 _WXYZ = (6, 3, 4, 5)
@@ -19,13 +20,13 @@ class BodyPoses:
 
     def __init__(self, model: mujoco.MjModel) -> None:
         self._model, self._data = model, mujoco.MjData(model)
-        self._qpos = self._data.qpos
+        self._qpos, self._coordinates = self._data.qpos, Coordinates(model)
         self.names: tuple[str, ...] = tuple(model.body(body).name for body in range(1, model.nbody))
         self.position: Array = self._data.xpos[1:]
         self.quaternion: Array = self._data.xquat[1:]
 
     def update(self, q: Array) -> None:
         """Move the bodies to a configuration in Pinocchio's convention, shape (7 + nj,)."""
-        self._qpos[:] = q
-        self._qpos[3:7] = q.take(_WXYZ)
+        self._qpos[:3], self._qpos[3:7] = q[:3], q.take(_WXYZ)
+        self._coordinates.bend(q[7:], self._qpos)
         mujoco.mj_kinematics(self._model, self._data)

@@ -13,6 +13,7 @@ cdef class ImuMotion:
 cdef class Link:
     cdef Py_ssize_t joint
     cdef bint beside
+    cdef double ratio, offset
     cdef double[:, ::1] rotation, lever, twist, square
     cdef vector3 axis, point
 
@@ -23,7 +24,7 @@ cdef class ImuChain:
     cdef list _links
     cdef double[:, ::1] _mount, _lever, _R, _E, _turn, _product
 
-    @cython.locals(at=ImuMotion, link=Link)
+    @cython.locals(at=ImuMotion, link=Link, angle=double)
     cpdef ImuMotion motion(self, const double[:] q, const double[:] v)
     cdef void _pass(self, Link link, double angle, double speed, ImuMotion at) noexcept
     @cython.locals(i=Py_ssize_t, j=Py_ssize_t)

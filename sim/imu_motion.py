@@ -8,6 +8,7 @@ from surefoot import algebra, linear
 from surefoot.algebra import Vector
 from surefoot.engine import mujoco
 from surefoot.models import convert
+from surefoot.models.convert import Coordinates
 from surefoot.models.types import ImuPlace
 from surefoot.sim.measurement import Array
 
@@ -36,9 +37,12 @@ class Link:
     Args:
         model: of the world.
         body: its number.
+        coordinates: of the robot's joints.
 
     Attributes:
-        joint: number of the joint.
+        joint: number of the independent joint with which it turns.
+        ratio: angle of the joint for one of that [-].
+        offset: angle of the joint where that has none [rad].
         rotation: of its axes in its parent at zero angle, shape (3, 3).
         lever: cross product matrix of its origin in its parent, shape (3, 3) [m].
         axis: of the joint in the body.
@@ -48,11 +52,11 @@ class Link:
         point: of the joint in the body [m].
     """
 
-    def __init__(self, model: mujoco.MjModel, body: int) -> None:
+    def __init__(self, model: mujoco.MjModel, body: int, coordinates: Coordinates) -> None:
         joint = int(model.body_jntadr[body])
         axis, point = np.array(model.jnt_axis[joint]), np.array(model.jnt_pos[joint])
         twist = skew(axis)
-        self.joint = joint - 1  # joint 0 is the floating base
+        self.joint, self.ratio, self.offset = coordinates.law_of(joint)
         self.rotation = rotation_of(model.body_quat[body])
         self.lever = skew(np.array(model.body_pos[body]))
         self.axis, self.twist, self.square = algebra.vector(axis), twist, twist @ twist
@@ -83,9 +87,9 @@ class ImuChain:
 
     def __init__(self, model: mujoco.MjModel, base: int, place: ImuPlace, turn: Array, shift: Array) -> None:
         body = base if place.body is None else model.body(place.body).id
-        links: list[Link] = []
+        links, coordinates = list[Link](), Coordinates(model)
         while body != base:
-            links.append(Link(model, body))
+            links.append(Link(model, body, coordinates))
             body = int(model.body_parentid[body])
         self._links = links[::-1]
         # Orientation of the IMU in the last body, and cross product matrix of its place there [m].
@@ -102,7 +106,8 @@ class ImuChain:
         algebra.put_row(self._R, 2, z)
         at.velocity, at.angular_velocity = (v[0], v[1], v[2]), (v[3], v[4], v[5])
         for link in self._links:
-            self._pass(link, q[7 + link.joint], v[6 + link.joint], at)
+            angle = link.ratio * q[7 + link.joint] + link.offset
+            self._pass(link, angle, link.ratio * v[6 + link.joint], at)
         arm = algebra.subtract(at.velocity, linear.fused_rotate(self._lever, at.angular_velocity))
         at.velocity = linear.fused_rotate(self._R, arm)
         linear.fused_compose(self._R, self._mount, at.rotation)

@@ -108,6 +108,12 @@ def _body(model: mujoco.MjModel) -> dict[str, Option]:
         "joint_force": model.jnt_actfrcrange,
     }
     counts: dict[str, Option] = {"joints": model.njnt, "motors": model.nu, "constraints": model.neq}
+    if model.neq:
+        sums |= {
+            "constraint_laws": model.eq_data,
+            "constraint_solref": model.eq_solref,
+            "constraint_solimp": model.eq_solimp,
+        }
     return {**counts, **{name: float(np.abs(values).sum()) for name, values in sums.items()}}
 
 

@@ -8,7 +8,7 @@ import numpy as np
 from numpy.typing import NDArray
 
 from surefoot.engine import mujoco
-from surefoot.models.convert import pinocchio_to_mujoco
+from surefoot.models.convert import Coordinates
 from surefoot.sim.gl import make_context
 from surefoot.sim.marks import Mark, draw
 from surefoot.values import dataclass
@@ -125,9 +125,10 @@ class _Painter:
         self, configurations: Iterable[Array], marks: Iterable[Iterable[Mark]], look_at: Iterable[Array | None]
     ) -> Iterator[Image]:
         """One picture per configuration."""
-        rest = np.zeros(self._model.nv)
+        coordinates = Coordinates(self._model)
+        rest = np.zeros(coordinates.size - 1)
         for q, beside, target in zip(configurations, marks, look_at, strict=False):
-            pinocchio_to_mujoco(q, rest, self._data.qpos, self._data.qvel)
+            coordinates.to_mujoco(q, rest, self._data.qpos, self._data.qvel)
             mujoco.mj_kinematics(self._model, self._data)
             mujoco.mj_comPos(self._model, self._data)
             mujoco.mj_camlight(self._model, self._data)

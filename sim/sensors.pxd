@@ -15,7 +15,8 @@ cdef class Sole:
 
 cdef class SensorReader:
     cdef public object model
-    cdef object _data, _pushes, _touch
+    cdef object _data, _pushes, _coordinates, _touch
+    cdef bint _couples
     cdef tuple _views
     cdef list _soles
     cdef const double[::1] _qpos, _qvel, _joint_force, _acceleration, _gravity, _com, _mean
@@ -27,6 +28,8 @@ cdef class SensorReader:
     cpdef read(self, double time)
     @cython.locals(sole=Sole)
     cdef void _read(self, const double[:, ::1] external)
+    @cython.locals(force=double[::1])
+    cdef _gather(self)
     cdef void _without_pushes(self)
     @cython.locals(lever=vector3, torque=vector3, rest=vector3)
     cdef void _take_off(self, Py_ssize_t body, vector3 force) noexcept

@@ -6,6 +6,7 @@ from surefoot import algebra
 from surefoot.algebra import Vector
 from surefoot.engine import mujoco
 from surefoot.models import convert
+from surefoot.models.convert import Coordinates
 from surefoot.models.types import RobotDescription
 from surefoot.sim.contacts import ContactSense
 from surefoot.sim.errors import WorldError
@@ -36,7 +37,7 @@ class SensorReader:
         self, model: mujoco.MjModel, data: mujoco.MjData, description: RobotDescription, pushes: PushSchedule
     ) -> None:
         """Look at a world; `pushes` are those of its latest steps."""
-        self.model, self._data, self._pushes = model, data, pushes
+        self.model, self._data, self._pushes, self._coordinates = model, data, pushes, Coordinates(model)
         base = model.body(description.pelvis_body).id
         _check_imu(model, description, base)
         sites = [model.site(name).id for name in description.sole_sites]
@@ -53,7 +54,8 @@ class SensorReader:
             Sole(foot, data.site_xpos[site], data.site_xmat[site].reshape(3, 3), felt)
             for foot, site, felt in zip(feet, sites, wrench, strict=True)
         ]
-        self._allocate(model.nq, model.nv, wrench)
+        self._couples, size = self._coordinates.G is not None, self._coordinates.size
+        self._allocate(size, size - 1, wrench)
 
     def _allocate(self, nq: int, nv: int, wrench: Array) -> None:
         q, v, torque, felt, push = np.zeros(nq), np.zeros(nv), np.zeros(nv - 6), np.zeros(3), np.zeros(3)
@@ -75,14 +77,24 @@ class SensorReader:
 
     def _read(self, external: Array) -> None:
         """Fill the buffers; the terrain's forces on the bodies as MuJoCo has them, shape (nbody, 6) [N m, N]."""
-        convert.mujoco_to_pinocchio(self._qpos, self._qvel, self._q, self._v)
-        self._torque[:] = self._joint_force
+        if self._couples:
+            self._gather()
+        else:
+            convert.mujoco_to_pinocchio(self._qpos, self._qvel, self._q, self._v)
+            self._torque[:] = self._joint_force
         self._push[:] = self._mean
         specific_force = algebra.subtract(algebra.vector(self._acceleration), algebra.vector(self._gravity))
         algebra.put(self._accelerometer, algebra.rotate_back(self._base, specific_force))
         com = algebra.vector(self._com)
         for sole in self._soles:
             sole.feel(external, com)
+
+    def _gather(self) -> None:
+        """Read the independent joints; what follows them is left away."""
+        data, own = self._data, self._coordinates
+        own.to_pinocchio(data.qpos, data.qvel, self._q, self._v)
+        force = data.qfrc_actuator[own.velocities]
+        self._torque[:] = force
 
     def _without_pushes(self) -> None:
         """External forces of the bodies minus the pushes: what the terrain does."""

@@ -11,7 +11,7 @@ import numpy as np
 from surefoot.engine import mujoco
 from surefoot.forces import Push
 from surefoot.joints import JointCommand
-from surefoot.models.convert import pinocchio_to_mujoco
+from surefoot.models.convert import Coordinates
 from surefoot.models.types import RobotDescription, nearest
 from surefoot.planner.ground.terrain import Terrain
 from surefoot.sim.bodies import BodyPoses
@@ -66,7 +66,7 @@ class World:
         self._mjcf = world_mjcf(description, terrain, 1.0 / physics_rate, size)
         self._model, self._is_shared = _compiled(self._mjcf), True
         self.data = mujoco.MjData(self._model)
-        self._drives = drives
+        self._drives, self._coordinates = drives, Coordinates(self._model)
         self._pushes = PushSchedule(pushes, [self._model.body(push.body).id for push in pushes], physics_rate)
         self._sensors = SensorReader(self._model, self.data, description, self._pushes)
         self._ctrl, self._qpos, self._qvel = self.data.ctrl, self.data.qpos, self.data.qvel
@@ -89,6 +89,17 @@ class World:
         """Simulated time since the reset [s]."""
         return self.tick / self.physics_rate
 
+    @property
+    def angles(self) -> Array:
+        """Of the joints now, shape (nj,) [rad]."""
+        found: Array = self._qpos[self._coordinates.positions]
+        return found
+
+    @property
+    def apart(self) -> Array:
+        """Of each joint that follows another one from where it belongs now, shape (nf,) [rad]."""
+        return self._coordinates.apart(self._qpos)
+
     def mjcf(self) -> str:
         """The whole world as one MJCF text, exactly what is simulated."""
         return self._mjcf
@@ -109,7 +120,7 @@ class World:
             torque: joint torques that the first measured contact forces belong to, shape (nj,) [N m]; none if None.
         """
         mujoco.mj_resetData(self._model, self.data)
-        pinocchio_to_mujoco(q, np.zeros(self._model.nv) if v is None else v, self._qpos, self._qvel)
+        self._coordinates.to_mujoco(q, np.zeros(len(q) - 1) if v is None else v, self._qpos, self._qvel)
         self._pushes.rewind(self._xfrc)
         self.tick = 0
         if torque is not None:
@@ -160,7 +171,7 @@ class World:
                 pushes.step_over(self._xfrc)
             stop = min(end, pushes.next_change)
             if self._drives is not None:
-                self._ctrl[:], stop = self._drives.torque(tick, self._qvel[6:]), tick + 1
+                self._ctrl[:], stop = self._drives.torque(tick, self._qvel[self._coordinates.velocities]), tick + 1
             mujoco.mj_step(self._model, self.data, stop - tick)
             if pushes.active:
                 pushes.mean += (stop - tick) / steps * pushes.total
@@ -180,9 +191,10 @@ class World:
             self.advance(command.torque, steps)
             return
         pushed, h = np.zeros(3), 1.0 / self.physics_rate
-        s, q, v = command.servo, self._qpos[7:], self._qvel[6:]
-        share = 1.0 / (1.0 + h * (s.damping + h * s.stiffness) / self._model.dof_M0[6:])
+        s, own = command.servo, self._coordinates
+        share = 1.0 / (1.0 + h * (s.damping + h * s.stiffness) / own.inertia(self._model))
         for _ in range(steps):
+            q, v = self._qpos[own.positions], self._qvel[own.velocities]
             pull = s.stiffness * (s.position - q - h * v) + s.damping * (s.velocity - v)
             self.advance(command.torque + share * pull, 1)
             pushed += self._pushes.mean

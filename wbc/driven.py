@@ -76,7 +76,7 @@ class DrivenRows:
 
 def without_driven(model: pin.Model, limbs: pin.GeometryModel, joints: NDArray[np.bool_]) -> pin.GeometryModel:
     """Shapes without the collision pairs of bodies that a driven joint moves, which nobody here can keep apart."""
-    driven = {int(joint) + 2 for joint in np.flatnonzero(joints)}
+    driven = {j for j in range(2, model.njoints) if joints[model.idx_vs[j] - 6]}
     moved = {j for j in range(model.njoints) if driven & set(model.supports[j])}
     left = pin.GeometryModel(limbs)
     for pair in list(limbs.collisionPairs):

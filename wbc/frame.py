@@ -4,6 +4,7 @@ import numpy as np
 import pinocchio as pin
 
 from surefoot import algebra, linear
+from surefoot.mimic import moving_columns
 from surefoot.wbc.types import Array
 
 
@@ -17,20 +18,28 @@ class Frame:
         model: Pinocchio's.
         data: Pinocchio's; what is here reads and writes its memory.
         frame: its number.
+        joints: columns of the joints' Jacobian, as of `JointColumns`, shape (6, nv).
         jacobian: to be written, from v to linear and angular velocity, shape (6, nv).
         velocity: to be written, linear and angular, shape (6,) [m/s, rad/s].
         bias: to be written, likewise, shape (6,) [m/s^2, rad/s^2].
     """
 
     def __init__(
-        self, model: pin.Model, data: pin.Data, frame: int, jacobian: Array, velocity: Array, bias: Array
+        self,
+        model: pin.Model,
+        data: pin.Data,
+        frame: int,
+        joints: Array,
+        jacobian: Array,
+        velocity: Array,
+        bias: Array,
     ) -> None:
         joint, placement = model.frames[frame].parentJoint, model.frames[frame].placement
         # Views of Pinocchio's memory, which never moves.
         self.rotation, self.position = data.oMf[frame].rotation, data.oMf[frame].translation
         self._joint_rotation, self._joint_position = data.oMi[joint].rotation, data.oMi[joint].translation
         self._joint_velocity, self._joint_acceleration = data.v[joint].vector, data.a[joint].vector
-        self._joint_jacobian = data.J
+        self._joint_jacobian = joints
         self._fixed_rotation, self._fixed_position = placement.rotation.copy(), placement.translation.copy()
         self._columns = np.array(moving_columns(model, joint), dtype=np.int64)
         self.jacobian, self.velocity, self.bias = jacobian, velocity, bias
@@ -42,7 +51,7 @@ class Frame:
         algebra.put(self.position, algebra.add(lever, algebra.vector(self._joint_position)))
 
     def update(self) -> None:
-        """Write all, behind ``pin.computeAllTerms``, which leaves in ``data.a`` the accelerations with v' = 0."""
+        """Write all, behind `Dynamics.all_terms`, which leaves in ``data.a`` the accelerations with v' = 0."""
         self.place()
         R, p = self._fixed_rotation, algebra.vector(self._fixed_position)
         v, w = algebra.see_motion(R, p, _linear(self._joint_velocity), _angular(self._joint_velocity))
@@ -76,9 +85,3 @@ def _angular(motion: Array) -> algebra.Vector:
 def _put(motion: Array, linear: algebra.Vector, angular: algebra.Vector) -> None:
     motion[0], motion[1], motion[2] = linear[0], linear[1], linear[2]
     motion[3], motion[4], motion[5] = angular[0], angular[1], angular[2]
-
-
-def moving_columns(model: pin.Model, joint: int) -> list[int]:
-    """Columns of the generalised velocity that move the body of a joint."""
-    chain = [model.joints[above] for above in model.supports[joint] if above]
-    return [column for moving in chain for column in range(moving.idx_v, moving.idx_v + moving.nv)]

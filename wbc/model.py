@@ -7,6 +7,7 @@ import pinocchio as pin
 
 from surefoot import algebra
 from surefoot.forces import NO_LOAD, ExternalLoad
+from surefoot.mimic import Dynamics, JointColumns
 from surefoot.values import dataclass
 from surefoot.wbc import soles
 from surefoot.wbc.frame import Frame
@@ -50,6 +51,7 @@ class RobotTerms:
     Attributes:
         model: Pinocchio's.
         data: Pinocchio's, as ``pin.computeAllTerms`` leaves it, but for a load.
+        columns: of its Jacobian, one for each velocity.
         q: configuration of the last update, shape (nq,) [m, -, rad].
         v: velocity of the last update, shape (nv,) [m/s, rad/s].
         model_mass: total mass of the model [kg].
@@ -96,6 +98,7 @@ class RobotTerms:
             )
         self.model = model
         self.data = data = model.createData()
+        self.columns, self._dynamics = JointColumns(model, data), Dynamics(model, data)
         left, right = frames.soles
         soles = _frame_id(model, left), _frame_id(model, right)
         self._torso_frame = torso = _frame_id(model, frames.torso)
@@ -105,12 +108,13 @@ class RobotTerms:
         self.nv, self.wrench_unit = model.nv, wrench_unit
         self._view(data, torso)
         self._allocate(model)
+        J = self.columns.values
         self._left, self._right = (
-            Frame(model, data, sole, self.sole_jacobian[k], self.sole_velocity[k], self.sole_bias[k])
+            Frame(model, data, sole, J, self.sole_jacobian[k], self.sole_velocity[k], self.sole_bias[k])
             for k, sole in enumerate(soles)
         )
         motion = np.zeros((6, model.nv)), np.zeros(6), np.zeros(6)
-        self._torso = Frame(model, data, torso, *motion)
+        self._torso = Frame(model, data, torso, J, *motion)
         self.torso_jacobian, self.torso_velocity, self.torso_bias = (part[3:] for part in motion)
         self._name()
 
@@ -161,7 +165,8 @@ class RobotTerms:
         """Compute every term at configuration q, shape (nq,), and velocity v, shape (nv,)."""
         self.q[...], self.v[...] = q, v  # numpy.copyto goes through Python first
         # Leaves in data.a the velocity-product accelerations, those of zero generalised acceleration.
-        pin.computeAllTerms(self.model, self.data, q, v)
+        self._dynamics.all_terms(q, v)
+        self.columns.update()
         if self.load is not NO_LOAD:
             self.mass = self.model_mass
             self._carry(NO_LOAD)

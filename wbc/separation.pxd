@@ -4,7 +4,7 @@ from surefoot cimport algebra, linear
 from surefoot.algebra cimport vector3
 
 cdef class Separation:
-    cdef object _model, _data, _geometry, _parameters, _shapes, _written
+    cdef object _model, _data, _geometry, _parameters, _shapes, _written, _joints
     cdef list _results, _pairs
     cdef double _attention
     cdef Py_ssize_t _filled

@@ -7,7 +7,7 @@ import pinocchio as pin
 from numpy.typing import NDArray
 
 from surefoot import algebra, linear
-from surefoot.wbc.frame import moving_columns
+from surefoot.mimic import JointColumns, moving_columns
 from surefoot.wbc.parameters import SeparationParameters
 from surefoot.wbc.types import Array
 
@@ -40,6 +40,7 @@ class Separation:
         # The results are updated in place; to walk through Pinocchio's vector of them costs more than the distances.
         self._results = list(self._shapes.distanceResults)
         self._data: pin.Data | None = None
+        self._joints: JointColumns | None = None
         self._pairs: list[Pair] = []
         self._attention = parameters.attention
         self._written: Array | None = None
@@ -57,8 +58,9 @@ class Separation:
             unbounded: value of an absent bound.
         """
         if data is not self._data:
-            self._data = data
-            self._pairs = [Pair(self._model, data, self._geometry, pair) for pair in self._geometry.collisionPairs]
+            self._data, self._joints = data, JointColumns(self._model, data)
+            J, pairs = self._joints.values, self._geometry.collisionPairs
+            self._pairs = [Pair(self._model, data, J, self._geometry, pair) for pair in pairs]
         due = self.due()
         if due or not self.is_clear or self._written is not rows:
             self._fill(self._near(due), v, rows, lower, unbounded)
@@ -94,6 +96,9 @@ class Separation:
         filled, self._filled = self._filled, min(len(near), p.slots)
         self.is_clear = not near
         near.sort()
+        if near:
+            assert self._joints is not None
+            self._joints.update()
         for slot, (distance, k) in enumerate(near[: p.slots]):
             result = self._results[k]
             normal, first, second = result.normal, result.getNearestPoint1(), result.getNearestPoint2()
@@ -114,6 +119,7 @@ class Pair:
     Args:
         model: the robot.
         data: where Pinocchio places its joints.
+        jacobian: columns of the joints, as of `JointColumns`, shape (6, nv).
         geometry: the shapes.
         pair: their numbers.
 
@@ -121,7 +127,9 @@ class Pair:
         distance: as measured last [m].
     """
 
-    def __init__(self, model: pin.Model, data: pin.Data, geometry: pin.GeometryModel, pair: pin.CollisionPair) -> None:
+    def __init__(
+        self, model: pin.Model, data: pin.Data, jacobian: Array, geometry: pin.GeometryModel, pair: pin.CollisionPair
+    ) -> None:
         shapes = [geometry.geometryObjects[k] for k in (pair.first, pair.second)]
         (one, other), far = (shape.parentJoint for shape in shapes), shapes[1]
         far.geometry.computeLocalAABB()
@@ -130,7 +138,7 @@ class Pair:
         # Views of Pinocchio's memory, which never moves.
         self._R_1, self._p_1 = data.oMi[one].rotation, data.oMi[one].translation
         self._R_2, self._p_2 = data.oMi[other].rotation, data.oMi[other].translation
-        self._jacobian = data.J
+        self._jacobian = jacobian
         self._columns_1, self._columns_2 = (
             np.array(moving_columns(model, joint), dtype=np.int64) for joint in (one, other)
         )

@@ -1,7 +1,8 @@
 """Elements of a model that bind joints to each other: joints that follow others, closed loops, shared motors.
 
-A description is a tree of joints that move on their own, one motor each. A binding among joints that are locked says
-nothing more; one of joints that move would be lost, so it is refused by name.
+A description is a tree of joints that move on their own, one motor each, and of those that follow them in a leg (see
+`surefoot.models.robot_file.couplings`). A binding among joints that are locked says nothing more; another one of joints
+that move would be lost, so it is refused by name.
 """
 
 import itertools
@@ -31,13 +32,15 @@ class Follower:
         kind: of the element.
         name: of the element, if it has one.
         leader: the other joint; None where it is held in place.
-        angle: at which it is held without a leader [rad].
+        angle: at which it is held without a leader, or where that is at zero [rad].
+        ratio: its angle for that of the leader; None where that is no constant, or 0 [-].
     """
 
     kind: str
     name: str = ""
     leader: str | None = None
     angle: float = 0.0
+    ratio: float | None = None
 
     @property
     def told(self) -> str:
@@ -131,7 +134,10 @@ def rolling(model: pin.Model, joints: Sequence[int]) -> tuple[str, str] | None:
 def told_rolling(pair: tuple[str, str]) -> str:
     """A line on such a pair."""
     what = f"left out: a coupling of {pair[0]} and {pair[1]}, if they roll on each other as one"
-    return f"{what}: their axes, ranges and torques are alike, and each has a motor of its own here"
+    return (
+        f"{what}: their axes, ranges and torques are alike, and each has a motor of its own here; say it by mimic in a "
+        "URDF, by an equality in an MJCF"
+    )
 
 
 def _limits(model: pin.Model, joint: int) -> Array:

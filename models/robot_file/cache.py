@@ -12,9 +12,9 @@ from typing import Any
 
 import numpy as np
 
-from surefoot import kept
+from surefoot import kept, mimic
 from surefoot.models.robot_file.document import MESH, Kind, content, raw, signature
-from surefoot.models.types import ImuPlace, JointRoles, RobotDescription, RobotError
+from surefoot.models.types import Coupling, ImuPlace, JointRoles, RobotDescription, RobotError
 
 _ENGINES = ("pin", "coal", "mujoco", "numpy", "scipy", "fast-simplification")
 _ROOM = "robots"
@@ -44,7 +44,7 @@ def _code() -> bytes:
     """Digest of everything in this package that a description depends on."""
     sha = hashlib.sha256()
     folder = Path(__file__).parent
-    for file in sorted((*folder.glob("*.py"), *folder.parent.glob("*.py"))):
+    for file in (*sorted((*folder.glob("*.py"), *folder.parent.glob("*.py"))), Path(mimic.__file__)):
         sha.update(file.read_bytes())
     for name in _ENGINES:
         with suppress(metadata.PackageNotFoundError):
@@ -78,9 +78,9 @@ def _plain(value: Any) -> Any:
 def _description(values: dict[str, Any]) -> RobotDescription:
     """Back from JSON: lists of numbers are arrays, other lists are tuples."""
     roles, imu = ({name: _tuples(value) for name, value in values.pop(group).items()} for group in ("roles", "imu"))
-    found = {}
+    found: dict[str, Any] = {"couplings": tuple(Coupling(**one) for one in values.pop("couplings"))}
     for field in fields(RobotDescription):
-        if field.name in ("roles", "imu"):
+        if field.name in ("roles", "imu", "couplings"):
             continue
         value = values[field.name]
         if field.type in ("Array", np.ndarray) or field.name.endswith(("_limit", "_lower", "_upper", "_positions")):

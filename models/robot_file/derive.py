@@ -6,6 +6,7 @@ from typing import NamedTuple
 import numpy as np
 import pinocchio as pin
 
+from surefoot.mimic import names_of
 from surefoot.models.inertia import LEAST_MASS
 from surefoot.models.robot_file.bindings import rolling, told_rolling
 from surefoot.models.robot_file.engine_mesh import compiled, taken
@@ -106,7 +107,7 @@ class _Deriver:
         lengths = []
         for leg in self.legs:
             data = at(self.model, solved(self.model, leg, rest(self.model), 0.0))
-            lengths.append(float(leg.hip[2] - (data.oMi[leg.joints[-1]] * leg.sole.placement).translation[2]))
+            lengths.append(float(leg.hip[2] - (data.oMi[leg.chain[-1]] * leg.sole.placement).translation[2]))
         if min(lengths) <= 0.0:
             what = f"the soles of {self.file.name} are not below its hips with straight legs"
             raise RobotError(("model",), what, "z of the floating base must point up")
@@ -119,17 +120,17 @@ class _Deriver:
         for leg in self.legs:
             for angles, bend in ((straight, 0.0), (crouch, BEND)):
                 angles[:] = solved(self.model, leg, angles, bend)
-        names = tuple(self.model.names)[2:]
+        names = names_of(self.model)
         for name, angle in self._given_posture().items():
             place = names.index(name)
             crouch[place] = angle
-            if place + 2 not in {joint for leg in self.legs for joint in leg.joints}:
+            if self.model.getJointId(name) not in {joint for leg in self.legs for joint in leg.joints}:
                 straight[place] = angle
         return straight, crouch
 
     def _given_posture(self) -> dict[str, float]:
         """Angles that the file gives, by a state of the SRDF or by patterns."""
-        posture, names = self.file.posture, tuple(self.model.names)[2:]
+        posture, names = self.file.posture, names_of(self.model)
         if isinstance(posture, str):
             states = self.reduced.states
             if posture not in states:
@@ -180,6 +181,7 @@ class _Deriver:
             hulls=self.hulls if hulls is None else hulls,
             looks=self._looks() if looks else nothing,
             excluded=excluded,
+            couplings=self.reduced.couplings,
         )
 
     def _looks(self) -> list[list[Shape]]:
@@ -215,12 +217,12 @@ class _Deriver:
         q[7:] = posture
         com = pin.centerOfMass(self.model, data, q)
         leg = self.legs[0]
-        return float(com[2] - (data.oMi[leg.joints[-1]] * leg.sole.placement).translation[2])
+        return float(com[2] - (data.oMi[leg.chain[-1]] * leg.sole.placement).translation[2])
 
     def _check_figure(self, com_height: float) -> None:
         data, leg = at(self.model, rest(self.model)), self.legs[0]
         centre = max(float(np.linalg.norm(leg.sole.placement.translation)) for leg in self.legs)
-        to_ankle = float(np.linalg.norm(leg.hip - data.oMi[leg.joints[-1]].translation))
+        to_ankle = float(np.linalg.norm(leg.hip - data.oMi[leg.chain[-1]].translation))
         check_figure(self.file.name, self.leg_length, to_ankle, centre, (self.sole[0], self.sole[1]), com_height)
 
     def _meeting(self, excluded: list[tuple[str, str]]) -> list[tuple[int, int]]:
@@ -253,7 +255,7 @@ class _Deriver:
             name=self.file.name,
             mjcf=mjcf,
             mass=float(sum(inertia.mass for inertia in model.inertias)),
-            joint_names=tuple(model.names)[2:],
+            joint_names=names_of(model),
             roles=self._roles(posture),
             torque_limit=fixed(model.upperEffortLimit[6:]),
             velocity_limit=fixed(model.upperVelocityLimit[6:]),
@@ -275,6 +277,7 @@ class _Deriver:
             kept_apart=kept_apart(self.reduced, self.file, self.hulls, self._meeting(excluded), self.legs),
             imu=self.imu,
             left_out=tuple(self.reduced.left_out),
+            couplings=self.reduced.couplings,
         )
 
     def _weighty(self) -> tuple[str, ...]:

@@ -2,6 +2,7 @@
 
 import pinocchio as pin
 
+from surefoot.mimic import moving_columns
 from surefoot.models.robot_file.reduced import Reduced
 from surefoot.models.robot_file.schema import RobotFile
 from surefoot.models.types import ImuPlace, RobotError, nearest
@@ -22,7 +23,7 @@ def find_imu(reduced: Reduced, file: RobotFile, torso: int) -> tuple[ImuPlace, s
         torso: joint of the torso; IMUs of limbs are passed over unless the file names one.
 
     Raises:
-        RobotError: the file names nothing of the model.
+        RobotError: the file names nothing of the model, or what is between a joint and its follower.
     """
     model = reduced.model
     frames = [frame for frame in model.frames if frame.type in _PLACES and frame.parentJoint > 0]
@@ -38,6 +39,11 @@ def find_imu(reduced: Reduced, file: RobotFile, torso: int) -> tuple[ImuPlace, s
     if not found:
         return ImuPlace(), "imu: none in the model, so at the frame of the floating base"
     frame = min(found, key=lambda one: len(model.supports[one.parentJoint]))
+    try:
+        moving_columns(model, frame.parentJoint)
+    except ValueError as error:
+        what = f"imu of {file.name} is '{frame.name}', between two joints that turn as one"
+        raise RobotError(("imu",), what, "name a link above or below both") from error
     body = reduced.bodies[frame.parentJoint - 1]
     at, turn = frame.placement.translation, pin.Quaternion(frame.placement.rotation).normalized()
     x, y, z = (float(value) for value in at)

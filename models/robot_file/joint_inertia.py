@@ -15,6 +15,7 @@ from collections.abc import Iterator, Sequence
 import numpy as np
 import pinocchio as pin
 
+from surefoot.mimic import names_of
 from surefoot.models.types import Array, RobotError
 
 LEAST = 1e-5
@@ -62,7 +63,7 @@ def _least(model: pin.Model, angles: Array) -> tuple[float, str]:
     scale = 1.0 / np.sqrt(np.diag(M))
     values, directions = np.linalg.eigh(scale[:, None] * M * scale)
     part = np.abs(directions[6:, 0])
-    names = [name for name, one in zip(tuple(model.names)[2:], part, strict=True) if one > _PART * part.max()]
+    names = [name for name, one in zip(names_of(model), part, strict=True) if one > _PART * part.max()]
     return float(values[0]), " and ".join(f"'{name}'" for name in names)
 
 

@@ -1,10 +1,13 @@
 """The legs of a model: chains, knees, hips, ankles, soles, and the angles of a leg that is straight or bent."""
 
+from collections.abc import Callable
+from functools import partial
+
 import numpy as np
 import pinocchio as pin
 
 from surefoot.models.inertia import LEAST_MASS
-from surefoot.models.joints import meeting_point, world_axis
+from surefoot.models.joints import meeting_point, members, pivot, turn_of, world_axis
 from surefoot.models.robot_file.reduced import Reduced, points_of
 from surefoot.models.robot_file.schema import RobotFile
 from surefoot.models.robot_file.soles import SolePlate, sole_of
@@ -18,6 +21,9 @@ _STEPS, _DAMPING = 60, 1e-6
 _ENDS = 0.02
 """How far solved angles stay from the ends of a joint [rad]."""
 
+_GRID, _SLOPE, _HALVINGS = 181, 1e-4, 60
+"""Angles at which a knee with followers is tried, half of the span of its slope [rad], and halvings of an interval."""
+
 _BENT, _MADE = 0.65, 0.02
 """Bend of a knee with which it is seen what a leg can do [rad], and least share of a twist that it has to make [-]."""
 
@@ -27,18 +33,22 @@ class Leg:
     """One leg.
 
     Attributes:
-        joints: from hip to ankle, indices in the model.
-        knee: its place in that chain.
+        chain: all joints from hip to ankle, indices in the model.
+        joints: those that have a coordinate.
+        knee: its place among these.
         bend: sign of the knee's angle that bends it.
+        turn: by how much the shank turns for an angle of the knee, more than 1 with joints that follow it [-].
         straight: angle of the knee that makes the leg longest [rad].
         sole: what touches the ground.
         hip: hip centre from the base [m].
         shank: the joint whose body is the shank; where that has several, the last of them.
     """
 
+    chain: tuple[int, ...]
     joints: tuple[int, ...]
     knee: int
     bend: float
+    turn: float
     straight: float
     sole: SolePlate
     hip: Array
@@ -47,7 +57,11 @@ class Leg:
     @property
     def thigh(self) -> int:
         """The joint whose body is the thigh."""
-        return self.joints[self.knee - 1]
+        return self.chain[self.chain.index(self.joints[self.knee]) - 1]
+
+    def bent(self, bend: float) -> float:
+        """Angle of the knee at which thigh and shank are bent by an angle [rad]."""
+        return self.straight + self.bend * bend / abs(self.turn)
 
     @property
     def leans(self) -> bool:
@@ -69,8 +83,9 @@ def find_legs(reduced: Reduced, file: RobotFile) -> tuple[Leg, Leg]:
         what = f"both feet of {file.name} hang on joint '{model.names[shared[0]]}'"
         raise RobotError(("feet",), what, "the floating base must be the body between the legs")
     for side, chain in zip(SIDES, chains, strict=True):
-        if not FEWEST <= len(chain) <= MOST:
-            what = f"the {side} leg of {file.name}, to link '{getattr(feet, side)}', has {len(chain)} joints"
+        own = len(_own(model, chain))
+        if not FEWEST <= own <= MOST:
+            what = f"the {side} leg of {file.name}, to link '{getattr(feet, side)}', has {_counted(model, chain)}"
             right = f"legs need {FEWEST} to {MOST}, so that a sole can be put anywhere, with {FEWEST} but for its roll"
             raise RobotError(("feet", side), what, right)
     legs = [_leg(reduced, file, side, chain) for side, chain in enumerate(chains)]
@@ -94,13 +109,13 @@ def rest(model: pin.Model) -> Array:
 
 def _leg(reduced: Reduced, file: RobotFile, side: int, chain: tuple[int, ...]) -> Leg:
     model, data = reduced.model, at(reduced.model, rest(reduced.model))
-    candidates = {}
-    for place in range(1, len(chain) - 1):
-        axis = world_axis(model, data, chain[place])
+    candidates, joints = {}, _own(model, chain)
+    for place in range(1, len(joints) - 1):
+        axis = world_axis(model, data, joints[place])
         if abs(axis[1]) < _LATERAL:
             continue
-        on = data.oMi[chain[place]].translation
-        ends = (meeting_point(model, data, group) - on for group in (chain[:place], chain[place + 1 :]))
+        on = pivot(model, data, joints[place])
+        ends = (meeting_point(model, data, group) - on for group in (joints[:place], joints[place + 1 :]))
         above, below = (float(np.linalg.norm(end - axis * (end @ axis))) for end in ends)
         candidates[place] = above * below
     if not candidates:
@@ -109,27 +124,79 @@ def _leg(reduced: Reduced, file: RobotFile, side: int, chain: tuple[int, ...]) -
             ("feet", SIDES[side]), what, "name the links of the feet, below ankle and knee, and check forward"
         )
     knee = max(candidates, key=candidates.__getitem__)
-    straight = _longest(model, chain, knee)
-    lower, upper = (float(limit[chain[knee] + 5]) for limit in (model.lowerPositionLimit, model.upperPositionLimit))
+    straight = _longest(model, joints, knee)
+    lower, upper = _ends_of(model, joints[knee])
     bend = 1.0 if upper - straight >= straight - lower else -1.0
     sole = _sole(reduced, file, side, data, chain[-1])
-    shank = next(joint for joint in chain[knee:] if model.inertias[joint].mass > LEAST_MASS)
-    return Leg(chain, knee, bend, straight, sole, meeting_point(model, data, chain[:knee]), shank)
+    behind = chain[chain.index(max(members(model, joints[knee]))) :]
+    shank = next(joint for joint in behind if model.inertias[joint].mass > LEAST_MASS)
+    turn, hip = turn_of(model, data, joints[knee]), meeting_point(model, data, joints[:knee])
+    return Leg(chain, joints, knee, bend, turn, straight, sole, hip, shank)
 
 
-def _longest(model: pin.Model, chain: tuple[int, ...], knee: int) -> float:
-    """Angle of the knee at which hip and ankle are farthest apart; the distance squared is a + b cos + c sin of it."""
-    squares = []
-    for angle in (0.0, np.pi / 2, np.pi):
-        angles = rest(model)
-        angles[chain[knee] - 2] = angle
-        data = at(model, angles)
-        hip, ankle = (meeting_point(model, data, group) for group in (chain[:knee], chain[knee + 1 :]))
-        squares.append(float((hip - ankle) @ (hip - ankle)))
-    middle = (squares[0] + squares[2]) / 2
-    angle = float(np.arctan2(squares[1] - middle, squares[0] - middle))
-    joint = chain[knee] + 5
-    return float(np.clip(angle, model.lowerPositionLimit[joint], model.upperPositionLimit[joint]))
+def _own(model: pin.Model, chain: tuple[int, ...]) -> tuple[int, ...]:
+    """Joints of a chain that have a coordinate."""
+    return tuple(joint for joint in chain if model.nvs[joint])
+
+
+def _counted(model: pin.Model, chain: tuple[int, ...]) -> str:
+    """How many joints a chain has, and which follow others."""
+    following = [f"'{model.names[joint]}'" for joint in chain if not model.nvs[joint]]
+    count = f"{len(_own(model, chain))} joints"
+    follow = "follow" if following[1:] else "follows"
+    return f"{count} with a motor, one of which {' and '.join(following)} {follow}" if following else count
+
+
+def coordinate(model: pin.Model, joint: int) -> int:
+    """Place of a joint's angle, or of that which it follows, among the angles of a robot."""
+    return int(model.idx_qs[joint]) - 7
+
+
+def _ends_of(model: pin.Model, joint: int) -> tuple[float, float]:
+    """Range of a joint [rad]."""
+    at = model.idx_qs[joint]
+    return float(model.lowerPositionLimit[at]), float(model.upperPositionLimit[at])
+
+
+def _longest(model: pin.Model, joints: tuple[int, ...], knee: int) -> float:
+    """Angle of the knee at which hip and ankle are farthest apart.
+
+    The distance squared is a + b cos + c sin of the angle of a knee of one joint; with followers it is sought.
+    """
+    ends, squares = _ends_of(model, joints[knee]), partial(_distance_squared, model, joints, knee)
+    if len(members(model, joints[knee])) > 1:
+        grid = np.linspace(*ends, _GRID)
+        best = int(np.argmax([squares(angle) for angle in grid]))
+        around = float(grid[max(best - 1, 0)]), float(grid[min(best + 1, _GRID - 1)])
+        return round(_extreme(squares, *around), 9) + 0.0  # 0.0 and not -0.0
+    ahead, aside, behind = (squares(angle) for angle in (0.0, np.pi / 2, np.pi))
+    middle = (ahead + behind) / 2
+    return float(np.clip(np.arctan2(aside - middle, ahead - middle), *ends))
+
+
+def _distance_squared(model: pin.Model, joints: tuple[int, ...], knee: int, angle: float) -> float:
+    """From hip to ankle, the other joints at rest [m^2]."""
+    angles = rest(model)
+    angles[coordinate(model, joints[knee])] = angle
+    data = at(model, angles)
+    hip, ankle = (meeting_point(model, data, group) for group in (joints[:knee], joints[knee + 1 :]))
+    return float((hip - ankle) @ (hip - ankle))
+
+
+def _extreme(value: Callable[[float], float], lower: float, upper: float) -> float:
+    """Where a smooth function has its maximum between two ends: by bisection of its slope."""
+
+    def slope(at: float) -> float:
+        return value(at + _SLOPE) - value(at - _SLOPE)
+
+    if slope(lower) <= 0.0:
+        return lower
+    if slope(upper) >= 0.0:
+        return upper
+    for _ in range(_HALVINGS):
+        middle = 0.5 * (lower + upper)
+        lower, upper = (middle, upper) if slope(middle) > 0.0 else (lower, middle)
+    return 0.5 * (lower + upper)
 
 
 def _sole(reduced: Reduced, file: RobotFile, side: int, data: pin.Data, joint: int) -> SolePlate:
@@ -155,8 +222,8 @@ def _check_sides(reduced: Reduced, file: RobotFile, legs: list[Leg]) -> None:
     ahead = []
     for leg in legs:
         ankle = meeting_point(reduced.model, data, leg.joints[leg.knee + 1 :])
-        toe = data.oMi[leg.joints[-1]].act(leg.sole.placement.translation)[0] - ankle[0]
-        knee = world_axis(reduced.model, data, leg.joints[leg.knee])[1] * leg.bend
+        toe = data.oMi[leg.chain[-1]].act(leg.sole.placement.translation)[0] - ankle[0]
+        knee = world_axis(reduced.model, data, leg.joints[leg.knee])[1] * leg.bend * leg.turn
         ahead.append(toe / leg.sole.length if abs(toe) > 0.05 * leg.sole.length else knee)
     if max(ahead) >= 0.0:
         return
@@ -187,8 +254,8 @@ def _check_rolls(reduced: Reduced, file: RobotFile, legs: list[Leg]) -> None:
         if leg.leans and min(resting["rolls"], level["rolls"]) < _MADE:
             lacks = max(("pitches", "yaws"), key=resting.__getitem__)
             what = (
-                f"the {side} leg of {file.name}, to link '{getattr(feet, side)}', has {len(leg.joints)} joints, "
-                f"none of which {lacks} the foot"
+                f"the {side} leg of {file.name}, to link '{getattr(feet, side)}', has "
+                f"{_counted(reduced.model, leg.chain)}, none of which {lacks} the foot"
             )
             raise RobotError(("feet", side), what, "a leg of five joints can do without the roll of its foot only")
 
@@ -199,14 +266,14 @@ def _made(model: pin.Model, leg: Leg) -> list[dict[str, float]]:
     With all other joints at rest, and with the sole level: either may hide what a leg lacks.
     """
     resting = rest(model)
-    resting[leg.joints[leg.knee] - 2] = leg.straight + leg.bend * _BENT
+    resting[coordinate(model, leg.joints[leg.knee])] = leg.bent(_BENT)
     columns, made = [model.joints[joint].idx_v for joint in leg.joints], []
     for angles in (resting, solved(model, leg, rest(model), _BENT)):
         data, q = model.createData(), pin.neutral(model)
         q[7:] = angles
         pin.computeJointJacobians(model, data, q)
-        foot = data.oMi[leg.joints[-1]]
-        J = pin.getJointJacobian(model, data, leg.joints[-1], pin.ReferenceFrame.LOCAL)[:, columns]
+        foot = data.oMi[leg.chain[-1]]
+        J = pin.getJointJacobian(model, data, leg.chain[-1], pin.ReferenceFrame.LOCAL)[:, columns]
         J = pin.SE3(foot.rotation.T, leg.sole.placement.translation).toActionMatrixInverse() @ J
         J[:3] /= np.linalg.norm(leg.hip - foot.translation)
         kept = {name: np.delete(J, 3 + row, axis=0) for row, name in enumerate(("rolls", "pitches", "yaws"))}
@@ -222,9 +289,9 @@ def solved(model: pin.Model, leg: Leg, angles: Array, bend: float) -> Array:
     """
     found = angles.copy()
     lower, upper = model.lowerPositionLimit[7:], model.upperPositionLimit[7:]
-    free = [joint - 2 for place, joint in enumerate(leg.joints) if place != leg.knee]
-    knee = leg.joints[leg.knee] - 2
-    found[knee] = np.clip(leg.straight + leg.bend * bend, lower[knee], upper[knee])
+    free = [coordinate(model, joint) for place, joint in enumerate(leg.joints) if place != leg.knee]
+    knee = coordinate(model, leg.joints[leg.knee])
+    found[knee] = np.clip(leg.bent(bend), lower[knee], upper[knee])
     margin = np.minimum(_ENDS, 0.25 * (upper - lower))
     low, high = (lower + margin)[free], (upper - margin)[free]
     for _ in range(_STEPS):
@@ -250,6 +317,6 @@ def _misplaced(model: pin.Model, leg: Leg, angles: Array) -> Array:
     """
     data = at(model, angles)
     down = meeting_point(model, data, leg.joints[leg.knee + 1 :]) - leg.hip
-    R = (data.oMi[leg.joints[-1]] * leg.sole.placement).rotation
+    R = (data.oMi[leg.chain[-1]] * leg.sole.placement).rotation
     aside = down[:1] if leg.leans else down[:2]
     return np.concatenate((aside / np.linalg.norm(down), R[:2, 2], R[1:2, 0]))

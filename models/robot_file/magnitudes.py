@@ -12,6 +12,7 @@ from itertools import repeat
 import numpy as np
 import pinocchio as pin
 
+from surefoot.mimic import names_of
 from surefoot.models.robot_file.shapes import Shape, placed
 from surefoot.models.types import Array, RobotError
 from surefoot.values import dataclass
@@ -261,7 +262,7 @@ def check_joints(model: pin.Model) -> list[str]:
     span = float(np.linalg.norm(np.ptp([data.oMi[joint].translation for joint in range(1, model.njoints)], axis=0)))
     mass = sum(inertia.mass for inertia in model.inertias)
     notes = _bounded(model)
-    names = tuple(model.names)[2:]
+    names = names_of(model)
     ends = np.maximum(np.abs(model.lowerPositionLimit[7:]), np.abs(model.upperPositionLimit[7:]))
     for law, key, values, size in (
         (TURN, "model", ends, math.tau),
@@ -304,7 +305,8 @@ def _bounded(model: pin.Model) -> list[str]:
     lower, upper = np.array(model.lowerPositionLimit), np.array(model.upperPositionLimit)
     endless = (lower < -_ENDLESS) | (upper > _ENDLESS)
     endless[:7] = False
-    names = [model.names[int(at) - 5] for at in np.flatnonzero(endless)]
+    own = names_of(model)
+    names = [own[int(at) - 7] for at in np.flatnonzero(endless)]
     lower[endless], upper[endless] = np.maximum(lower[endless], -math.tau), np.minimum(upper[endless], math.tau)
     model.lowerPositionLimit, model.upperPositionLimit = lower, upper
     return [f"joints turn without end in the model and one turn either way here: {', '.join(names)}"] if names else []

@@ -34,9 +34,20 @@ class MjcfBindings:
             if second < 0:
                 yield self._joints[first], Follower(_JOINT, name, angle=float(mj.eq_data[equality, 0]))
                 continue
-            follower, leader = (second, first) if self._driven(first) and not self._driven(second) else (first, second)
-            angle = float(mj.eq_data[equality, 0]) if follower == first else 0.0
-            yield self._joints[follower], Follower(_JOINT, name, self._joints[leader], angle)
+            swapped = self._driven(first) and not self._driven(second)
+            follower, leader = (second, first) if swapped else (first, second)
+            constant, ratio, *rest = mj.eq_data[equality, :5].tolist()
+            law: tuple[float, float | None] = constant, ratio or None
+            if any(rest) or (swapped and not ratio):
+                law = 0.0 if swapped else constant, None
+            elif swapped:
+                law = -constant / ratio, 1.0 / ratio
+            yield self._joints[follower], Follower(_JOINT, name, self._joints[leader], *law)
+
+    def again(self, name: str, follower: Follower) -> Binding:
+        """What binds a joint that another equality binds already."""
+        joints = {name} if follower.leader is None else {name, follower.leader}
+        return Binding(element_name(follower.kind, follower.name), frozenset(joints))
 
     def bindings(self) -> Iterator[Binding]:
         """All else, as far as the robot's own bodies are bound."""

@@ -16,6 +16,7 @@ class Fate(Enum):
     KEPT = "kept"
     LEFT_OUT = "left out"
     BINDING = "refused where it binds joints that move, else left out"
+    COUPLING = "kept in a leg; else refused where it binds joints that move, and left out where they are locked"
     REFUSED = "refused"
 
 
@@ -83,6 +84,11 @@ _NO_FLEX = "give a robot of bodies and joints"
 _SERIAL = (
     "a robot is a tree of driven joints here: hold these joints by lock, or give a model without it whose joints have "
     "the limits that the linkage leaves them"
+)
+
+FOLLOWING = (
+    "it may follow the joint next to it in the leg, about a parallel axis and by a constant ratio; else a joint of a "
+    "leg needs a motor"
 )
 
 _POSE = "pos quat axisangle xyaxes zaxis euler"
@@ -237,7 +243,8 @@ ELEMENTS = (
     Elements(Fate.LEFT_OUT, "tendon", "spatial fixed", "bodies are moved by joints and contacts alone", stays=True),
     Elements(Fate.LEFT_OUT, "tendon/spatial", "site geom pulley", "they are of a tendon", stays=True),
     Elements(Fate.LEFT_OUT, "tendon/fixed", "joint", "they are of a tendon", stays=True),
-    Elements(Fate.BINDING, "equality", "connect weld joint tendon", _SERIAL, stays=True),
+    Elements(Fate.BINDING, "equality", "connect weld tendon", _SERIAL, stays=True),
+    Elements(Fate.COUPLING, "equality", "joint", FOLLOWING, stays=True),
     Elements(Fate.REFUSED, "equality", "flex flexstrain", _NO_FLEX),
     _actuator(
         "general",

@@ -6,6 +6,7 @@ from typing import NamedTuple
 import numpy as np
 import pinocchio as pin
 
+from surefoot.mimic import names_of
 from surefoot.models.robot_file.document import SRDF, read_xml
 from surefoot.models.robot_file.quantities import check_numbers, of_srdf
 from surefoot.models.robot_file.schema import RobotFile, matched
@@ -92,7 +93,7 @@ def require_limits(model: pin.Model, notes: list[str]) -> None:
     Raises:
         RobotError: a torque limit or a range is missing.
     """
-    ends = zip(tuple(model.names)[2:], model.lowerPositionLimit[7:], model.upperPositionLimit[7:], strict=True)
+    ends = zip(names_of(model), model.lowerPositionLimit[7:], model.upperPositionLimit[7:], strict=True)
     for name, lower, upper in ends:
         if not -np.inf < lower < upper < np.inf:
             what = f"joint '{name}' of {model.name} has no range, it turns from {lower:.4g} to {upper:.4g} rad"
@@ -116,5 +117,5 @@ def require_limits(model: pin.Model, notes: list[str]) -> None:
 
 def _unlimited(model: pin.Model, limits: Array) -> list[str]:
     """Joints whose limit is none, the floating base aside."""
-    pairs = zip(tuple(model.names)[2:], limits[6:], strict=True)
+    pairs = zip(names_of(model), limits[6:], strict=True)
     return [name for name, value in pairs if not 0.0 < value < np.inf]

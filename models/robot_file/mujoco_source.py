@@ -6,6 +6,7 @@ import numpy as np
 import pinocchio as pin
 
 from surefoot.engine import mujoco
+from surefoot.models.robot_file.bindings import Follower
 from surefoot.models.robot_file.compiled import Bare
 from surefoot.models.robot_file.magnitudes import Part
 from surefoot.models.robot_file.mjcf import Assembled
@@ -94,13 +95,15 @@ class _Reader:
         self._add_sites()
         names = {joint: self._model.names[added] for joint, added in self._added.items()}
         found = MjcfBindings(mj, self._root, names)
+        followers = dict[str, Follower]()
+        twice = [found.again(*one) for one in found.followers() if followers.setdefault(*one) is not one[1]]
         self._left_out += [*losses(mj, self._root), *found.outside()]
         source = Source(
             model=self._model,
             visual=(),
             collision=(),
-            followers=dict(found.followers()),
-            bindings=tuple(found.bindings()),
+            followers=followers,
+            bindings=(*twice, *found.bindings()),
             notes=self._notes,
             left_out=self._left_out,
             parts=tuple(map(self._part, self._place)),

@@ -10,20 +10,24 @@ import pinocchio as pin
 from surefoot.models.inertia import LEAST_MASS, MASSLESS
 from surefoot.models.joints import is_revolute
 from surefoot.models.robot_file.bindings import check_bindings, told_locked
+from surefoot.models.robot_file.couplings import joined, kept, told
 from surefoot.models.robot_file.files import srdf_of
 from surefoot.models.robot_file.magnitudes import check_angle, check_joints
+from surefoot.models.robot_file.mjcf_schema import FOLLOWING
 from surefoot.models.robot_file.motors import read_srdf, require_limits, set_armature, set_limits
 from surefoot.models.robot_file.schema import RobotFile, matched
 from surefoot.models.robot_file.shapes import Shape, placed
 from surefoot.models.robot_file.source import RESERVED, SITES, Source
 from surefoot.models.robot_file.turning import turn, upward
-from surefoot.models.types import Array, RobotError, nearest
+from surefoot.models.types import Array, Coupling, RobotError, nearest
 from surefoot.values import dataclass
 
 _BALL = 0.02
 """Radius of gyration that a repaired body gets [m]."""
 
 _GIVEN, _FOLLOWS = "given in the file", "follow others"
+_MOTORS = "legs need revolute joints with a motor each; write it into lock if it may be frozen"
+_ITS_MOTOR = f"{FOLLOWING}; or write it into lock if it may be frozen"
 
 _TURNS = {"x": 0, "y": 1, "-x": 2, "-y": 3}
 """Quarter turns about z from the base's x to the axis that points ahead."""
@@ -43,6 +47,7 @@ class Reduced:
         states: postures of the SRDF by name.
         notes: what was derived or altered.
         left_out: see `Source`.
+        couplings: joints that follow others, and have no coordinate in the model.
     """
 
     model: pin.Model
@@ -54,6 +59,7 @@ class Reduced:
     states: dict[str, dict[str, float]]
     notes: list[str]
     left_out: list[str]
+    couplings: tuple[Coupling, ...] = ()
 
     def joint_of(self, link: str, key: str) -> int:
         """The joint that moves a link.
@@ -91,9 +97,14 @@ def reduced(file: RobotFile, source: Source, path: Path) -> Reduced:
     rotors, states, passive = read_srdf(srdf, names)
     set_armature(full, matched(file.armature, names, "armature", file.name), rotors, srdf, notes)
     feet = file.soles()
-    left, right = (set(_chain(full, getattr(feet, side), f"feet.{side}")) for side in ("left", "right"))
+    chains = [_chain(full, getattr(feet, side), f"feet.{side}") for side in ("left", "right")]
+    left, right = (set(chain) for chain in chains)
     above = _above(full, left, right)
-    locked = _locked(full, file, source, (left | right) - above, above)
+    given = _given(full, file, source, left | right)
+    legs = [[joint for joint in chain if joint not in above and full.names[joint] not in given] for chain in chains]
+    following = {name: one for name, one in source.followers.items() if name not in given}
+    couplings = kept(full, legs, {name: one for name, one in following.items() if one.leader not in given})
+    locked = _locked(full, file, source, (left | right) - above, above, given, couplings)
     for why in dict.fromkeys(reason for reason, _ in locked.values()):
         names_of = [str(full.names[joint]) for joint, (reason, _) in locked.items() if reason == why]
         notes.append(f"locked, {why}: {', '.join(names_of)}")
@@ -111,6 +122,8 @@ def reduced(file: RobotFile, source: Source, path: Path) -> Reduced:
         source.left_out.append(f"left out: passive_joint of the SRDF: {', '.join(driven)}: they have motors here")
     model = _without(full, list(locked), q)
     model.name = file.name
+    model = joined(model, couplings)
+    notes += told(model, couplings)
     require_limits(model, notes)
     notes += check_joints(model)
     frames = tuple(frame_of(model, link, "feet") for link in (feet.left, feet.right))
@@ -119,7 +132,8 @@ def reduced(file: RobotFile, source: Source, path: Path) -> Reduced:
     visual, collision = (_by_joint(model, shapes) for shapes in (source.visual, source.collision))
     shapes = [drawn + touching for drawn, touching in zip(visual, collision, strict=True)]
     notes += _require_inertias(model, bodies, shapes, {full.names[joint] for joint in left | right}, file)
-    return Reduced(model, bodies, (frames[0], frames[1]), visual, collision, turned, states, notes, source.left_out)
+    both = frames[0], frames[1]
+    return Reduced(model, bodies, both, visual, collision, turned, states, notes, source.left_out, couplings)
 
 
 def _above(model: pin.Model, left: set[int], right: set[int]) -> set[int]:
@@ -154,22 +168,13 @@ def _chain(model: pin.Model, link: str, key: str) -> list[int]:
     return [index for index in model.supports[joint] if index > 1]
 
 
-def _locked(
-    model: pin.Model, file: RobotFile, source: Source, legs: set[int], above: set[int]
-) -> dict[int, tuple[str, float]]:
-    """Joints that are frozen, each with the reason and its angle [rad].
+def _given(model: pin.Model, file: RobotFile, source: Source, legs: set[int]) -> dict[str, float | None]:
+    """Joints that the file freezes, with their angles where it gives them, and those of legs that follow them [rad].
 
     Raises:
-        RobotError: a pattern matches none, or a joint of a leg cannot turn.
+        RobotError: a pattern matches none, or an angle is of no joint.
     """
-    fingers = _fingers(model, legs) if file.lock is None else set()
-    data = model.createData()
-    pin.computeSubtreeMasses(model, data)
-    shown = {
-        int(model.frames[frame_of(model, shape.link, "model")].parentJoint)
-        for shape in (*source.visual, *source.collision)
-    }
-    given: dict[str, float | None] = {}
+    found: dict[str, float | None] = {}
     patterns = file.lock if isinstance(file.lock, dict) else dict.fromkeys(file.lock or ())
     names = tuple(model.names)[2:]
     for pattern, angle in patterns.items():
@@ -178,7 +183,37 @@ def _locked(
             what = f"lock of {file.name} has the pattern '{pattern}', which matches no joint"
             raise RobotError(("lock", pattern), what, nearest(pattern, names))
         check_angle(f"lock of {file.name} with '{pattern}'", angle or 0.0, ("lock", pattern))
-        given |= dict.fromkeys(meant, angle)
+        found |= dict.fromkeys(meant, angle)
+    for name, one in source.followers.items():
+        if one.leader in found and one.ratio is not None and model.getJointId(name) in legs:
+            leads = found[one.leader]
+            at = _at_rest(model, model.getJointId(one.leader), 0.0) if leads is None else leads
+            found.setdefault(name, one.angle + one.ratio * at)
+    return found
+
+
+def _locked(
+    model: pin.Model,
+    file: RobotFile,
+    source: Source,
+    legs: set[int],
+    above: set[int],
+    given: dict[str, float | None],
+    couplings: Sequence[Coupling],
+) -> dict[int, tuple[str, float]]:
+    """Joints that are frozen, each with the reason and its angle [rad].
+
+    Raises:
+        RobotError: a joint of a leg cannot turn.
+    """
+    coupled = {one.follower for one in couplings} | {one.leader for one in couplings}
+    fingers = _fingers(model, legs) if file.lock is None else set()
+    data = model.createData()
+    pin.computeSubtreeMasses(model, data)
+    shown = {
+        int(model.frames[frame_of(model, shape.link, "model")].parentJoint)
+        for shape in (*source.visual, *source.collision)
+    }
     found: dict[int, tuple[str, float]] = {}
     for joint in range(2, model.njoints):
         name, one = model.names[joint], model.joints[joint]
@@ -187,7 +222,7 @@ def _locked(
             why = _GIVEN
         elif not is_revolute(model, joint):
             why = "not revolute"
-        elif name in source.followers:
+        elif name in source.followers and name not in coupled:
             why = _FOLLOWS
         elif joint in above:
             why = "above both legs, where the floating base is"
@@ -200,7 +235,7 @@ def _locked(
         if why and joint in legs and name not in given:
             cause = source.followers[name].told if why == _FOLLOWS else why
             what = f"joint '{name}' of {file.name} is in a leg and cannot be driven ({cause})"
-            right = "legs need revolute joints with a motor each; write it into lock if it may be frozen"
+            right = _ITS_MOTOR if why == _FOLLOWS else _MOTORS
             raise RobotError(("feet",), what, right)
         if why:
             rest, wanted = given.get(name), source.followers[name].angle if why == _FOLLOWS else 0.0

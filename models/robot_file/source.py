@@ -169,7 +169,10 @@ def _mended_joints(root: Node, notes: list[str]) -> Iterator[tuple[str, Follower
         mimic = joint.find("mimic")
         if mimic is not None:
             joint.remove(mimic)
-            yield name, Follower("mimic", "", mimic.get("joint", ""), number(mimic.get("offset", "0")) or 0.0)
+            offset, ratio = (number(mimic.get(key, usual)) for key, usual in (("offset", "0"), ("multiplier", "1")))
+            if limit is not None:
+                limit.set("effort", "0")  # what a joint follows has the motor of both
+            yield name, Follower("mimic", "", mimic.get("joint", ""), offset or 0.0, ratio or None)
 
 
 def _checked_inertias(root: ElementTree.Element, file: RobotFile, path: Path, notes: list[str]) -> Iterator[Part]:

@@ -6,13 +6,15 @@ from xml.etree import ElementTree
 import numpy as np
 import pinocchio as pin
 
+from surefoot.mimic import independent
 from surefoot.models.joints import axis_of
-from surefoot.models.mjcf import Role, add_defaults, numbers
+from surefoot.models.mjcf import Role, add_couplings, add_defaults, numbers
 from surefoot.models.robot_file.engine_mesh import add_mesh
 from surefoot.models.robot_file.legs import SIDES, Leg
 from surefoot.models.robot_file.shapes import Shape
 from surefoot.models.robot_file.source import SITES
 from surefoot.models.robot_file.touch import Hull, shape_name
+from surefoot.models.types import Coupling
 from surefoot.values import dataclass
 
 SOLE_THICKNESS = 0.02
@@ -34,6 +36,7 @@ class Parts:
         hulls: contact shapes by joint.
         looks: what is drawn, by joint index.
         excluded: pairs of bodies that may overlap.
+        couplings: joints that follow others.
     """
 
     name: str
@@ -46,6 +49,7 @@ class Parts:
     hulls: Mapping[int, Hull]
     looks: Sequence[Sequence[Shape]]
     excluded: Sequence[tuple[str, str]] = ()
+    couplings: Sequence[Coupling] = ()
 
 
 def robot_text(parts: Parts) -> str:
@@ -59,10 +63,11 @@ def robot_text(parts: Parts) -> str:
     for one, other in parts.excluded:
         ElementTree.SubElement(contact, "exclude", name=f"{one}-{other}", body1=one, body2=other)
     motors = ElementTree.SubElement(root, "actuator")
-    for joint in range(2, parts.model.njoints):
-        name, limit = parts.model.names[joint], parts.model.upperEffortLimit[joint + 4]
+    for joint in independent(parts.model):
+        name, limit = parts.model.names[joint], parts.model.upperEffortLimit[parts.model.idx_vs[joint]]
         ends = numbers((-limit, limit))
         ElementTree.SubElement(motors, "motor", name=name, joint=name, ctrlrange=ends, forcerange=ends)
+    add_couplings(root, parts.couplings)
     ElementTree.indent(root)
     return ElementTree.tostring(root, encoding="unicode") + "\n"
 
@@ -73,7 +78,7 @@ class _Tree:
     def __init__(self, parts: Parts, asset: ElementTree.Element) -> None:
         self._parts, self._asset = parts, asset
         self._colours: dict[tuple[float, ...], str] = {}
-        self._feet = {leg.joints[-1]: (side, leg) for side, leg in zip(SIDES, parts.legs, strict=True)}
+        self._feet = {leg.chain[-1]: (side, leg) for side, leg in zip(SIDES, parts.legs, strict=True)}
         ElementTree.SubElement(asset, "material", name="rubber", rgba="0.08 0.08 0.09 1")
 
     def add(self, parent: ElementTree.Element, joint: int) -> None:
@@ -98,9 +103,13 @@ class _Tree:
 
     def _add_joint(self, body: ElementTree.Element, joint: int) -> None:
         model = self._parts.model
-        ends = model.lowerPositionLimit[joint + 5], model.upperPositionLimit[joint + 5]
-        attributes = {"axis": numbers(axis_of(model, joint)), "range": numbers(ends)}
-        armature = repr(float(model.armature[joint + 4]))
+        axis = {"axis": numbers(axis_of(model, joint))}
+        if not model.nvs[joint]:  # its leader has range and rotor of both
+            ElementTree.SubElement(body, "joint", axis, name=model.names[joint])
+            return
+        at = model.idx_qs[joint]
+        attributes = {**axis, "range": numbers((model.lowerPositionLimit[at], model.upperPositionLimit[at]))}
+        armature = repr(float(model.armature[model.idx_vs[joint]]))
         ElementTree.SubElement(body, "joint", attributes, name=model.names[joint], armature=armature)
 
     def _add_sole(self, body: ElementTree.Element, side: str, leg: Leg) -> None:
@@ -110,7 +119,7 @@ class _Tree:
         frame = leg.sole.placement
         middle = frame * pin.SE3(np.eye(3), np.array([0.0, 0.0, half]))
         size = numbers((length / 2, width / 2, half))
-        role = Role.COLLISION if self._parts.looks[leg.joints[-1]] else Role.SOLE
+        role = Role.COLLISION if self._parts.looks[leg.chain[-1]] else Role.SOLE
         box = {"class": role.value, "type": "box", "size": size, "material": "rubber", **_pose(middle)}
         ElementTree.SubElement(body, "geom", box, name=f"{side}_sole_box")
         ElementTree.SubElement(body, "site", _pose(frame), name=f"{side}_sole", size="0.005", group="4")

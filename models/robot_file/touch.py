@@ -7,6 +7,7 @@ import numpy as np
 import pinocchio as pin
 
 from surefoot.engine import mujoco
+from surefoot.models.convert import Coordinates
 from surefoot.models.robot_file.engine_mesh import compiled, taken
 from surefoot.models.robot_file.legs import SIDES, Leg
 from surefoot.models.robot_file.meshes import Faces, hull
@@ -44,7 +45,7 @@ def find_hulls(reduced: Reduced, legs: tuple[Leg, Leg], upper: Upper) -> dict[in
     """Hulls by joint: of trunk, arms, thighs and shanks; feet touch with their soles."""
     model = reduced.model
     total = sum(inertia.mass for inertia in model.inertias)
-    legged = {joint for leg in legs for joint in leg.joints}
+    legged = {joint for leg in legs for joint in leg.chain}
     wanted = {joint for leg in legs for joint in (leg.thigh, leg.shank)}
     wanted |= {arm[-1] for arm in upper.arms}
     wanted |= {
@@ -80,10 +81,10 @@ def overlapping(
         near: the distance [m].
     """
     model = compiled(mjcf)
-    data = mujoco.MjData(model)
+    data, coordinates = mujoco.MjData(model), Coordinates(model)
     found: dict[tuple[str, str], None] = {}
     for angles in postures:
-        data.qpos[7:] = angles
+        coordinates.bend(angles, data.qpos)
         mujoco.mj_kinematics(model, data)
         for one, other in itertools.combinations(sorted(bodies), 2):
             if parents[other] != one:
@@ -128,7 +129,7 @@ def shank_spacing(data: pin.Data, legs: tuple[Leg, Leg], hulls: dict[int, Hull],
     reach = 0.0
     for side, leg in zip((1.0, -1.0), legs, strict=True):
         knee = leg.shank
-        sole = side * (data.oMi[leg.joints[-1]] * leg.sole.placement).translation[1]
+        sole = side * (data.oMi[leg.chain[-1]] * leg.sole.placement).translation[1]
         points = hulls[knee].vertices if knee in hulls else np.zeros((1, 3))
         lateral = points @ data.oMi[knee].rotation[1] + data.oMi[knee].translation[1]
         reach += float(sole - (side * lateral).min())

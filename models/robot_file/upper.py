@@ -54,7 +54,7 @@ def find_upper(reduced: Reduced, file: RobotFile, legs: tuple[Leg, Leg]) -> Uppe
         RobotError: the file names a torso that is none.
     """
     model = reduced.model
-    below = {joint for leg in legs for joint in leg.joints}
+    below = {joint for leg in legs for joint in leg.chain}
     others = [joint for joint in range(2, model.njoints) if joint not in below]
     arms = _arms(model, others, legs)
     if file.torso is not None:
@@ -122,7 +122,7 @@ def hanging(model: pin.Model, upper: Upper, posture: Array, aside: float) -> Arr
     """
     found, data = posture.copy(), model.createData()
     for side, arm in zip((1.0, -1.0), upper.arms, strict=False):
-        joints = np.array(arm) - 2
+        joints = np.array([model.idx_qs[joint] - 7 for joint in arm])
         lower, upper_limit = model.lowerPositionLimit[7:][joints], model.upperPositionLimit[7:][joints]
         room = np.minimum(_ROOM, (upper_limit - lower) / 6)
         low, high = lower + room, upper_limit - room
@@ -146,7 +146,7 @@ def _astray(
     pin.computeJointJacobians(model, data, q)
     shoulder = data.oMi[arm[0]].translation.copy()
     total = sum(model.inertias[joint].mass for joint in arm)
-    columns = [joint + 4 for joint in arm]
+    columns = [model.idx_vs[joint] for joint in arm]
     errors, rows = [], []
     for joint in arm:
         inertia, place = model.inertias[joint], data.oMi[joint]

@@ -6,7 +6,7 @@ Unlike MJCF, URDF is open: an element that is not here is of some other program,
 from collections.abc import Iterator
 
 from surefoot.models.robot_file.document import Node, number, refuse
-from surefoot.models.robot_file.mjcf_schema import STILL, TOUCH, Elements, Fate
+from surefoot.models.robot_file.mjcf_schema import FOLLOWING, STILL, TOUCH, Elements, Fate
 from surefoot.models.robot_file.sift import Absent
 
 _OTHERS = "other programs read it"
@@ -20,7 +20,7 @@ URDF_ELEMENTS = (
     Elements(Fate.KEPT, "", "joint", attributes="name type"),
     Elements(Fate.KEPT, "joint", "parent child origin axis"),
     Elements(Fate.KEPT, "joint", "limit", attributes="lower upper effort velocity"),
-    Elements(Fate.BINDING, "joint", "mimic", "a joint of a leg needs a motor of its own; others are locked"),
+    Elements(Fate.COUPLING, "joint", "mimic", FOLLOWING),
     Elements(
         Fate.LEFT_OUT,
         "joint",

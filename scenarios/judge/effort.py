@@ -51,7 +51,8 @@ def joint_speed_ratio(run: RunView) -> Array:
 def knee_flexion(run: RunView) -> Array:
     """Mean flexion of the knees at each tick, shape (n,) [rad]."""
     straight = run.constants.knee_straight or 0.0
-    return np.asarray(np.abs(run.field("/measurement", "joint_position")[:, run.knees] - straight).mean(axis=1))
+    bend = np.abs(run.field("/measurement", "joint_position")[:, run.knees] - straight)
+    return np.asarray((bend * (run.constants.knee_turn or 1.0)).mean(axis=1))
 
 
 @reduction("/measurement")
@@ -87,6 +88,13 @@ def torque_at_limit_fraction(run: RunView) -> float:
 def joint_limit_margin_min(run: RunView) -> float:
     """Least distance of a joint from its limits, negative beyond them [rad]."""
     return 0.0 - float(run.reduced(joint_overrun)[:, 0].max())
+
+
+@metric(unit="rad", shown=(1e3, "mrad"), reads={"/coupling": ("apart",)}, body=True, least=0.0)
+def coupling_error(run: RunView) -> float | None:
+    """Largest distance of a joint that follows another one from where it belongs [rad]."""
+    apart = run.log["/coupling"].field("apart")
+    return float(np.abs(apart).max()) if apart.size else None
 
 
 @metric(shown=(1e2, "% of no-load speed"), reduces=(joint_speed_ratio,), body=True)

@@ -24,6 +24,7 @@ class Sizes:
         nv: velocity coordinates.
         horizon: samples of the planner's preview.
         tasks: names and sizes of the whole-body tasks.
+        nf: joints that follow others.
     """
 
     nj: int
@@ -31,6 +32,7 @@ class Sizes:
     nv: int
     horizon: int
     tasks: TaskLayout = DEFAULT_LAYOUT
+    nf: int = 0
 
 
 def _real(name: str, shape: int | tuple[int, ...], unit: str, frame: str, doc: str) -> FieldSpec:
@@ -295,6 +297,13 @@ def torque(n: Sizes) -> ChannelSpec:
         _scalar("limit_ratio_max", "-", "largest torque over its limit"),
     )
     return ChannelSpec("/torque", "JointTorque", fields, doc_of(torque))
+
+
+@cache
+def coupling(n: Sizes) -> ChannelSpec:
+    """How well the simulator holds joints that follow others, every control tick; only of a robot that has such."""
+    fields = (_real("apart", n.nf, "rad", "", "of each from where the joint that it follows would have it"),)
+    return ChannelSpec("/coupling", "Coupling", fields, doc_of(coupling))
 
 
 @cache

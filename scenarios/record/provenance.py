@@ -95,6 +95,7 @@ class RunConstants:
         velocity_limit: no-load speed by joint; empty in a log that lacks them [rad/s].
         plane: height of the ground plane; a log has it where it is not 0 [m].
         knee_straight: angles of the knees at which the legs are straight; a log has it where they are not 0 [rad].
+        knee_turn: turn of the shanks for an angle of the knees; a log has it where that is not 1 [-].
         unforeseen: numbers of the boxes that are not where planner and controller believe them to be, by the key of the
             scenario that has put them there; a log has it where there are any.
         waypoints: places to go to one after another, as x, y [m] and heading [rad] in the world; likewise.
@@ -123,6 +124,7 @@ class RunConstants:
     plane: float = 0.0
     size: tuple[float, float] = (1.0, 1.0)
     knee_straight: tuple[float, ...] = ()
+    knee_turn: tuple[float, ...] = ()
     unforeseen: Mapping[str, tuple[int, ...]] = field(default_factory=dict)
     waypoints: tuple[tuple[float, float, float], ...] = ()
 
@@ -138,7 +140,7 @@ class RunConstants:
             del written["plane"]
         if self.size == (1.0, 1.0):
             del written["size"]
-        for name in ("knee_straight", "unforeseen", "waypoints"):
+        for name in ("knee_straight", "knee_turn", "unforeseen", "waypoints"):
             if not written[name]:
                 del written[name]
         return {name: json.dumps(value) for name, value in written.items()}
@@ -177,8 +179,9 @@ class RunConstants:
                 return f"{name}, {getattr(self, name)}"
         if not all(0.0 < part < _GREATEST for part in self.size):
             return f"size, {self.size}"
-        if len(self.knee_straight) not in (0, len(self.roles.get("knees", ()))):
-            return f"knee_straight, {self.knee_straight}"
+        for name in ("knee_straight", "knee_turn"):
+            if len(getattr(self, name)) not in (0, len(self.roles.get("knees", ()))):
+                return f"{name}, {getattr(self, name)}"
         if self.steps_planned < 0 or self.fidelity not in ("full", "pendulum"):
             return f"number of steps or fidelity, {self.steps_planned}, {self.fidelity}"
         for name in ("torque_limit", "position_lower", "position_upper"):

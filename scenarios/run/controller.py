@@ -149,7 +149,8 @@ class Controller:
         """Of what is logged of it; there are none before the first `reset`."""
         layout = self.whole_body.layout
         horizon, tasks = self.planning.planner.parameters.horizon, self.whole_body.task_layout
-        return Sizes(nj=layout.joints, nq=len(self.posture), nv=layout.nv, horizon=horizon, tasks=tasks)
+        nf = len(self.walk.robot.couplings)
+        return Sizes(nj=layout.joints, nq=len(self.posture), nv=layout.nv, horizon=horizon, tasks=tasks, nf=nf)
 
     def step(
         self,

@@ -19,6 +19,7 @@ from surefoot.scenarios.file.registries import DEFAULTS, PLANT_NAMES
 from surefoot.scenarios.judge.body import lies
 from surefoot.scenarios.log import AttachedFile, LogWriter
 from surefoot.scenarios.record.body import Recorder
+from surefoot.scenarios.record.coupling import CouplingRecorder
 from surefoot.scenarios.record.estimation import EstimationRecorder
 from surefoot.scenarios.record.foxglove.views import BodyView
 from surefoot.scenarios.record.provenance import WORLD_FILE
@@ -83,7 +84,10 @@ def full_loop(walk: Walk, writer: LogWriter, parts: Parts | None = None) -> Clos
     body_recorder, recorder = Recorder(writer, sizes, walk.robot.torque_limit), WalkRecorder(writer, sizes)
     view = BodyView(writer, world, walk.robot, walk.rates.control)
     sensed = EstimationRecorder(writer, sizes) if sensors is not None else None
-    walker = WholeBody(controller, plant, sensors, body_recorder, view, sensed)
+    coupled = None
+    if isinstance(plant, World) and sizes.nf:
+        coupled = CouplingRecorder(writer, sizes, plant)
+    walker = WholeBody(controller, plant, sensors, body_recorder, view, sensed, coupled)
     return ClosedLoop.of(walk, walker, recorder)
 
 
@@ -123,6 +127,7 @@ class WholeBody:
         recorder: of its channels.
         view: of what MCAP viewers show.
         sensed: record what sensors say and what is made of it; None for an estimator that senses nothing.
+        coupled: record how joints follow others; None of a robot that has no such joints, and of another plant.
 
     Attributes:
         mind: its controller.
@@ -138,11 +143,12 @@ class WholeBody:
         recorder: Recorder,
         view: BodyView,
         sensed: EstimationRecorder | None = None,
+        coupled: CouplingRecorder | None = None,
     ) -> None:
         self.mind, self.plant, self._sensors = mind, plant, sensors
         self._foreign = not isinstance(plant, World)
         self._says_tick = self._foreign and hasattr(plant, "control_tick")
-        self._recorder, self._view, self._sensed = recorder, view, sensed
+        self._recorder, self._view, self._sensed, self._coupled = recorder, view, sensed, coupled
         walk = mind.walk
         # The controller's terms are those of the true robot in its true state where nothing is believed or estimated.
         known = mind.senses.is_truth and walk.true_robot is walk.robot
@@ -198,6 +204,8 @@ class WholeBody:
         """See `Walker`."""
         mind, truth, terms = self.mind, self._truth, self.mind.terms
         self._recorder.tick(now_ns, self.measurement, truth, terms, sample, mind.report, self._command.torque)
+        if self._coupled is not None:
+            self._coupled.tick(now_ns)
         if self._sensed is not None and isinstance(self._readings, Readings):
             forces = self.measurement.wrench[:, 2]
             self._sensed.tick(now_ns, self._readings, mind.estimate, mind.wrench, terms, truth, forces)

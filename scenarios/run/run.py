@@ -12,7 +12,7 @@ from threadpoolctl import ThreadpoolController, threadpool_limits
 
 from surefoot.errors import PartError
 from surefoot.guard import said, shown
-from surefoot.models.facts import knees_straight, named_roles
+from surefoot.models.facts import knees_straight, knees_turn, named_roles
 from surefoot.models.mjcf import without_looks
 from surefoot.native import modules
 from surefoot.planner.laws.profiles import Profile
@@ -287,6 +287,7 @@ def run_constants(walk: Walk) -> RunConstants:
         plane=walk.ground.true_terrain.plane,
         size=(walk.size.length, walk.size.mass),
         knee_straight=knees_straight(robot),
+        knee_turn=knees_turn(robot),
         unforeseen=walk.unforeseen,
         waypoints=tuple(place[:3] for place in walk.waypoints),
     )

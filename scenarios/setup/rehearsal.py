@@ -6,7 +6,7 @@ from typing import TYPE_CHECKING
 import numpy as np
 
 from surefoot.errors import ParameterError, at_most
-from surefoot.models.facts import ankle_pitch, pitch_joints, shank_outline, yaw_joint
+from surefoot.models.facts import ankle_pitch, knee_turn, pitch_joints, shank_outline, yaw_joint
 from surefoot.planner.plants import IdealFeet
 from surefoot.planner.sampling import PlanSampler
 from surefoot.planner.types import Array, CentroidalState, FeetState, Foot, PhaseKind
@@ -156,6 +156,7 @@ def joint_angles(joints: tuple[Array, Array, Array], way: Rehearsed) -> Array:
 
 def _check_speeds(robot: "RobotDescription", angles: Array, sample_time: float) -> None:
     speed = np.abs(np.gradient(angles, sample_time, axis=2)).max(axis=2)
+    speed[1] /= [knee_turn(robot, foot) for foot in Foot]
     names = [pitch_joints(robot, foot) for foot in Foot]
     limits = np.array([[robot.velocity_limit[robot.joint_names.index(names[k][j])] for k in (0, 1)] for j in range(3)])
     joint, foot = np.unravel_index(np.argmax(speed / limits), speed.shape)

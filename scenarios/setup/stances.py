@@ -18,6 +18,7 @@ from dataclasses import replace
 import numpy as np
 
 from surefoot.errors import ParameterError
+from surefoot.models.facts import knee_turn
 from surefoot.planner.geometry import frame_rotation, sole_angles, sole_pose
 from surefoot.planner.steps.footsteps import plan_footsteps
 from surefoot.planner.steps.gait import GaitParameters
@@ -102,9 +103,9 @@ def least_bend(walk: Walk, body: Body) -> float | None:
     """
     q, ik = start_posture(walk, body), body.ik(body.robot.nominal_joint_positions)
     knees = list(body.robot.joint_indices(body.robot.roles.knees))
-    straight = body.robot.straight_joint_positions[knees]
+    straight, turn = body.robot.straight_joint_positions[knees], np.array([knee_turn(body.robot, k) for k in (0, 1)])
     taken = [_taken(ik, walk, stance, q, _EXACTLY).q for stance in _stances(walk)]
-    return min((float(np.abs(one[7:][knees] - straight).min()) for one in taken), default=None)
+    return min((float((turn * np.abs(one[7:][knees] - straight)).min()) for one in taken), default=None)
 
 
 _WAYS = (-0.06, 0.03)

@@ -32,20 +32,20 @@ def touching(log: Log) -> tuple[Touch, ...]:
         return ()
     # Few runs get here, and the others need no engine.
     from surefoot.engine import mujoco
-    from surefoot.models.convert import pinocchio_to_mujoco
+    from surefoot.models.convert import Coordinates
     from surefoot.scenarios.show.replay.extract import world
 
     try:
         _, model = world(log)
     except LogError:
         return ()
-    data, found, still = mujoco.MjData(model), dict[tuple[str, str], float](), np.zeros(model.nv)
+    data, found, coordinates = mujoco.MjData(model), dict[tuple[str, str], float](), Coordinates(model)
     chosen = np.unique(np.linspace(0, ticks.size - 1, min(ticks.size, MOST_TICKS)).astype(int))
     for time in truth.time[ticks[chosen]].tolist():
         state = log.window("/truth", time, time).field("q")[0]
-        if state.shape != (model.nq,):
+        if state.shape != (coordinates.size,):
             return ()
-        pinocchio_to_mujoco(state, still, data.qpos, data.qvel)
+        coordinates.to_mujoco(state, np.zeros(coordinates.size - 1), data.qpos, data.qvel)
         mujoco.mj_fwdPosition(model, data)
         for bodies in model.geom_bodyid[data.contact.geom]:
             if bodies.all():

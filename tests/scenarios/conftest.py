@@ -178,6 +178,7 @@ def robot() -> SimpleNamespace:
         position_lower=np.full(4, -0.6),
         position_upper=np.full(4, 2.0),
         left_out=(),
+        couplings=(),
     )
 
 

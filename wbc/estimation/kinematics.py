@@ -9,6 +9,7 @@ import pinocchio as pin
 
 from surefoot import algebra, linear
 from surefoot.algebra import Vector
+from surefoot.mimic import JointColumns
 from surefoot.wbc.estimation.footing import ImuMount
 from surefoot.wbc.estimation.stand import AXES
 from surefoot.wbc.leaning import line_centre
@@ -73,6 +74,7 @@ class SensedBody:
             if not model.existFrame(name):
                 raise ValueError(f"robot '{model.name}' has no frame '{name}'")
         self.model, self._data, self.leaning = model, model.createData(), leaning
+        self._columns = JointColumns(model, self._data)
         self.mass = float(sum(inertia.mass for inertia in model.inertias))
         frames = [model.getFrameId(name) for name in soles]
         self._left, self._right = (Sole(model, self._data, frame) for frame in frames)
@@ -85,7 +87,7 @@ class SensedBody:
         self.jacobian = self._jacobian = np.zeros((2, 6, len(self.chain) + AXES))
         self.jacobian[:, 3:, -AXES:] = np.eye(3)
         data = self._data
-        self._joint_jacobian, self._com_jacobian, self._com = data.J, data.Jcom, data.com[0]
+        self._joint_jacobian, self._com_jacobian, self._com = self._columns.values, data.Jcom, data.com[0]
 
     def _mount_imu(self, model: pin.Model, mount: ImuMount) -> None:
         placed, parent = pin.SE3(np.array(mount.rotation), np.array(mount.position)), 1
@@ -158,6 +160,7 @@ class SensedBody:
             IMU. At the angles last taken; the next call writes over them.
         """
         pin.computeJointJacobians(self.model, self._data)
+        self._columns.update()
         for k in range(2):
             self._by_joints(k)
             self._by_mount(k)
@@ -269,7 +272,7 @@ def _between(model: pin.Model, carrier: int, carriers: list[int]) -> Array:
     found: set[int] = set()
     for joint in carriers:
         found |= up ^ set(_ancestors(model, joint))
-    return np.array(sorted(model.idx_vs[joint] - 6 for joint in found), dtype=np.intp)
+    return np.array(sorted({model.idx_vs[joint] - 6 for joint in found}), dtype=np.intp)
 
 
 def supporting(model: pin.Model, carriers: tuple[int, ...]) -> Array:

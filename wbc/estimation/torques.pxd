@@ -6,10 +6,10 @@ from surefoot.wbc.estimation.kinematics cimport Sole
 cdef double LEVER, BASE_NOISE
 
 cdef class TorqueWrench:
-    cdef readonly object wrench
+    cdef readonly object wrench, residual
     cdef readonly tuple deviation
     cdef readonly double late
-    cdef object _model, _data, _spreads
+    cdef object _model, _data, _columns, _dynamics, _spreads
     cdef double _period, _gain, _torque_noise
     cdef bint _held, _begun
     cdef Sole _left, _right

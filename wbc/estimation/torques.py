@@ -6,6 +6,7 @@ import numpy as np
 import pinocchio as pin
 
 from surefoot import algebra, linear
+from surefoot.mimic import Dynamics, JointColumns
 from surefoot.wbc.estimation.kinematics import Sole, supporting
 from surefoot.wbc.estimation.parameters import SensorNoise
 from surefoot.wbc.types import Array, RobotState
@@ -52,6 +53,7 @@ class TorqueWrench:
 
     Attributes:
         wrench: as of the last call, shape (2, 6) [N, N·m]; not finite where the state was not.
+        residual: Σ J_kᵀ w_k as the observer has it, shape (nv,) [N, N·m].
         deviation: of its forces and of its moments, the largest [N, N·m].
         late: by how much the low pass makes it later [s].
     """
@@ -60,6 +62,7 @@ class TorqueWrench:
         self, model: pin.Model, soles: tuple[str, str], period: float, sensors: SensorNoise, held: bool = True
     ) -> None:
         self._model, self._data, self._period, self._held = model, model.createData(), period, held
+        self._columns, self._dynamics = JointColumns(model, self._data), Dynamics(model, self._data)
         frames = [model.getFrameId(name) for name in soles]
         self._left, self._right = (Sole(model, self._data, frame) for frame in frames)
         # As in an α-β filter the noise grows with the bandwidth faster than the lag falls.
@@ -72,7 +75,8 @@ class TorqueWrench:
         base = np.repeat(np.square(BASE), 3) * differenced
         self._velocity_noise = np.concatenate((base, np.full(model.nv - 6, rate**2 * differenced)))
         self._torque_noise = (sensors.joint_torque**2 + 0.05**2) * passed
-        self._begun, self._residual = False, np.zeros(model.nv)
+        self._begun, self.residual = False, np.zeros(model.nv)
+        self._residual = self.residual
         self._momentum, self._driven, self._torque = np.zeros(model.nv), np.zeros(model.nv), np.zeros(model.nv - 6)
         # The base moves both soles.
         carriers = tuple(model.frames[frame].parentJoint for frame in frames)
@@ -84,7 +88,8 @@ class TorqueWrench:
     def _share_memory(self, nv: int, m: int) -> None:
         """See Pinocchio's data, of which a row here is a column there, and have room for what lies between."""
         data = self._data
-        self._upper, self._M, self._C, self._gravity, self._J = data.M, data.M.T, data.C.T, data.g, data.J.T
+        self._upper, self._M, self._gravity = data.M, data.M.T, data.g
+        self._C, self._J = self._dynamics.C.T, self._columns.values.T
         self._M_v, self._C_v = np.zeros(nv), np.zeros(nv)
         self._some, self._noisy, self._noise = np.zeros((m, nv)), np.zeros((m, nv)), np.zeros((m, m))
         # Beside the Jacobian stands the residual, beside the normal equations their right side.
@@ -110,10 +115,11 @@ class TorqueWrench:
             raise ValueError(
                 f"velocities of shape {v.shape} and torques of shape {torque.shape} of {model.nv - 6} joints"
             )
-        pin.computeCoriolisMatrix(model, data, q, v)
-        pin.crba(model, data, q)
+        self._dynamics.coriolis(q, v)
+        self._dynamics.mass_matrix(q)
         pin.computeGeneralizedGravity(model, data, q)
         pin.computeJointJacobians(model, data, q)
+        self._columns.update()
         # At first there is no span.
         span, self._begun = (passed or self._period) if self._begun else 0.0, True
         linear.mirror(self._upper)

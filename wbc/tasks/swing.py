@@ -98,7 +98,7 @@ def _ankles(model: pin.Model, frames: BodyFrames) -> tuple[Array, tuple[tuple[in
     ankles = np.array([sole.placement.inverse().translation for sole in soles]) * (1.0, 0.0, 1.0)
     joints, data = 2 if frames.leaning is None else 1, model.createData()
     supports = (model.supports[sole.parentJoint] for sole in soles)
-    columns = tuple(tuple(model.joints[j].idx_v for j in list(chain)[-joints:]) for chain in supports)
+    columns = tuple(tuple(model.joints[j].idx_v for j in list(chain) if model.nvs[j])[-joints:] for chain in supports)
     rolling = tuple(_rolling(model, data, name, of) for name, of in zip(frames.soles, columns, strict=True))
     return ankles, columns, rolling
 

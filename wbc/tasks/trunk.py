@@ -86,8 +86,11 @@ def _rolls(model: pin.Model, frames: BodyFrames) -> tuple[tuple[int, float], ...
     data, found = model.createData(), []
     pin.computeJointJacobians(model, data, pin.neutral(model))
     for name in frames.soles:
-        above = list(model.supports[model.frames[model.getFrameId(name)].parentJoint])[2:-2]
-        ahead = {model.joints[joint].idx_v: float(data.J[3, model.joints[joint].idx_v]) for joint in above}
+        chain = [
+            joint for joint in model.supports[model.frames[model.getFrameId(name)].parentJoint] if model.nvs[joint]
+        ]
+        above = chain[1:-2]
+        ahead = {model.joints[joint].idx_v: float(data.J[3, model.idx_vExtendeds[joint]]) for joint in above}
         column = max(ahead, key=lambda column: abs(ahead[column]))
         found.append((column, math.copysign(1.0, ahead[column])))
     return tuple(found)

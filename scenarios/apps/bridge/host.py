@@ -159,7 +159,7 @@ class Host:
             return self._limits.damping
         if self._answered.tick < 0:
             return self._held
-        command, bent = self._limits.within(self._command, self._world.data.qpos[7:])
+        command, bent = self._limits.within(self._command, self._world.angles)
         if bent:
             self._answered = replace(self._answered, limited=self._answered.limited + 1)
         if self.time < self._care.soft_start:

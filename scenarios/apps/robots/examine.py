@@ -12,6 +12,7 @@ from numpy.typing import NDArray
 
 from surefoot.engine import mujoco
 from surefoot.models.consistency import EnginePair
+from surefoot.models.convert import Coordinates
 from surefoot.models.facts import facts_of
 from surefoot.models.registry import UnknownRobotError, explain
 from surefoot.models.robot_file.build import Explanation
@@ -199,8 +200,7 @@ def _touching(robot: RobotDescription, q: Array) -> tuple[tuple[str, str], ...]:
     """Bodies that touch at a configuration in Pinocchio's convention."""
     model = mujoco.MjModel.from_xml_string(robot.mjcf)
     data = mujoco.MjData(model)
-    data.qpos[:] = q
-    data.qpos[3:7] = q[[6, 3, 4, 5]]
+    Coordinates(model).to_mujoco(q, np.zeros(len(q) - 1), data.qpos, data.qvel)
     mujoco.mj_forward(model, data)
     found = []
     for contact in data.contact[: data.ncon]:
@@ -227,7 +227,8 @@ def print_examination(explained: Explanation, found: Examination) -> None:
 
 def _facts(robot: RobotDescription) -> Iterator[tuple[str, str]]:
     yield "mass", f"{robot.mass:.2f} kg"
-    yield "joints", f"{len(robot.joint_names)}, {len(robot.roles.legs)} of them in the legs"
+    following = f"; {', '.join(one.follower for one in robot.couplings)} follow" if robot.couplings else ""
+    yield "joints", f"{len(robot.joint_names)}, {len(robot.roles.legs)} of them in the legs{following}"
     for side, leg in (("left", robot.roles.left_leg), ("right", robot.roles.right_leg)):
         yield f"{side} leg", ", ".join(leg)
     yield "knees", ", ".join(robot.roles.knees)

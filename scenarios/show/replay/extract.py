@@ -8,6 +8,7 @@ import numpy as np
 from scipy.spatial.transform import Rotation
 
 from surefoot.engine import mujoco
+from surefoot.models.convert import Coordinates
 from surefoot.scenarios.columns import Reads
 from surefoot.scenarios.errors import LogError
 from surefoot.scenarios.judge.body import torso
@@ -106,7 +107,7 @@ def extract(log: Log, window: ReplayWindow | None = None) -> Replay:
     run = RunView(Window(log, log.gather(READS, before, window.end)), constants)
     frames = choose_frames(run, window, log.time_range())
     configurations = run.field("/truth", "q")[frames.rows]
-    if configurations.shape[1] != model.nq:
+    if configurations.shape[1] != Coordinates(model).size:
         raise LogError(f"{log.path}: /truth and world.xml are of different robots; replay needs an intact log")
     position, quaternion = _body_poses(model, configurations)
     names = tuple(model.body(body).name for body in range(model.nbody))

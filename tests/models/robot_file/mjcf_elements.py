@@ -177,7 +177,7 @@ BOUND = {
         ("left_ankle_pitch", "left_ankle_roll"),
     ),
     "weld": ('<weld name="loop" body1="left_ankle" body2="left_foot"/>', ("left_ankle_roll",)),
-    "joint": ('<joint name="loop" joint1="left_knee" joint2="left_pitch"/>', ("left_knee",)),
+    "joint": ('<joint name="loop" joint1="left_knee" joint2="left_roll"/>', ("left_knee",)),
     "tendon": ('<tendon name="loop" tendon1="ankles"/>', ("left_ankle_pitch", "left_ankle_roll")),
 }
 """An equality of each kind, and joints that it binds."""

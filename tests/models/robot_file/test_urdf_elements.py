@@ -90,8 +90,8 @@ def test_losses_of_zero_are_no_losses(tmp_path):
 
 
 def test_a_joint_of_a_leg_that_follows_another_is_refused_by_both_names(tmp_path):
-    text = biped.Biped(changes={KNEE: f'{KNEE}<mimic joint="left_pitch" multiplier="-2"/>'}).urdf()
-    said = r"joint 'left_knee' of biped is in a leg and cannot be driven \(by mimic it follows 'left_pitch'\)"
+    text = biped.Biped(changes={KNEE: f'{KNEE}<mimic joint="left_roll" multiplier="-2"/>'}).urdf()
+    said = r"joint 'left_knee' of biped is in a leg and cannot be driven \(by mimic it follows 'left_roll'\)"
     with pytest.raises(RobotError, match=said):
         read_text(tmp_path, text)
 

@@ -22,7 +22,7 @@ NAMES = (
     "footstep_error_max stair_edge_margin_min swing_clearance_min foot_slip_max stance_twist_max stance_tilt_max "
     "contact_force_peak unplanned_flight_time self_contact_time "
     "torque_ratio_max knee_torque_rms torque_at_limit_fraction "
-    "joint_limit_margin_min joint_speed_ratio_max knee_angle_mean cost_of_transport speed_mean "
+    "joint_limit_margin_min coupling_error joint_speed_ratio_max knee_angle_mean cost_of_transport speed_mean "
     "path_length displacement heading_change com_height_range estimation_error_rms planner_infeasible_fraction "
     "dcm_estimation_error_rms planner_time wbc_time controller_time deadlines_missed "
     "real_time_factor memory_growth qp_failures wbc_fallbacks log_bytes "
@@ -50,6 +50,7 @@ def test_all_names_of_the_contract_are_there(metrics, motion):
         "heading_error",
         "waypoints_missed",
         "stair_edge_margin_min",
+        "coupling_error",
         "memory_growth",
         *NAMES.split()[-15:-7],
         *NAMES.split()[-5:],

@@ -52,7 +52,7 @@ BASELINE = {"x86_64": ("-march=x86-64-v2",), "AMD64": ("-march=x86-64-v2",)}
 LINK = {"darwin": ("-bundle", "-undefined", "dynamic_lookup")}.get(sys.platform, ("-shared",))
 
 
-SLOWER = 10
+SLOWER = 13
 """About how many times as long as a compiled walk an interpreted one takes."""
 
 MOST_LINES = 30

@@ -86,18 +86,19 @@ class Dynamics:
         data: where the results are, but for the Coriolis matrix of a model with followers.
 
     Attributes:
+        data: as given.
         C: of `coriolis`, shape (nv, nv), columns side by side in memory.
     """
 
     def __init__(self, model: pin.Model, data: pin.Data) -> None:
-        self._model, self._data = model, data
+        self._model, self.data = model, data
         self._tree = Tree(model) if has_followers(model) else None
         self._still = np.zeros(model.nv)
         self.C: Array = data.C if self._tree is None else np.zeros((model.nv, model.nv), order="F")
 
     def all_terms(self, q: Array, v: Array) -> None:
         """As `pin.computeAllTerms`, with q, shape (nq,), and v, shape (nv,)."""
-        model, data = self._model, self._data
+        model, data = self._model, self.data
         if self._tree is None:
             pin.computeAllTerms(model, data, q, v)
             return
@@ -113,17 +114,17 @@ class Dynamics:
         """As `pin.crba`, both triangles, in `data.M`."""
         tree = self._tree
         if tree is None:
-            pin.crba(self._model, self._data, q)
+            pin.crba(self._model, self.data, q)
             return
         upper = np.triu(pin.crba(tree.model, tree.data, tree.configuration(q)))
         M, G = upper + np.triu(upper, 1).T, tree.G
-        self._data.M[:] = G.T @ M @ G + np.diag(self._model.armature)
+        self.data.M[:] = G.T @ M @ G + np.diag(self._model.armature)
 
     def coriolis(self, q: Array, v: Array) -> None:
         """As `pin.computeCoriolisMatrix`: C of h = C v + g for which M' = C + Cᵀ, and so Cᵀ v of the momentum M v."""
         tree = self._tree
         if tree is None:
-            pin.computeCoriolisMatrix(self._model, self._data, q, v)
+            pin.computeCoriolisMatrix(self._model, self.data, q, v)
             return
         C = pin.computeCoriolisMatrix(tree.model, tree.data, tree.configuration(q), tree.G @ v)
         self.C[:] = tree.G.T @ C @ tree.G

@@ -144,7 +144,7 @@ def test_the_coriolis_matrix_gives_the_rate_of_momentum(models):
     short, _ = models
     q, v = next(states(short))
     dynamics = mimic.Dynamics(short, short.createData())
-    data, step = dynamics._data, 1e-6
+    data, step = dynamics.data, 1e-6
     a = np.random.default_rng(2).normal(size=short.nv)
     momenta = []
     for time in (-step, step):

@@ -2,6 +2,7 @@ cimport cython
 cimport libc.math as math
 from surefoot cimport algebra
 from surefoot.algebra cimport vector3
+from surefoot.mimic cimport Dynamics, JointColumns
 from surefoot.wbc.frame cimport Frame
 
 cdef class RobotTerms:
@@ -14,8 +15,9 @@ cdef class RobotTerms:
     cdef readonly object torso_rotation, torso_position, torso_jacobian, torso_velocity, torso_bias
     cdef readonly object sole_position, sole_rotation, sole_pose, contact_position, contact_rotation
     cdef readonly object contact_jacobian, sole_jacobian, sole_velocity, sole_bias, sole_wrench_map
-    cdef readonly object columns
-    cdef object _mass_diagonal, _dynamics
+    cdef readonly JointColumns columns
+    cdef Dynamics _dynamics
+    cdef object _mass_diagonal
     cdef int _torso_frame
     cdef bint _shifted_left, _shifted_right
     cdef Frame _left, _right, _torso

@@ -1,6 +1,7 @@
 cimport cython
 from surefoot cimport algebra, linear
 from surefoot.algebra cimport vector3
+from surefoot.mimic cimport JointColumns
 
 @cython.final
 cdef class Sole:
@@ -19,7 +20,8 @@ cdef class SensedBody:
     cdef readonly object model, chain, position, rotation, jacobian, leaning
     cdef readonly double mass
     cdef readonly bint behind
-    cdef object _data, _columns, _q, _v
+    cdef object _data, _q, _v
+    cdef JointColumns _columns
     cdef Sole _left, _right
     cdef Py_ssize_t _parent
     cdef const Py_ssize_t[::1] _chain

@@ -1,6 +1,7 @@
 cimport cython
 from surefoot cimport algebra, linear
 from surefoot.algebra cimport vector3
+from surefoot.mimic cimport Dynamics, JointColumns
 from surefoot.wbc.estimation.kinematics cimport Sole
 
 cdef double LEVER, BASE_NOISE
@@ -9,7 +10,9 @@ cdef class TorqueWrench:
     cdef readonly object wrench, residual
     cdef readonly tuple deviation
     cdef readonly double late
-    cdef object _model, _data, _columns, _dynamics, _spreads
+    cdef object _model, _data, _spreads
+    cdef JointColumns _columns
+    cdef Dynamics _dynamics
     cdef double _period, _gain, _torque_noise
     cdef bint _held, _begun
     cdef Sole _left, _right

@@ -24,6 +24,5 @@ cdef class CaptureMargin:
     cdef void _find(self, Py_ssize_t steps, bint fixed) noexcept
     @cython.locals(m=Py_ssize_t, e=Py_ssize_t, box=Py_ssize_t, least=double, margin=double)
     cdef void _catch(self, double double, double single, Py_ssize_t steps, bint fixed) noexcept
-    cdef double _growth(self, double double, double single) noexcept
     @cython.locals(step=StepReach, e=Py_ssize_t, axis=Py_ssize_t, place=double, edge=double)
-    cdef void _limit(self, double double, double single, Py_ssize_t box, bint fixed) noexcept
+    cdef void _limit(self, Py_ssize_t box, double single, double grown, double doubled, bint fixed) noexcept

@@ -130,11 +130,12 @@ class CaptureMargin:
 
     def _catch(self, double: float, single: float, steps: int, fixed: bool) -> None:
         """Let `_margins` grow to what a landing at one time captures, in the best of its boxes."""
+        grown, doubled = math.exp(self._omega * single), math.exp(self._omega * double)
+        growth = doubled * grown if self._reach.double != 0.0 else grown
+        shrunk = 1.0 / growth
+        spread = 2.0 / (growth + shrunk)
         for box in range(1 if fixed else self._reach.boxes):
-            self._limit(double, single, box, fixed)
-            growth = self._growth(double, single)
-            shrunk = 1.0 / growth
-            spread = 2.0 / (growth + shrunk)
+            self._limit(box, single, grown, doubled, fixed)
             for m in range(steps):
                 least = algebra.INFINITY
                 for e in range(EDGES):
@@ -147,20 +148,16 @@ class CaptureMargin:
                     least = min(least, margin)
                 self._margins[m] = max(self._margins[m], least)
 
-    def _growth(self, double: float, single: float) -> float:
-        """e^{ωt} until the landing [-]."""
-        grown = math.exp(self._omega * single)
-        return math.exp(self._omega * double) * grown if self._reach.double != 0.0 else grown
-
-    def _limit(self, double: float, single: float, box: int, fixed: bool) -> None:
+    def _limit(self, box: int, single: float, grown: float, doubled: float, fixed: bool) -> None:
         """Set how far each edge of what the landing foot captures lets the DCM be, before what that foot captures.
 
         DCM and CoM at the landing are linear in the DCM here: away + growth here, com + by here. The DCM is held by
         a landing at the place (`_ahead`), by legs that span the feet then (`_spanned`, `_near`), and by the stance foot
-        without it (`_over`).
+        without it (`_over`). Here `grown` and `doubled` are e^{ωT} of single and double support.
         """
-        step, growth = self._reach, self._growth(double, single)
-        grown, doubled, shrunk = math.exp(self._omega * single), math.exp(self._omega * double), 1.0 / growth
+        step = self._reach
+        growth = doubled * grown if step.double != 0.0 else grown
+        shrunk = 1.0 / growth
         spread, by = 2.0 / (growth + shrunk), 2.0 / max(growth - shrunk, 1e-9)
         for e in range(EDGES):
             axis = e % 2

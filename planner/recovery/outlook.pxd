@@ -1,6 +1,6 @@
 cimport cython
-cimport libc.math as math
 from surefoot cimport algebra
+from surefoot.planner.model cimport dcm as law
 
 cdef Py_ssize_t COLUMNS
 
@@ -14,7 +14,6 @@ cdef class Outlook:
 
     cdef void _resize(self, Py_ssize_t count)
     cpdef see(self, window)
-    cdef double weight(self, Py_ssize_t k) noexcept
     @cython.locals(k=Py_ssize_t, axis=Py_ssize_t, margin=double)
     cpdef double margin(self, const double[:] dcm, window)
     @cython.locals(k=Py_ssize_t, axis=Py_ssize_t)

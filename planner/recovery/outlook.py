@@ -1,17 +1,13 @@
 """What the ZMP can still do to the DCM: how far ahead each sample of a window counts, and what that keeps bounded.
 
-The DCM obeys ξ' = (λ/ω) (ξ - p) (see `planner.model.dcm`). Seen from now the ZMP of sample k counts by the weight
-
-    w_k = (d_{k-1} - d_k) / 2 + (d_k - d_{k+1}) / 2,    d_k = e^{-∫λ/ω},
-
-and the last one by d_n in place of the second half. Σ w_k p_k is the DCM that stays bounded.
+The DCM obeys ξ' = (λ/ω) (ξ - p). Seen from now the ZMP of sample k counts by the weight w_k of `planner.model.dcm`.
+Σ w_k p_k is the DCM that stays bounded.
 """
-
-import math
 
 import numpy as np
 
 from surefoot import algebra
+from surefoot.planner.model import dcm as law
 from surefoot.planner.parameters import PlannerParameters
 from surefoot.planner.references.window import Window
 from surefoot.planner.types import Array
@@ -45,20 +41,7 @@ class Outlook:
         self.point, self.gain, self.half_size = driving.point, driving.gain, driving.half_size
         if len(self.stiffness) != self.count:
             self._resize(len(self.stiffness))
-        total = 0.0
-        before = self.stiffness[0] / self.omega[0]
-        self.decay[0] = 1.0
-        for k in range(1, self.count):
-            rate = self.stiffness[k] / self.omega[k]
-            total += rate + before
-            before = rate
-            self.decay[k] = math.exp(-0.5 * self.sample_time * total)
-
-    def weight(self, k: int) -> float:
-        """Weight of a sample [-]."""
-        before = 0.5 * (self.decay[k - 1] - self.decay[k]) if k > 0 else 0.0
-        after = 0.5 * (self.decay[k] - self.decay[k + 1]) if k < self.count - 1 else self.decay[k]
-        return float(before + after)
+        law.fade(self.stiffness, self.omega, self.sample_time, self.decay)
 
     def margin(self, dcm: Array, window: Window) -> float:
         """How far the DCM is inside what the CoP captures with the steps as planned: Σ w (p ± a) of all in sight.
@@ -72,7 +55,7 @@ class Outlook:
         for axis in range(2):
             point, half = 0.0, 0.0
             for k in range(self.count):
-                weight = self.weight(k)
+                weight = law.weight(self.decay, k)
                 point += weight * self.point[k, axis]
                 half += weight * self.half_size[k, axis]
             margin = min(margin, half / self._foot_margin - abs(dcm[axis] - point))
@@ -85,7 +68,7 @@ class Outlook:
         for axis in range(2):
             point = 0.0
             for k in range(self.count):
-                point += self.weight(k) * self.point[k, axis]
+                point += law.weight(self.decay, k) * self.point[k, axis]
             found[axis] = point
         return found
 

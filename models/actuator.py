@@ -1,9 +1,9 @@
 """Geared torque motors: the physical origin of joint torque limits, speed limits and armatures."""
 
+from dataclasses import dataclass
+
 import numpy as np
 from numpy.typing import NDArray
-
-from surefoot.values import dataclass
 
 
 @dataclass(frozen=True, slots=True)

@@ -1,6 +1,6 @@
 """Do the two engines compute the same robot? Both sides of every comparison come from the same MJCF text."""
 
-from dataclasses import astuple
+from dataclasses import astuple, dataclass
 
 import numpy as np
 import pinocchio as pin
@@ -10,7 +10,6 @@ from surefoot.mimic import Dynamics
 from surefoot.models.convert import Array, Coordinates, mujoco_acceleration_to_pinocchio, velocity_map
 from surefoot.models.pinocchio import pinocchio_model
 from surefoot.models.types import RobotDescription
-from surefoot.values import dataclass
 
 _CONTACTS = (
     mujoco.mjtConstraint.mjCNSTR_CONTACT_FRICTIONLESS,

@@ -4,6 +4,7 @@ Masses and shapes are those of the robot upright with straight legs, in MuJoCo.
 """
 
 import math
+from dataclasses import dataclass
 from functools import lru_cache
 from typing import TYPE_CHECKING
 
@@ -14,7 +15,6 @@ from surefoot.models.convert import Coordinates
 from surefoot.models.inertia import LEAST_MASS
 from surefoot.models.types import RobotDescription
 from surefoot.similarity import REFERENCE_SIZE, Similarity
-from surefoot.values import dataclass
 
 if TYPE_CHECKING:
     from surefoot.engine import mujoco

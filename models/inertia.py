@@ -1,8 +1,6 @@
 """Inertials of uniform solids whose principal axes are the body's axes."""
 
-from dataclasses import replace
-
-from surefoot.values import dataclass
+from dataclasses import dataclass, replace
 
 Vector = tuple[float, float, float]
 

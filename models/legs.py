@@ -1,5 +1,6 @@
 """Lengths and masses of a robot's legs: a trunk on two legs of thigh, shank and foot, from the whole body."""
 
+from dataclasses import dataclass
 from typing import NamedTuple
 
 import numpy as np
@@ -7,7 +8,6 @@ import pinocchio as pin
 from numpy.typing import NDArray
 
 from surefoot.models.joints import meeting_point, pivot, world_axis
-from surefoot.values import dataclass
 
 Array = NDArray[np.float64]
 Vector = tuple[float, float, float]

@@ -8,6 +8,7 @@ Robot geoms have contype 2 and conaffinity 3: they touch a terrain of contype 1 
 
 import math
 from collections.abc import Iterable, Iterator, Mapping
+from dataclasses import dataclass
 from enum import Enum
 from functools import lru_cache
 from xml.etree import ElementTree
@@ -15,7 +16,6 @@ from xml.etree import ElementTree
 from surefoot.models.actuator import Actuator
 from surefoot.models.inertia import Inertial, Vector
 from surefoot.models.types import Coupling
-from surefoot.values import dataclass
 
 _RIGID = "1e-06 1.0", "0.9999 0.9999 0.001 0.5 2.0"
 """Time constant and damping ratio of an equality, of which MuJoCo takes two steps at least; and its impedance."""

@@ -2,13 +2,12 @@
 
 import difflib
 from collections.abc import Callable, Iterable
-from dataclasses import fields
+from dataclasses import dataclass, fields
 
 import numpy as np
 from numpy.typing import ArrayLike, NDArray
 
 from surefoot.errors import ParameterError
-from surefoot.values import dataclass
 
 Array = NDArray[np.float64]
 

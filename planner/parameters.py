@@ -1,7 +1,7 @@
 """Parameters of the planner itself, apart from the gait."""
 
 import math
-from dataclasses import field, fields, replace
+from dataclasses import dataclass, field, fields, replace
 from enum import Enum
 
 import numpy as np
@@ -10,7 +10,6 @@ from surefoot.errors import ParameterError
 from surefoot.planner.model.jerk import BLOCK_STARTS
 from surefoot.planner.model.leg_chain import LegChain
 from surefoot.similarity import REFERENCE_SIZE, Similarity, quantity
-from surefoot.values import dataclass
 
 SOLVERS = ("daqp", "piqp")
 """The solvers of qpsolvers that are tried, in this order.

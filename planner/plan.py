@@ -1,7 +1,7 @@
 """What the planner hands over at every tick, and the references that follow from it at any instant."""
 
 from collections.abc import Mapping
-from dataclasses import field
+from dataclasses import dataclass, field
 from typing import Protocol
 
 from numpy import bool_
@@ -20,7 +20,6 @@ from surefoot.planner.types import (
     PhaseInfo,
     PlanStatus,
 )
-from surefoot.values import dataclass
 
 
 @dataclass(frozen=True, slots=True)

@@ -40,9 +40,6 @@ from surefoot.planner.types import (
     PlanStatus,
     SolverStatus,
 )
-from surefoot.values import maker
-
-_a_plan, _a_context, _a_status = maker(WalkPlan), maker(StepContext), maker(PlanStatus)
 
 _STILL = np.zeros(3)
 
@@ -269,7 +266,7 @@ class WalkingPlanner:
         ahead = stiffness, window.height.height[:, :count], offset, reference.point[:count], reference.gain[:count]
         frame = support.rotation, support.origin
         com, jerk, zmp, offset, point = self._world.of(local, motion.jerk, motion.shifts, ahead, frame)
-        return _a_plan(
+        return WalkPlan(
             time=time,
             sample_time=self.parameters.sample_time,
             com=com[0],
@@ -317,7 +314,7 @@ class WalkingPlanner:
             double = execution.schedule.step(execution.phase.step).double
             here, left, transfer = step.swing[0], execution.time_left, double * self.parameters.sample_time
         bounds = self._recovery.bounds(increment, free, here, left, adjusted)
-        return _a_context(increment, (side, -side), free, here, left, transfer, *bounds)
+        return StepContext(increment, (side, -side), free, here, left, transfer, *bounds)
 
     def _increments(self, support: Support) -> tuple[Array, float]:
         """Displacements of the next two footsteps, shape (2, 2) [m], and side of the first; they stay as steps do."""
@@ -335,7 +332,7 @@ class WalkingPlanner:
         age, told = 0, self._plan is not None and self._plan.status.falling
         if motion.solver is SolverStatus.HELD:
             age = (self._plan.status.age if self._plan is not None else 0) + 1
-        return _a_status(
+        return PlanStatus(
             solver=motion.solver,
             zmp_slack=motion.zmp_slack,
             terminal_slack=motion.terminal_slack,

@@ -1,7 +1,7 @@
 """Values that cross the planner's boundary. World frame, SI units; arrays are float64."""
 
 import math
-from dataclasses import field
+from dataclasses import dataclass, field
 from enum import IntEnum
 from typing import NamedTuple
 
@@ -10,7 +10,6 @@ from numpy.typing import NDArray
 
 from surefoot.forces import ExternalLoad
 from surefoot.similarity import GRAVITY as GRAVITY
-from surefoot.values import dataclass
 
 Array = NDArray[np.float64]
 

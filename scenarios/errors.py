@@ -6,13 +6,11 @@ import json
 import shutil
 import sys
 from collections.abc import Callable, Iterable, Iterator
-from dataclasses import replace
+from dataclasses import dataclass, replace
 from pathlib import Path
 from shlex import quote
 from types import ModuleType
 from typing import Any
-
-from surefoot.values import dataclass
 
 Key = tuple[str | int, ...]
 """Path of a value in a scenario: keys and list indices."""

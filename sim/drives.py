@@ -1,6 +1,7 @@
 """What motors make of the torques that they are told: late, noisy, and less of it the faster they turn."""
 
 from collections import deque
+from dataclasses import dataclass
 
 import numpy as np
 
@@ -8,7 +9,6 @@ from surefoot.models.actuator import available_torque
 from surefoot.models.types import RobotDescription
 from surefoot.sim.measurement import Array
 from surefoot.streams import Stream, generator
-from surefoot.values import dataclass
 
 
 @dataclass(frozen=True, slots=True)

@@ -1,13 +1,13 @@
 """Marks drawn into a picture beside what is simulated: points, arrows and lines."""
 
 from collections.abc import Iterable
+from dataclasses import dataclass
 from typing import Literal
 
 import numpy as np
 from numpy.typing import NDArray
 
 from surefoot.engine import mujoco
-from surefoot.values import dataclass
 
 Array = NDArray[np.float64]
 

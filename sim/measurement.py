@@ -1,9 +1,9 @@
 """What the sensors of the simulated robot say at one instant."""
 
+from dataclasses import dataclass
+
 import numpy as np
 from numpy.typing import NDArray
-
-from surefoot.values import dataclass
 
 Array = NDArray[np.float64]
 

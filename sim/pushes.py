@@ -2,12 +2,12 @@
 
 import math
 from collections.abc import Sequence
+from dataclasses import dataclass
 
 import numpy as np
 from numpy.typing import NDArray
 
 from surefoot.forces import Push
-from surefoot.values import dataclass
 
 Array = NDArray[np.float64]
 NEVER = 2**62

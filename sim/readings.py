@@ -14,15 +14,12 @@ from surefoot.sim.sensor_errors import SOON, Delivery, SensorErrors
 from surefoot.sim.world import World
 from surefoot.similarity import GRAVITY
 from surefoot.streams import Stream, generator
-from surefoot.values import maker
 
 BLOCK = 64
 """Ticks for which noise is drawn at once, which changes none of the numbers and costs a fifth."""
 
 _NOISE, _BIAS, _WALK, _OFFSET, _VELOCITY, _TURN, _SHIFT, _JITTER, _DROPOUT = range(9)
 """Parts of a stream of random numbers, so that no term of a sensor moves the numbers of another."""
-
-_a_reading, _some_readings = maker(Reading), maker(Readings)
 
 
 class SensorSuite:
@@ -61,7 +58,7 @@ class SensorSuite:
         rate, mean_rate, force, position, torque, *more = found
         velocity = more.pop(0) if self._encoders.say_velocity else None
         wrench = more[0] if more else None
-        return _some_readings(tick / self._rate, position, velocity, torque, rate, mean_rate, force, wrench)
+        return Readings(tick / self._rate, position, velocity, torque, rate, mean_rate, force, wrench)
 
 
 class Buffer:
@@ -333,7 +330,7 @@ class Line:
         """Put in the sample of a tick, and take out what has arrived."""
         if self._direct or tick == 0:
             self._values = sample
-            return [_a_reading(values, 0.0, True) for values in sample]
+            return [Reading(values, 0.0, True) for values in sample]
         self._send(tick, sample)
         period, taken = self._period, self._taken
         now, before = tick * period + SOON, taken
@@ -347,7 +344,7 @@ class Line:
             self._taken = taken
             self._under_way = [entry for entry in self._under_way if entry[1] > taken]
         age, fresh = (tick - taken) * period, taken != before
-        return [_a_reading(values, age, fresh) for values in self._values]
+        return [Reading(values, age, fresh) for values in self._values]
 
     def _send(self, tick: int, sample: list[Array]) -> None:
         how = self._delivery

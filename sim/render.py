@@ -2,6 +2,7 @@
 
 import math
 from collections.abc import Iterable, Iterator
+from dataclasses import dataclass
 from itertools import repeat
 
 import numpy as np
@@ -11,7 +12,6 @@ from surefoot.engine import mujoco
 from surefoot.models.convert import Coordinates
 from surefoot.sim.gl import make_context
 from surefoot.sim.marks import Mark, draw
-from surefoot.values import dataclass
 
 Array = NDArray[np.float64]
 Image = NDArray[np.uint8]

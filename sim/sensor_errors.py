@@ -7,10 +7,10 @@ drawn, unless it says otherwise.
 
 import math
 from collections.abc import Mapping
+from dataclasses import dataclass
 from typing import Any
 
 from surefoot.similarity import quantity
-from surefoot.values import dataclass
 
 
 def _term(default: float, scales: str = "-") -> Any:

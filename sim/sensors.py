@@ -12,9 +12,6 @@ from surefoot.sim.contacts import ContactSense
 from surefoot.sim.errors import WorldError
 from surefoot.sim.measurement import Array, Measurement
 from surefoot.sim.pushes import PushSchedule
-from surefoot.values import maker
-
-_a_measurement = maker(Measurement)
 
 ROUND_OFF = 1e-9
 """Share of a push below which what remains of a body's external force is rounding."""
@@ -73,7 +70,7 @@ class SensorReader:
         else:
             self._read(self._external)
         nonfoot_contact, self_contact = self._touch.read()
-        return _a_measurement(time, *self._views, nonfoot_contact, self_contact)
+        return Measurement(time, *self._views, nonfoot_contact, self_contact)
 
     def _read(self, external: Array) -> None:
         """Fill the buffers; the terrain's forces on the bodies as MuJoCo has them, shape (nbody, 6) [N m, N]."""

@@ -1,6 +1,7 @@
 """What there is to draw of a world: the geoms of a MuJoCo model as plain shapes on bodies."""
 
 from collections.abc import Iterator
+from dataclasses import dataclass
 from typing import Literal
 
 import numpy as np
@@ -8,7 +9,6 @@ from numpy.typing import NDArray
 
 from surefoot.engine import mujoco
 from surefoot.sim.measurement import Array
-from surefoot.values import dataclass
 
 Color = tuple[float, float, float, float]
 Kind = Literal["box", "ellipsoid", "cylinder", "capsule", "mesh"]

@@ -1,9 +1,9 @@
 """What acts on a robot from outside: a push, which is soon over, and a load, which lasts. World frame, SI units."""
 
+from dataclasses import dataclass
+
 import numpy as np
 from numpy.typing import NDArray
-
-from surefoot.values import dataclass
 
 Array = NDArray[np.float64]
 

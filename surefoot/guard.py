@@ -2,13 +2,12 @@
 
 import sys
 from collections.abc import Callable, Mapping
-from dataclasses import replace
+from dataclasses import dataclass, replace
 from traceback import walk_tb
 from types import TracebackType
 from typing import Any
 
 from surefoot.errors import ParameterError, PartError
-from surefoot.values import dataclass
 
 OWN_PACKAGE = "surefoot"
 """The package of what is in no entry point."""

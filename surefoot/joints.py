@@ -1,9 +1,9 @@
 """What goes between a controller and the joints of a robot."""
 
+from dataclasses import dataclass
+
 import numpy as np
 from numpy.typing import NDArray
-
-from surefoot.values import dataclass
 
 Array = NDArray[np.float64]
 

@@ -1,9 +1,9 @@
 """What the sensors of a robot say at one instant, with how old it is: all that an estimator gets."""
 
+from dataclasses import dataclass
+
 import numpy as np
 from numpy.typing import NDArray
-
-from surefoot.values import dataclass
 
 Array = NDArray[np.float64]
 

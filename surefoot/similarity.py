@@ -10,12 +10,11 @@ unit.
 import math
 import re
 from collections.abc import Mapping
-from dataclasses import field, fields, is_dataclass, replace
+from dataclasses import dataclass, field, fields, is_dataclass, replace
 from functools import lru_cache
 from typing import Any, TypeVar
 
 from surefoot.errors import ParameterError
-from surefoot.values import dataclass
 
 T = TypeVar("T")
 

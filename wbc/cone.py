@@ -1,10 +1,10 @@
 """The sole, and the 6-D contact wrench cone of a flat rectangle."""
 
 import math
+from dataclasses import dataclass
 
 import numpy as np
 
-from surefoot.values import dataclass
 from surefoot.wbc.types import Array
 
 CONE_ROWS = 16

@@ -1,6 +1,7 @@
 """Which contacts the whole-body QP holds, and how much load each may take: plan and feeling combined."""
 
-from surefoot.values import dataclass
+from dataclasses import dataclass
+
 from surefoot.wbc.parameters import ContactParameters
 from surefoot.wbc.types import NONE_TOUCHES, FootSensing, WbcReference
 

@@ -10,7 +10,6 @@ import pinocchio as pin
 from numpy.typing import NDArray
 
 from surefoot.forces import NO_LOAD
-from surefoot.values import maker
 from surefoot.wbc.answer import AnswerReader
 from surefoot.wbc.arm_swing import ArmSwing
 from surefoot.wbc.balance import SupportRegion
@@ -47,7 +46,6 @@ from surefoot.wbc.types import (
 ACCEPTED_VIOLATION = 1e-3
 """A solution that breaks a row by more than this (N, N·m, m/s^2) is not used, whatever its solver says."""
 
-_a_report = maker(WbcReport)
 
 # Members are looked up by name at each access.
 _SOLVED, _SOFTENED = SolveStatus.SOLVED, SolveStatus.SOFTENED
@@ -190,7 +188,7 @@ class WholeBodyController:
         iterations, violation, dual = 0, math.inf, math.nan
         if solution is not None:
             iterations, violation, dual = solution.iterations, solution.violation, solution.dual_residual
-        return _a_report(
+        return WbcReport(
             answer.torque, status, iterations, violation, dual, answer.acceleration, answer.wrench, contacts.active,
             contacts.felt, answer.task_error, built - start, time.perf_counter() - built, terms.load,
         )  # fmt: skip

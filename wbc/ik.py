@@ -1,10 +1,11 @@
 """Inverse kinematics: the walking posture for given feet, CoM and heading."""
 
+from dataclasses import dataclass
+
 import daqp
 import numpy as np
 import pinocchio as pin
 
-from surefoot.values import dataclass
 from surefoot.wbc.leaning import FREE, line_frame
 from surefoot.wbc.limits import JointLimits
 from surefoot.wbc.model import BodyFrames

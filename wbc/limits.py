@@ -1,9 +1,10 @@
 """Joint limits as bounds on the joint accelerations of one tick."""
 
+from dataclasses import dataclass
+
 import numpy as np
 
 from surefoot.similarity import quantity
-from surefoot.values import dataclass
 from surefoot.wbc.types import Array
 
 

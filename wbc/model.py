@@ -1,6 +1,7 @@
 """The Pinocchio terms of one state, computed once and shared by every task, contact and limit."""
 
 import math
+from dataclasses import dataclass
 
 import numpy as np
 import pinocchio as pin
@@ -8,7 +9,6 @@ import pinocchio as pin
 from surefoot import algebra
 from surefoot.forces import NO_LOAD, ExternalLoad
 from surefoot.mimic import Dynamics, JointColumns
-from surefoot.values import dataclass
 from surefoot.wbc import soles
 from surefoot.wbc.frame import Frame
 from surefoot.wbc.leaning import line_centre, line_frame

@@ -1,10 +1,9 @@
 """Everything one may turn about the whole-body controller; here are numbers alone, and nothing that works with them."""
 
-from dataclasses import field
+from dataclasses import dataclass, field
 
 from surefoot.errors import ParameterError
 from surefoot.similarity import REFERENCE_SIZE, Similarity
-from surefoot.values import dataclass
 from surefoot.wbc.tasks.parameters import TaskGains, TaskWeights
 from surefoot.wbc.tunable import check, number
 

@@ -1,11 +1,11 @@
 """The whole-body QP: its layout, its data and its residuals. Building, solving and interpreting are apart."""
 
 import math
+from dataclasses import dataclass
 
 import numpy as np
 from numpy.typing import NDArray
 
-from surefoot.values import dataclass
 from surefoot.wbc.types import Array
 
 FOOT_ROWS = 6

@@ -2,6 +2,7 @@
 
 import math
 from collections.abc import Callable
+from dataclasses import dataclass
 from typing import Protocol
 
 import daqp
@@ -9,7 +10,6 @@ import numpy as np
 from numpy.typing import NDArray
 from proxsuite import proxqp
 
-from surefoot.values import dataclass
 from surefoot.wbc.parameters import SOLVER_NAMES
 from surefoot.wbc.qp import EQUALITY_ROWS, FOOT_ROWS, QpData
 from surefoot.wbc.range_space import EqualityQp, InequalityQp

@@ -7,7 +7,7 @@ foot first. Wrenches are ``[fx, fy, fz, tx, ty, tz]`` at the sole centre in the 
 
 import math
 from collections.abc import Mapping
-from dataclasses import field
+from dataclasses import dataclass, field
 from enum import IntEnum
 from typing import TYPE_CHECKING, Any
 
@@ -16,7 +16,7 @@ from numpy.typing import NDArray
 
 from surefoot.forces import NO_LOAD, ExternalLoad
 from surefoot.similarity import GRAVITY as GRAVITY
-from surefoot.values import dataclass, opened
+from surefoot.values import opened
 
 Array = NDArray[np.float64]
 

@@ -7,6 +7,7 @@ that move would be lost, so it is refused by name.
 
 import itertools
 from collections.abc import Collection, Iterable, Iterator, Mapping, Sequence
+from dataclasses import dataclass
 from pathlib import Path
 
 import numpy as np
@@ -14,7 +15,6 @@ import pinocchio as pin
 
 from surefoot.models.joints import world_axis
 from surefoot.models.types import Array, RobotError
-from surefoot.values import dataclass
 
 _SERIAL = "give a serial model: without it, and with the limits that the linkage leaves its joints"
 _SHOWN = 3

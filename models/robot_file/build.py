@@ -1,6 +1,6 @@
 """A robot file as a description: derived or from the cache, in its size, with options; and what was derived."""
 
-from dataclasses import replace
+from dataclasses import dataclass, replace
 from functools import lru_cache
 from pathlib import Path
 
@@ -12,7 +12,6 @@ from surefoot.models.robot_file.paths import resolve
 from surefoot.models.robot_file.schema import RobotFile, read
 from surefoot.models.similar import scaled
 from surefoot.models.types import RobotDescription, RobotError, RobotOptions
-from surefoot.values import dataclass
 
 
 @dataclass(frozen=True, slots=True)

@@ -2,6 +2,7 @@
 
 import re
 import warnings
+from dataclasses import dataclass
 from functools import cached_property
 from pathlib import Path, PurePath
 
@@ -13,7 +14,6 @@ from surefoot.models.robot_file.meshes import thinned
 from surefoot.models.robot_file.mjcf import Assembled
 from surefoot.models.robot_file.paths import is_file
 from surefoot.models.types import RobotError
-from surefoot.values import dataclass
 
 MOST_COMPILED = 400_000
 """Triangles of all meshes that MuJoCo compiles, 1.3 kB and 6 us each; dense meshes of more become coarser."""

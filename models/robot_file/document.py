@@ -4,6 +4,7 @@ import codecs
 import re
 import stat
 from collections.abc import Iterator
+from dataclasses import dataclass
 from pathlib import Path
 from shlex import quote
 from typing import NoReturn
@@ -12,7 +13,6 @@ from xml.parsers import expat
 
 from surefoot.models.types import RobotError
 from surefoot.pointers import IS_A_POINTER, is_pointer
-from surefoot.values import dataclass
 
 MOST_ELEMENTS = 20_000
 """Of a model with all that it includes."""

@@ -5,6 +5,7 @@ import math
 import re
 import tempfile
 from collections.abc import Iterator
+from dataclasses import dataclass
 from pathlib import Path
 
 import numpy as np
@@ -18,7 +19,6 @@ from surefoot.models.robot_file.paths import resolve
 from surefoot.models.robot_file.schema import RobotFile
 from surefoot.models.robot_file.source import read_source
 from surefoot.models.types import RobotError
-from surefoot.values import dataclass
 
 _FEWEST = 4
 """Joints that a leg has at least."""

@@ -1,6 +1,7 @@
 """A model with all the files that it is made of, found by the one parser that also gives it to the engines."""
 
 from collections.abc import Iterable, Iterator
+from dataclasses import dataclass
 from pathlib import Path
 
 from surefoot.models.robot_file.document import MODEL, SRDF, Node, read_xml, root_of, signature
@@ -9,7 +10,6 @@ from surefoot.models.robot_file.paths import is_file, resolve
 from surefoot.models.robot_file.schema import RobotFile
 from surefoot.models.robot_file.urdf import check_urdf
 from surefoot.models.types import RobotError
-from surefoot.values import dataclass
 
 MOST_TEXT = 48 << 20
 """Bytes of all OBJ and DAE of a URDF, 0.15 us each."""

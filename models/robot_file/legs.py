@@ -1,6 +1,7 @@
 """The legs of a model: chains, knees, hips, ankles, soles, and the angles of a leg that is straight or bent."""
 
 from collections.abc import Callable
+from dataclasses import dataclass
 from functools import partial
 
 import numpy as np
@@ -12,7 +13,6 @@ from surefoot.models.robot_file.reduced import Reduced, points_of
 from surefoot.models.robot_file.schema import RobotFile
 from surefoot.models.robot_file.soles import SolePlate, sole_of
 from surefoot.models.types import WITHOUT_ROLL, Array, RobotError
-from surefoot.values import dataclass
 
 SIDES = ("left", "right")
 FEWEST, MOST = WITHOUT_ROLL, 7

@@ -7,6 +7,7 @@ of ours. The farthest of them stand in the table of docs/robot-files.md.
 
 import math
 from collections.abc import Iterator, Sequence
+from dataclasses import dataclass
 from itertools import repeat
 
 import numpy as np
@@ -15,7 +16,6 @@ import pinocchio as pin
 from surefoot.mimic import names_of
 from surefoot.models.robot_file.shapes import Shape, placed
 from surefoot.models.types import Array, RobotError
-from surefoot.values import dataclass
 
 Units = tuple[tuple[float, str], ...]
 """Units in which a number may be instead, each with the factor that it makes of the ratio."""

@@ -4,7 +4,7 @@ Includes and meshes are found as MuJoCo finds them. Elements go that `mjcf_schem
 """
 
 from collections.abc import Iterator, Mapping
-from dataclasses import field
+from dataclasses import dataclass, field
 from pathlib import Path, PurePosixPath
 from xml.sax.saxutils import quoteattr
 
@@ -13,7 +13,6 @@ from surefoot.models.robot_file.paths import is_file, resolve
 from surefoot.models.robot_file.quantities import TURN, check_numbers, of_mjcf
 from surefoot.models.robot_file.sift import Absent, sift
 from surefoot.models.robot_file.urdf import MOST_SHAPES
-from surefoot.values import dataclass
 
 _MOST_FILES = 200
 _FOLDERS = ("meshdir", "texturedir", "assetdir", "strippath")

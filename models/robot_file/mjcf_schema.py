@@ -4,10 +4,9 @@ The reader, its tests and a table of docs/robot-files.md go by this one. An elem
 refused, so that one of a later MuJoCo is never lost without a word.
 """
 
+from dataclasses import dataclass
 from enum import Enum
 from functools import lru_cache
-
-from surefoot.values import dataclass
 
 
 class Fate(Enum):

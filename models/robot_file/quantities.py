@@ -1,9 +1,9 @@
 """What the numbers of a model may be: each finite, and no larger than any walking machine has it."""
 
 from collections.abc import Callable
+from dataclasses import dataclass
 
 from surefoot.models.robot_file.document import Node, number, refuse
-from surefoot.values import dataclass
 
 LENGTH, MASS, INERTIA = 1e3, 1e5, 1e7
 """Largest length [m], mass [kg] and moment of inertia [kg m^2] of a part."""

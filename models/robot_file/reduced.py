@@ -2,6 +2,7 @@
 
 import fnmatch
 from collections.abc import Iterator, Sequence
+from dataclasses import dataclass
 from pathlib import Path
 
 import numpy as np
@@ -20,7 +21,6 @@ from surefoot.models.robot_file.shapes import Shape, placed
 from surefoot.models.robot_file.source import RESERVED, SITES, Source
 from surefoot.models.robot_file.turning import turn, upward
 from surefoot.models.types import Array, Coupling, RobotError, nearest
-from surefoot.values import dataclass
 
 _BALL = 0.02
 """Radius of gyration that a repaired body gets [m]."""

@@ -3,6 +3,7 @@
 import itertools
 import math
 from collections.abc import Mapping, Sequence
+from dataclasses import dataclass
 from pathlib import Path
 from xml.etree import ElementTree
 
@@ -13,7 +14,6 @@ from surefoot.models.robot_file.mesh_file import colour_in_file, read_mesh, up_a
 from surefoot.models.robot_file.meshes import Faces, hull
 from surefoot.models.robot_file.paths import is_file, resolve
 from surefoot.models.types import Array, RobotError
-from surefoot.values import dataclass
 
 Colour = tuple[float, float, float, float]
 

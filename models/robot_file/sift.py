@@ -1,11 +1,11 @@
 """An MJCF without the elements that a robot does without, and those elements by name; others are refused."""
 
 from collections.abc import Iterable, Iterator
+from dataclasses import dataclass
 
 from surefoot.models.robot_file.document import Node, refuse
 from surefoot.models.robot_file.mjcf_schema import Elements, Fate, by_path, path_of
 from surefoot.models.types import nearest
-from surefoot.values import dataclass
 
 
 @dataclass(frozen=True, slots=True)

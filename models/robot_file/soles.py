@@ -1,12 +1,13 @@
 """Where a foot touches the ground: the rectangle inside the lowest face of its shapes."""
 
+from dataclasses import dataclass
+
 import numpy as np
 import pinocchio as pin
 from scipy.spatial import ConvexHull, QhullError
 
 from surefoot.models.robot_file.meshes import outer
 from surefoot.models.types import Array, RobotError
-from surefoot.values import dataclass
 
 _DOWN = 0.8
 """Least share of a face's normal that points down for it to be a sole [-]."""

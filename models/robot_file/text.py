@@ -1,6 +1,7 @@
 """A reduced model as normalised MJCF text with all digits, which both engines read alike."""
 
 from collections.abc import Mapping, Sequence
+from dataclasses import dataclass
 from xml.etree import ElementTree
 
 import numpy as np
@@ -15,7 +16,6 @@ from surefoot.models.robot_file.shapes import Shape
 from surefoot.models.robot_file.source import SITES
 from surefoot.models.robot_file.touch import Hull, shape_name
 from surefoot.models.types import Coupling
-from surefoot.values import dataclass
 
 SOLE_THICKNESS = 0.02
 """Of the contact box over the leg's length [-]."""

@@ -2,6 +2,7 @@
 
 import itertools
 from contextlib import suppress
+from dataclasses import dataclass
 
 import numpy as np
 import pinocchio as pin
@@ -15,7 +16,6 @@ from surefoot.models.robot_file.reduced import Reduced, points_of
 from surefoot.models.robot_file.schema import RobotFile
 from surefoot.models.robot_file.upper import Upper
 from surefoot.models.types import Array, RobotError, nearest
-from surefoot.values import dataclass
 
 MOST_POINTS = 80
 _LIGHTEST = 0.004

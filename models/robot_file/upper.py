@@ -1,6 +1,6 @@
 """The upper body of a model: torso, waist and arms, and how the arms hang."""
 
-from dataclasses import replace
+from dataclasses import dataclass, replace
 
 import numpy as np
 import pinocchio as pin
@@ -12,7 +12,6 @@ from surefoot.models.robot_file.schema import RobotFile
 from surefoot.models.robot_file.shapes import placed
 from surefoot.models.robot_file.turning import turn
 from surefoot.models.types import Array, RobotError
-from surefoot.values import dataclass
 
 _ASIDE, _ALIKE = 0.02, 0.1
 _LATERAL = 0.8

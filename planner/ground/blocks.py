@@ -1,13 +1,13 @@
 """Stepping blocks as terrain: one under each footstep, higher or lower and tilted at random."""
 
 import math
+from dataclasses import dataclass
 
 import numpy as np
 
 from surefoot.planner.ground.terrain import DEEPER, Box, Site, Terrain
 from surefoot.planner.orientation import sole_rotation
 from surefoot.planner.types import Array
-from surefoot.values import dataclass
 
 LEVEL_STEPS = 2
 """Footsteps at the end of a block field that land on level blocks, as the start feet stand on such [-]."""

@@ -1,10 +1,11 @@
 """What may be done with footsteps on a ground: where they land freely, and where each was chosen for its face."""
 
+from dataclasses import dataclass
+
 import numpy as np
 
 from surefoot.planner.geometry import frame_rotation
 from surefoot.planner.types import Array
-from surefoot.values import dataclass
 
 
 @dataclass(frozen=True, slots=True)

@@ -1,12 +1,12 @@
 """A slope as terrain: one inclined plane, before or behind level ground."""
 
 import math
+from dataclasses import dataclass
 
 import numpy as np
 
 from surefoot.planner.ground.terrain import DEEPER, HALF_WIDTH, Box, Site, Terrain
 from surefoot.planner.orientation import sole_rotation
-from surefoot.values import dataclass
 
 
 @dataclass(frozen=True, slots=True)

@@ -1,5 +1,6 @@
 """Stairs as terrain: one box per tread, laid along a heading."""
 
+from dataclasses import dataclass
 from enum import Enum
 
 import numpy as np
@@ -7,7 +8,6 @@ from numpy.typing import NDArray
 
 from surefoot.planner.geometry import frame_rotation
 from surefoot.planner.ground.terrain import HALF_WIDTH, Box, Site, Terrain
-from surefoot.values import dataclass
 
 
 class Direction(Enum):

@@ -1,7 +1,7 @@
 """Terrain as data: what the planner knows of the ground and what the simulator turns into geoms."""
 
 from collections.abc import Callable
-from dataclasses import field
+from dataclasses import dataclass, field
 
 import numpy as np
 from numpy.typing import NDArray
@@ -10,7 +10,6 @@ from surefoot.errors import ParameterError
 from surefoot.planner.geometry import CORNERS, frame_rotation
 from surefoot.planner.ground.footholds import Footholds
 from surefoot.planner.types import Array, Footstep
-from surefoot.values import dataclass
 
 HALF_WIDTH = 1.0
 """Half of the lateral extent of stairs and slopes [m]."""

@@ -1,6 +1,7 @@
 """Level ground that is not quite level: tiles about as large as a footstep, each a little higher or lower."""
 
 import math
+from dataclasses import dataclass
 from itertools import product
 
 import numpy as np
@@ -10,7 +11,6 @@ from surefoot.planner.ground.terrain import DEEPER, Box, Site, Terrain
 from surefoot.planner.orientation import sole_rotation
 from surefoot.planner.types import Array
 from surefoot.streams import Stream
-from surefoot.values import dataclass
 
 TILE = 0.5
 """Side of a tile, as of a paving slab, for the reference robot [m]."""

@@ -1,13 +1,13 @@
 """Level ground that is truly tilted, but for where the robot starts."""
 
 import math
+from dataclasses import dataclass
 
 import numpy as np
 
 from surefoot.planner.ground.terrain import DEEPER, Box, Site, Terrain
 from surefoot.planner.orientation import sole_rotation
 from surefoot.planner.types import Array
-from surefoot.values import dataclass
 
 FAR = 50.0
 """How far the ground reaches to each side, farther than any walk goes, for the reference robot [m]."""

@@ -6,17 +6,14 @@ at and tested without the others.
 """
 
 from collections.abc import Sequence
-from dataclasses import field
-from typing import TYPE_CHECKING, Any, Protocol
+from dataclasses import dataclass
+from typing import Protocol
 
 import numpy as np
 
 from surefoot.planner.laws.qp import Qp, QpSolution
 from surefoot.planner.references.zmp_reference import ZmpReference
 from surefoot.planner.types import Array, SolverStatus
-from surefoot.values import dataclass, opened
-
-_put = object.__setattr__
 
 
 @dataclass(frozen=True, slots=True)
@@ -61,8 +58,6 @@ class MotionProblem:
         fallback: the previous jerk sequence shifted by one sample, to go on with when no solver answers, shape (N, 2)
             [m/s^3].
         rotation: plan frame to world, for a law that remembers something from tick to tick, shape (2, 2) [-].
-        before: the previous jerk sequence in the world frame, of which `last_jerk` and `fallback` are made when they
-            are first read, shape (N, 2) [m/s^3]; None where they are given.
     """
 
     state: Array
@@ -73,7 +68,6 @@ class MotionProblem:
     last_jerk: Array
     fallback: Array
     rotation: Array
-    before: Array | None = field(init=False, default=None, repr=False, compare=False)
 
     @classmethod
     def after(
@@ -84,7 +78,7 @@ class MotionProblem:
         steps: StepContext,
         rotation: Array,
     ) -> "MotionProblem":
-        """That after a jerk sequence; the jerk and the fallback follow from it once they are read.
+        """That after a jerk sequence, of which the jerk and the fallback follow.
 
         Args:
             before: the previous jerk sequence in the world frame, shape (N, 2) [m/s^3].
@@ -93,26 +87,9 @@ class MotionProblem:
             steps: as of the attribute.
             rotation: likewise, shape (2, 2) [-].
         """
-        problem = _OpenProblem()
-        problem.stiffness, problem.omega, problem.reference = window
-        problem.before, problem.state, problem.steps, problem.rotation = before, state, steps, rotation
-        problem.__class__ = cls
-        return problem  # type: ignore[no-any-return]
-
-    if not TYPE_CHECKING:
-
-        def __getattr__(self, name: str) -> Any:
-            """A field that has not been read before: few laws go on from the jerk, and most plans are solved."""
-            if name not in ("last_jerk", "fallback"):
-                raise AttributeError(f"{type(self).__name__} has no attribute '{name}'")
-            jerk = np.zeros((len(self.before) + 1, 2))
-            jerk[:-1] = self.before @ self.rotation
-            _put(self, "last_jerk", jerk[0])
-            _put(self, "fallback", jerk[1:])
-            return getattr(self, name)
-
-
-_OpenProblem = opened(MotionProblem)
+        turned, (stiffness, omega, reference) = before @ rotation, window
+        fallback = np.vstack((turned[1:], np.zeros((1, 2))))
+        return cls(state, stiffness, omega, reference, steps, turned[0], fallback, rotation)
 
 
 @dataclass(frozen=True, slots=True)

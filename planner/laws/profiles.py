@@ -1,7 +1,7 @@
 """The profiles by name: parameters, CoM height and law of motion of each."""
 
 from collections.abc import Callable
-from dataclasses import replace
+from dataclasses import dataclass, replace
 
 from surefoot.planner.laws import names
 from surefoot.planner.laws.dcm_feedback import DcmFeedback
@@ -13,7 +13,6 @@ from surefoot.planner.model.jerk import BLOCK_STARTS
 from surefoot.planner.parameters import PlannerParameters
 from surefoot.planner.plan import Planner
 from surefoot.planner.references.com_height import HeightProfile, PaperHeight
-from surefoot.values import dataclass
 
 
 @dataclass(frozen=True, slots=True)

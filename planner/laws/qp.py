@@ -1,5 +1,6 @@
 """The QP of one axis, and its solution by the first solver that succeeds."""
 
+from dataclasses import dataclass
 from typing import TYPE_CHECKING, Any
 
 import daqp
@@ -8,7 +9,6 @@ import numpy as np
 from surefoot.planner.laws.bounded_qp import BoundedQp
 from surefoot.planner.parameters import SOLVERS
 from surefoot.planner.types import Array
-from surefoot.values import dataclass
 
 if TYPE_CHECKING:
     import qpsolvers

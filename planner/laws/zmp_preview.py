@@ -1,5 +1,7 @@
 """Profile `preview`: ZMP preview control of the cart-table (Kajita et al., ICRA 2003; Katayama et al., 1985)."""
 
+from dataclasses import dataclass
+
 import numpy as np
 
 from surefoot.planner.laws.dcm_feedback import limited
@@ -9,7 +11,6 @@ from surefoot.planner.model.world_motion import advanced
 from surefoot.planner.parameters import PlannerParameters
 from surefoot.planner.references.leg_offset import softening
 from surefoot.planner.types import GRAVITY, Array
-from surefoot.values import dataclass
 
 _PREVIEW = 80
 """Samples of the reference that the law looks ahead, N_l: 1.6 s [-]."""

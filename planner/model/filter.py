@@ -1,12 +1,13 @@
 """Kalman filter of the planner's state: the jerk-driven CoM seen through its position, its velocity and the ZMP."""
 
+from dataclasses import dataclass
+
 import numpy as np
 from numpy.typing import NDArray
 
 from surefoot.planner.model.jerk import jerk_model
 from surefoot.planner.types import Array
 from surefoot.similarity import quantity
-from surefoot.values import dataclass
 
 DESIGN_SAMPLE = 0.02
 """Sample time for which the process noise is given [s]."""

@@ -10,13 +10,13 @@ The Δu form Y = S_x x(0) + S_u1 u(-1) + S_u ΔU is eq. (10) and eq. (11) of the
   which the input may change are kept, "the last controller output is kept".
 """
 
+from dataclasses import dataclass
 from functools import lru_cache
 
 import numpy as np
 
 from surefoot.errors import ParameterError
 from surefoot.planner.types import Array
-from surefoot.values import dataclass
 
 BLOCK_STARTS = (0, 1, 2, 4, 7, 11, 16, 22, 29, 37)
 """Ten blocks over fifty samples, short at first: the repaired parametrisation (the paper's is (0, 1), N_c = 2) [-]."""

@@ -6,12 +6,12 @@ CoM, the knees from hips and soles, and with them the mass of every link: a rod 
 
 import math
 from collections.abc import Iterator
+from dataclasses import dataclass
 from math import ceil
 
 import numpy as np
 
 from surefoot.planner.types import Array
-from surefoot.values import dataclass
 
 _REST = 4e-3
 """Share of the first guess's error that the hips may keep; a constant rest does no harm [-]."""

@@ -4,7 +4,7 @@ The clock counts planner samples, as a real number: a phase may last any time. W
 the clock follows a quintic to that instant, and goes at its own rate again from there on.
 """
 
-from dataclasses import replace
+from dataclasses import dataclass, replace
 from itertools import product
 
 import numpy as np
@@ -13,7 +13,6 @@ from surefoot import algebra
 from surefoot.planner import geometry, quintic
 from surefoot.planner.quintic import Quintic
 from surefoot.planner.types import Array
-from surefoot.values import dataclass, maker
 
 CLOCK_ROUNDING = 1e-9
 """Instants on the clock are sums of durations and are compared with this tolerance [samples]."""
@@ -121,7 +120,7 @@ class TimeScaling:
     def advanced(self) -> "TimeScaling":
         """The clock one tick later."""
         course = self.way, self.length, self.coefficients
-        return _a_scaling(self.sample_time, self.after(1.0), self.ticks + 1, self.begun, self.elapsed + 1.0, *course)
+        return TimeScaling(self.sample_time, self.after(1.0), self.ticks + 1, self.begun, self.elapsed + 1.0, *course)
 
     def showing(self, instant: float) -> "TimeScaling":
         """The clock that shows an instant and goes on from there at its own rate [samples]; its course is another."""
@@ -155,6 +154,3 @@ def follow(course: Quintic, length: float, begun: float, time: Array, told: Arra
         told[0, k] = begun + quintic.value(course, t) + (time[k] - t)
         told[1, k] = 1.0 if over else quintic.slope(course, t)
         told[2, k] = 0.0 if over else quintic.bend(course, t)
-
-
-_a_scaling = maker(TimeScaling)

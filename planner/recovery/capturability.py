@@ -5,12 +5,12 @@ centre of pressure may be anywhere in the support and whose foot may land wherev
 """
 
 import math
+from dataclasses import dataclass
 
 import numpy as np
 
 from surefoot.planner.geometry import frame_rotation
 from surefoot.planner.types import Array
-from surefoot.values import dataclass
 
 
 @dataclass(frozen=True, slots=True)

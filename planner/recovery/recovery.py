@@ -20,9 +20,8 @@ from surefoot.planner.steps.foresight import ended, going_again
 from surefoot.planner.steps.step import room_left
 from surefoot.planner.swing.step_region import Shifts, reachable_shifts, shifts_within, unshifted
 from surefoot.planner.types import Array, Balance, FeetState, Foot, PhaseKind
-from surefoot.values import maker
 
-_a_balance, _UNTOLD = maker(Balance), Balance()
+_UNTOLD = Balance()
 
 Sight = tuple[Support, Array, Window]
 """What carries the robot, CoM position, velocity and acceleration in that plan frame, shape (2, 3), and references."""
@@ -232,7 +231,7 @@ class Recovery:
         lost = safe = 0
         if movable < unsure or (last is not None and last.status.falling):
             lost, safe = counted(_UNTOLD if last is None else last.balance, movable, p.recovery, unsure)
-        return _a_balance(planned - unsure, movable - unsure, shift, delay, lost if told else 0, False, safe)
+        return Balance(planned - unsure, movable - unsure, shift, delay, lost if told else 0, False, safe)
 
     def adjusted(
         self, step: StepProblem | None, local: Array, window: Window, unsure: float = 0.0

@@ -1,6 +1,7 @@
 """The step that lands next, as recovery looks at it, and what is to be made of it."""
 
 import math
+from dataclasses import dataclass
 from functools import lru_cache
 
 import numpy as np
@@ -10,7 +11,6 @@ from surefoot.planner.steps.execution import Execution
 from surefoot.planner.steps.step import Step, room_left, shortest_swing
 from surefoot.planner.swing.course import Ground
 from surefoot.planner.types import Array, FeetState, Footstep, PhaseKind
-from surefoot.values import dataclass, maker
 
 
 @dataclass(frozen=True, slots=True)
@@ -71,7 +71,7 @@ class StepProblem:
         x, y = x - u, y - o
         hips = math.inf if execution.legs is None else execution.legs.acceleration[0]
         place, face, shortest, crosses = _known(step, schedule.step(landed), schedule.ground, hips)
-        return _a_step(
+        return StepProblem(
             place=place,
             swing=np.array(((x * a + y * c, x * b + y * d), (v * a + w * c, v * b + w * d))),
             double=0.0 if swings else phase.left,
@@ -85,9 +85,6 @@ class StepProblem:
         )
 
 
-_a_step, _a_footstep = maker(StepProblem), maker(Footstep)
-
-
 @lru_cache(maxsize=2)
 def _known(step: Step, stance: Step, ground: Ground, hips: float) -> tuple[Footstep, Array, float, bool]:
     """What of a `StepProblem` is the same from plan to plan: place, face, its whole shortest swing, whether it crosses.
@@ -96,7 +93,7 @@ def _known(step: Step, stance: Step, ground: Ground, hips: float) -> tuple[Foots
     """
     numbers = ground.parameters.recovery
     seen, turn = seen_from(stance.place, step.place), wrap_angle(step.place.yaw - stance.place.yaw)
-    place = _a_footstep(seen.foot, seen.position, turn, seen.normal, seen.step, seen.touchdown_time)
+    place = Footstep(seen.foot, seen.position, turn, seen.normal, seen.step, seen.touchdown_time)
     face = place.position[:2] + room_left(step, stance.place, numbers.parallel)
     shortest = 0.0 if hips == math.inf else shortest_swing(step, hips, numbers.lifting)
     return place, face, shortest, ground.terrain.footholds.crossed(step.lift)

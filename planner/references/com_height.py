@@ -7,6 +7,7 @@ already over the front foot: the rear leg is then too short. So there are two pl
 
 import math
 from collections.abc import Callable
+from dataclasses import dataclass
 from enum import Enum
 from typing import Protocol
 
@@ -17,7 +18,6 @@ from surefoot.algebra import Vector
 from surefoot.planner.steps.gait import GaitParameters
 from surefoot.planner.steps.phases import PhaseSamples
 from surefoot.planner.types import GRAVITY, Array, PhaseKind
-from surefoot.values import dataclass
 
 _FALL_LIMIT = 0.8
 """Downward CoM acceleration that a plan may ask for, as a share of gravity: beyond it the feet hardly press [-]."""

@@ -1,5 +1,6 @@
 """Height transition: the CoM height from where it is to its law, where a step that is adapted leaves that."""
 
+from dataclasses import dataclass
 from math import ceil
 
 import numpy as np
@@ -9,7 +10,6 @@ from surefoot.algebra import Vector
 from surefoot.planner import quintic
 from surefoot.planner.model.time_scaling import CLOCK_ROUNDING
 from surefoot.planner.types import Array
-from surefoot.values import dataclass
 
 _ROUNDING = 1e-9
 """Accelerations are compared with this tolerance, since they are sums of rounded products [m/s^2]."""

@@ -1,6 +1,7 @@
 """What is known of horizon and preview before the motion is planned."""
 
 import math
+from dataclasses import dataclass
 from functools import partial
 
 import numpy as np
@@ -26,7 +27,6 @@ from surefoot.planner.steps.execution import Execution
 from surefoot.planner.steps.gait import GaitParameters
 from surefoot.planner.steps.phases import PhaseSamples
 from surefoot.planner.types import GRAVITY, Array
-from surefoot.values import dataclass, maker
 
 
 @dataclass(frozen=True, slots=True)
@@ -99,8 +99,6 @@ class Window:
     load_left: Array
     contacts: NDArray[np.bool_]
 
-
-_a_window, _a_reference = maker(Window), maker(ZmpReference)
 
 Beyond = tuple[PhaseSamples, Array, HeightPreview]
 """The walk at all samples that are looked at: phases, with a sample before and one after, ZMP [m], and CoM height."""
@@ -197,9 +195,9 @@ class ReferencePreview:
         stiffness = self._softening * height.stiffness
         if lasting is not None:
             offset = offset + lean(lasting, support.rotation, height)
-        return _a_window(
+        return Window(
             reference=reference,
-            driving=_a_reference(reference.point - offset, reference.gain, reference.half_size, reference.height),
+            driving=ZmpReference(reference.point - offset, reference.gain, reference.half_size, reference.height),
             offset=offset,
             height=height,
             stiffness=stiffness,

@@ -1,6 +1,7 @@
 """ZMP planner: the present support, and the ZMP reference over a window, linear in the next two footsteps."""
 
 import math
+from dataclasses import dataclass
 from typing import NamedTuple
 
 import numpy as np
@@ -13,7 +14,6 @@ from surefoot.planner.steps.phases import PhaseSamples
 from surefoot.planner.steps.schedule import Schedule
 from surefoot.planner.types import Array, Foot, Footstep, PhaseKind
 from surefoot.polygon import convex_hull
-from surefoot.values import dataclass, maker
 
 
 @dataclass(frozen=True, slots=True)
@@ -38,8 +38,6 @@ class ZmpReference:
         """The reference over some of its samples."""
         return ZmpReference(self.point[samples], self.gain[samples], self.half_size[samples], self.height[samples])
 
-
-_a_reference = maker(ZmpReference)
 
 Box = tuple[float, float]
 """Half sizes of a box [m]."""
@@ -149,7 +147,7 @@ def zmp_reference(samples: PhaseSamples, table: Array) -> ZmpReference:
         table: support points in sight, as of `support_table`.
     """
     n = len(samples.clock)
-    reference = _a_reference(np.empty((n, 2)), np.empty((n, 2)), np.empty((n, 2)), np.empty(n))
+    reference = ZmpReference(np.empty((n, 2)), np.empty((n, 2)), np.empty((n, 2)), np.empty(n))
     _refer(samples, table, reference.point, reference.gain, reference.half_size, reference.height)
     return reference
 
@@ -249,9 +247,6 @@ class Support:
         return self.rotation, self.origin
 
 
-_a_support = maker(Support)
-
-
 def load_left(samples: PhaseSamples, on_left: Array) -> Array:
     """Planned share of the weight on the left foot over a window, shape (n,) [-]; it goes with the ZMP reference.
 
@@ -301,7 +296,7 @@ def present_support(
         outer, inner = hulls_of(soles)
     stay = not schedule.ground.terrain.footholds.follow
     table = support_table(schedule, landed, key.free, np.minimum(margin * half_size, room), stay)
-    return _a_support(
+    return Support(
         key=key,
         rotation=frame_rotation(latest.yaw),
         origin=latest.position[:2],

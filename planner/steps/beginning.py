@@ -2,7 +2,7 @@
 
 import math
 import pickle
-from dataclasses import field
+from dataclasses import dataclass, field
 from functools import lru_cache
 
 from surefoot.planner.ground.terrain import Terrain
@@ -10,7 +10,6 @@ from surefoot.planner.steps.gait import GaitParameters
 from surefoot.planner.steps.schedule import Schedule
 from surefoot.planner.swing.course import Ground
 from surefoot.planner.types import FeetState
-from surefoot.values import dataclass
 
 
 @dataclass(frozen=True, slots=True)

@@ -3,7 +3,7 @@
 import math
 from bisect import bisect_right
 from collections.abc import Sequence
-from dataclasses import replace
+from dataclasses import dataclass, replace
 from itertools import pairwise
 
 import numpy as np
@@ -13,7 +13,6 @@ from surefoot.planner.geometry import frame_rotation
 from surefoot.planner.steps.gait import WEIGHT_SHIFT, Bout, GaitParameters
 from surefoot.planner.swing.step_region import StepRegion
 from surefoot.planner.types import Array, Foot, Footstep, Twist
-from surefoot.values import dataclass
 
 MOST_STEPS = 100_000
 """Steps of a walk, which are laid out in memory before it starts [-]."""

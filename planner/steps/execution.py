@@ -19,9 +19,6 @@ from surefoot.planner.swing.heel_off import FootRoll
 from surefoot.planner.swing.leg_reach import LegReach, around_stance_leg
 from surefoot.planner.swing.trajectory import LEAST_GLIDE, SwingTrajectory, start_swing
 from surefoot.planner.types import Array, FeetState, Footstep, PhaseInfo, PhaseKind
-from surefoot.values import maker
-
-_a_footstep, _an_info = maker(Footstep), maker(PhaseInfo)
 
 _LEAST_LEFT = 3.0
 """A phase of which less is left, or would be, until its foot is to touch down keeps its time [samples]."""
@@ -102,7 +99,7 @@ class Execution:
         elapsed, duration = (self.clock.now - phase.start) * t, phase.samples * t
         follows = phase if phase.stance is not None else self.schedule.phase(phase.end)
         leads_to = follows.step if follows.stance is not None else 0
-        info = _an_info(phase.kind, phase.stance, phase.step, elapsed, duration, leads_to, self.time_left)
+        info = PhaseInfo(phase.kind, phase.stance, phase.step, elapsed, duration, leads_to, self.time_left)
         self._told = phase, self.clock, self.schedule, info
         return info
 
@@ -308,7 +305,7 @@ class Execution:
                     normal = self._terrain.normal(x, y) if self._terrain.has_edges else normal
                 position = np.array([x, y, z])
             touchdown = time + self.clock.until(step.touchdown) * t
-            planned.append(_a_footstep(place.foot, position, place.yaw, normal, step.number, touchdown))
+            planned.append(Footstep(place.foot, position, place.yaw, normal, step.number, touchdown))
         return tuple(planned)
 
     def swing_to(self, landing: Footstep, time: float, feet: FeetState, held: bool) -> None:

@@ -1,12 +1,13 @@
 """The nominal path of a walk, and the footsteps that its strides make along it."""
 
+from dataclasses import dataclass
+
 import numpy as np
 
 from surefoot.planner.geometry import frame_rotation, wrap_angle
 from surefoot.planner.ground.terrain import Terrain
 from surefoot.planner.steps.gait import GaitParameters
 from surefoot.planner.types import Array, FeetState, Foot, Footstep, Twist
-from surefoot.values import dataclass
 
 
 @dataclass(frozen=True, slots=True)

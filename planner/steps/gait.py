@@ -1,12 +1,11 @@
 """The gait as the user asks for it: how many steps, how long, how fast, how high."""
 
 import math
-from dataclasses import fields
+from dataclasses import dataclass, fields
 from itertools import accumulate, chain
 
 from surefoot.errors import ParameterError
 from surefoot.planner.types import Foot, Twist
-from surefoot.values import dataclass
 
 
 @dataclass(frozen=True, slots=True)

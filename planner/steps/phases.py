@@ -1,6 +1,7 @@
 """Support phases of the steps in sight, and what follows from them at the samples of a window."""
 
 from collections.abc import Sequence
+from dataclasses import dataclass
 from itertools import pairwise
 
 import numpy as np
@@ -11,7 +12,6 @@ from surefoot.planner.model.time_scaling import CLOCK_ROUNDING
 from surefoot.planner.steps.step import Step
 from surefoot.planner.swing.heel_off import RollSpan
 from surefoot.planner.types import Array, Foot, PhaseKind
-from surefoot.values import dataclass
 
 _DOUBLE = int(PhaseKind.DOUBLE)
 

@@ -8,7 +8,7 @@ robot stands until the next bout.
 import math
 from bisect import bisect_left, bisect_right
 from contextlib import suppress
-from dataclasses import field, replace
+from dataclasses import dataclass, field, replace
 from functools import cached_property
 from operator import attrgetter
 
@@ -25,7 +25,6 @@ from surefoot.planner.steps.source import GaitSource, StepSource
 from surefoot.planner.steps.step import Step, Stop, durations, known_step, lay, start_step
 from surefoot.planner.swing.course import Ground
 from surefoot.planner.types import Array, FeetState, Foot, PhaseKind, Twist
-from surefoot.values import dataclass
 
 _MORE_STEPS = 3
 """Steps in sight beyond a window: its last support points depend on the ones after them, and a plan tells three [-]."""

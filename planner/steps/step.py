@@ -1,8 +1,7 @@
 """A step: where and when it lands, and what its swing over the ground takes."""
 
 import math
-from dataclasses import field, replace
-from operator import attrgetter
+from dataclasses import dataclass, field, replace
 
 import numpy as np
 
@@ -17,7 +16,6 @@ from surefoot.planner.swing.quintics import PEAK
 from surefoot.planner.swing.step_region import check_reach
 from surefoot.planner.swing.trajectory import SwingCourse, SwingTrajectory, start_swing
 from surefoot.planner.types import Array, Foot, Footstep, Twist
-from surefoot.values import dataclass, maker
 
 _MEASURED = 6
 """Decimals to which heights of footholds are compared: start feet may be some nanometres off the ground [-]."""
@@ -116,9 +114,7 @@ class Step:
 
     def landing(self, position: Array, normal: Array) -> "Step":
         """The step that lands elsewhere, positions and normals of shape (3,) [m, -]."""
-        values = [*_values(self)]
-        values[_PLACE] = _a_footstep(self.place.foot, position, self.place.yaw, normal)
-        return _a_step(*values)
+        return replace(self, place=Footstep(self.place.foot, position, self.place.yaw, normal))
 
     def beside(self, shift: Array, terrain: Terrain) -> Footstep:
         """The footstep so far from its nominal place as its face goes.
@@ -156,12 +152,6 @@ class Step:
             single = max(single, (roll.end - lift_off) / LEVEL_AGAIN)
         swing = unit_swing(single, self.climb, self.course, parameters)
         return replace(self, stop=stop, lift_off=lift_off, single=single, double=double, roll=roll, swing=swing)
-
-
-_values, _a_step, _a_footstep = attrgetter(*Step.__slots__), maker(Step), maker(Footstep)
-"""What a step is made of, and made by; `dataclasses.replace` would take three times as long."""
-
-_PLACE = Step.__slots__.index("place")
 
 
 def durations(gait: GaitParameters, sample_time: float) -> tuple[float, float]:

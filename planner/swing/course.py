@@ -1,6 +1,6 @@
 """How a swing foot gets over edges: when it glides forward and when it is highest, so that the whole sole is clear."""
 
-from dataclasses import replace
+from dataclasses import dataclass, replace
 from functools import lru_cache
 from itertools import product
 
@@ -14,7 +14,6 @@ from surefoot.planner.orientation import sole_rotation
 from surefoot.planner.parameters import PlannerParameters
 from surefoot.planner.swing.trajectory import SwingCourse, start_swing
 from surefoot.planner.types import Array, Foot, Footstep
-from surefoot.values import dataclass
 
 EDGE_CLEARANCE = 0.02
 """Height of every part of the sole above ground that is neither its lift-off nor its landing place [m]."""

@@ -5,6 +5,7 @@ A rear foot that stays flat is what a long step runs out of: with the heel up th
 front foot can carry it.
 """
 
+from dataclasses import dataclass
 from typing import NamedTuple
 
 import numpy as np
@@ -13,7 +14,6 @@ from surefoot.planner.geometry import frame_rotation
 from surefoot.planner.model.time_scaling import TimeScaling
 from surefoot.planner.orientation import roll_sole
 from surefoot.planner.types import Array, Foot, Footstep
-from surefoot.values import dataclass
 
 _BEGIN = 0.25
 """Share of the weight shift after which the heel leaves the ground [-]."""

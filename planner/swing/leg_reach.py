@@ -1,7 +1,7 @@
 """What legs can do to catch a body: where a foot may land beside its stance foot, how hard hips swing it there."""
 
 import math
-from dataclasses import field, replace
+from dataclasses import dataclass, field, replace
 
 import numpy as np
 
@@ -11,7 +11,6 @@ from surefoot.planner.swing.boxes import landing_boxes
 from surefoot.planner.swing.step_region import soles_apart
 from surefoot.planner.swing.trajectory import SwingTrajectory
 from surefoot.planner.types import Array, Footstep
-from surefoot.values import dataclass
 
 
 @dataclass(frozen=True, slots=True)

@@ -1,6 +1,7 @@
 """Where a footstep may land whatever the legs: the region of commanded steps, and the paper's reachable area."""
 
 import math
+from dataclasses import dataclass
 from functools import cache
 
 import numpy as np
@@ -8,7 +9,6 @@ import numpy as np
 from surefoot.errors import ParameterError, at_least, at_most
 from surefoot.planner.parameters import PlannerParameters, RecoveryParameters
 from surefoot.planner.types import Array, Foot, Footstep, Twist
-from surefoot.values import dataclass
 
 LANDING_ROUNDING = 1e-9
 """Places in the region are compared with this tolerance, since they are sums of rounded ways [m, rad]."""

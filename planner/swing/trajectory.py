@@ -1,7 +1,7 @@
 """Swing foot trajectory: quintic over the ground, up to an apex and softly down, replanned at every planner tick."""
 
 import math
-from dataclasses import field, replace
+from dataclasses import dataclass, field, replace
 from functools import lru_cache
 
 import numpy as np
@@ -11,7 +11,6 @@ from surefoot.planner.parameters import GroundSearch, PlannerParameters
 from surefoot.planner.quintic import between
 from surefoot.planner.swing.quintics import detour, straight_time, to_rest, up_and_down
 from surefoot.planner.types import Array, Foot
-from surefoot.values import dataclass, maker
 
 TOUCHING = 1e-9
 """Times of ticks carry rounding; a piece begins this much early [s]."""
@@ -243,8 +242,6 @@ class SwingTrajectory:
         return replace(self, rise_start=time, rise=rise, fall_start=self.apex_time, fall=fall)
 
 
-_a_swing = maker(SwingTrajectory)
-
 _FACTORIAL = np.array([[1.0], [1.0], [2.0]])
 _EXPONENTS = np.arange(6)
 _BENDING = (_EXPONENTS * (_EXPONENTS - 1.0))[2:]
@@ -304,7 +301,7 @@ def start_swing(
     top, still, times = max(begin[2], footstep.item(2)) + course.height, (begin[2], 0.0, 0.0), (start, apex, touchdown)
     rise, fall = up_and_down(still, top, (end[2], search.touchdown_speed), times, lifting, TOUCHING)
     falls = rise is None
-    return _a_swing(
+    return SwingTrajectory(
         foot=foot,
         start_time=glide_start,
         glide_end=glide_end,

@@ -10,6 +10,7 @@ import os
 import sys
 import traceback
 from collections.abc import Sequence
+from dataclasses import dataclass
 from pathlib import Path
 from shlex import quote
 from typing import TYPE_CHECKING, Annotated
@@ -36,7 +37,6 @@ from surefoot.scenarios.show.options import (
     with_options,
 )
 from surefoot.scenarios.study import commands as studies
-from surefoot.values import dataclass
 
 if TYPE_CHECKING:
     from _typeshed import ReadableBuffer

@@ -2,6 +2,7 @@
 
 import json
 from collections.abc import Iterator, Mapping
+from dataclasses import dataclass
 from typing import Any
 
 from surefoot.models.names import ROBOTS
@@ -11,7 +12,6 @@ from surefoot.scenarios import catalogue
 from surefoot.scenarios.file.registries import PLANT_NAMES, SOURCES, TERRAIN_KINDS
 from surefoot.scenarios.judge.names import METRICS
 from surefoot.scenarios.study.campaigns.shipped import shipped
-from surefoot.values import dataclass
 from surefoot.wbc.tasks.registry import TASKS
 
 _REGISTRIES: Mapping[str, Registry[Any]] = {

@@ -2,7 +2,7 @@
 
 import json
 import re
-from dataclasses import field
+from dataclasses import dataclass, field
 from functools import cache, lru_cache
 from typing import TYPE_CHECKING, Any
 
@@ -10,7 +10,6 @@ import yaml
 
 from surefoot.scenarios.errors import ScenarioError
 from surefoot.scenarios.file.source import MAX_VALUES, Composer, Reader, Source, parse
-from surefoot.values import dataclass
 
 if TYPE_CHECKING:
     from surefoot.scenarios.file.schema import Scenario

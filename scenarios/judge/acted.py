@@ -2,6 +2,7 @@
 
 import math
 from collections.abc import Iterator, Mapping, Sequence
+from dataclasses import dataclass
 
 import numpy as np
 
@@ -14,7 +15,6 @@ from surefoot.scenarios.judge.digest import CONTROL_TOPICS, Array, RunView
 from surefoot.scenarios.judge.feet import terrain_of
 from surefoot.scenarios.judge.walking import fall_time, runs_of
 from surefoot.scenarios.record.provenance import END_RECORD
-from surefoot.values import dataclass
 
 AT_PLACE = 0.02
 """Distance from the place where the robot was told to go within which it is there, if no criterion says it [m]."""

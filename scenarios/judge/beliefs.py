@@ -7,7 +7,7 @@ masses and CoM, docs/serve.md of late commands. Of gains it is a factor, and of 
 import math
 import re
 from collections.abc import Iterator
-from dataclasses import fields, is_dataclass
+from dataclasses import dataclass, fields, is_dataclass
 from typing import Any
 
 import numpy as np
@@ -18,7 +18,6 @@ from surefoot.scenarios.judge.digest import RunView
 from surefoot.scenarios.judge.scenario import scenario_of
 from surefoot.sim.sensor_errors import PRESETS
 from surefoot.similarity import Similarity
-from surefoot.values import dataclass
 
 SAME_FRICTION = 0.02
 """Difference of friction coefficients that is none [-]."""

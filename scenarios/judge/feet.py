@@ -1,5 +1,7 @@
 """Metrics of the feet: where they land, how high they swing, how they hold."""
 
+from dataclasses import dataclass
+
 import numpy as np
 
 from surefoot.planner.geometry import corners, headings, rotations, sole_corners
@@ -11,7 +13,6 @@ from surefoot.scenarios.judge.digest import SENSED, Array, Mask, Rows, RunView
 from surefoot.scenarios.judge.metric import DEG, MM, metric
 from surefoot.scenarios.judge.placed import to_truth
 from surefoot.scenarios.judge.walking import FALL_READS, fall_time, runs_of
-from surefoot.values import dataclass
 from surefoot.wbc.leaning import line_centre
 
 _CLEARANCE_TICKS = 5

@@ -1,12 +1,12 @@
 """What a health check finds in a log."""
 
+from dataclasses import dataclass
 from typing import Any, Literal
 
 import numpy as np
 
 from surefoot.scenarios.judge.digest import Array, Mask, RunView
 from surefoot.scenarios.judge.walking import fall_time
-from surefoot.values import dataclass
 
 Relation = Literal["cause", "effect"]
 

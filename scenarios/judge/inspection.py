@@ -2,7 +2,7 @@
 
 import math
 from collections.abc import Iterable
-from dataclasses import asdict
+from dataclasses import asdict, dataclass
 from typing import Any
 
 import numpy as np
@@ -15,7 +15,6 @@ from surefoot.scenarios.judge.scenario import scenario_of
 from surefoot.scenarios.judge.verdict import Verdict, judge
 from surefoot.scenarios.log import ChannelData, FieldSpec, Log
 from surefoot.scenarios.log.reader import RECOVERED
-from surefoot.values import dataclass
 
 
 @dataclass(frozen=True, slots=True)

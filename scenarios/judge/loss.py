@@ -1,11 +1,12 @@
 """When a robot that fell had lost its balance: before that things acted on it, after it all is an effect."""
 
+from dataclasses import dataclass
+
 import numpy as np
 
 from surefoot.scenarios.errors import LogError
 from surefoot.scenarios.judge.digest import Array, Mask, RunView
 from surefoot.scenarios.judge.walking import fall_time
-from surefoot.values import dataclass
 
 REGAINED = 1.0
 """Time for which a margin has to stay positive until balance counts as regained, longer than a step [s]."""

@@ -7,6 +7,7 @@ import keyword
 import math
 import sys
 from collections.abc import Callable
+from dataclasses import dataclass
 from functools import lru_cache
 from importlib import import_module
 from operator import attrgetter
@@ -18,7 +19,6 @@ from surefoot.documented import doc_of
 from surefoot.errors import ParameterError
 from surefoot.scenarios.columns import Reads
 from surefoot.scenarios.judge.digest import Array, RunView
-from surefoot.values import dataclass
 
 __all__ = ["RESERVED", "TRUTH", "Metric", "Reads", "Reduction", "RunView", "metric", "reduction"]
 

@@ -2,6 +2,7 @@
 
 import math
 from collections.abc import Callable, Iterable, Iterator, Mapping
+from dataclasses import dataclass
 from functools import partial
 from types import ModuleType
 from typing import TYPE_CHECKING, Any
@@ -29,7 +30,6 @@ from surefoot.scenarios.judge import (
 from surefoot.scenarios.judge.digest import CONTROL_TOPICS, HELD, SENSED, Digest, RunView, Source
 from surefoot.scenarios.judge.metric import Metric, Reduction
 from surefoot.scenarios.judge.placed import PLACED
-from surefoot.values import dataclass
 
 if TYPE_CHECKING:
     from surefoot.scenarios.log import Log

@@ -1,6 +1,7 @@
 """Whether the pushes that a plant was asked for acted: their impulse as asked against that which the log shows."""
 
 from collections.abc import Iterator, Sequence
+from dataclasses import dataclass
 
 import numpy as np
 from numpy.typing import NDArray
@@ -9,7 +10,6 @@ from surefoot.scenarios.columns import Reads
 from surefoot.scenarios.errors import LogError
 from surefoot.scenarios.judge.digest import Array, Mask, RunView
 from surefoot.scenarios.record.provenance import AskedPush, asked_pushes
-from surefoot.values import dataclass
 
 READS: Reads = {"/measurement": ("external_force",), "/truth": ("external_force",)}
 """The force that acted; ``/truth`` has that of the pendulum."""

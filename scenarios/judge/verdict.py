@@ -3,6 +3,7 @@
 import json
 import math
 from collections.abc import Iterable, Iterator, Mapping, Sequence
+from dataclasses import dataclass
 from html import escape
 from itertools import islice
 from pathlib import Path
@@ -22,7 +23,6 @@ from surefoot.scenarios.judge.walking import steps_added
 from surefoot.scenarios.log import Log
 from surefoot.scenarios.output import write_whole
 from surefoot.scenarios.record.provenance import END_RECORD, Agenda, Event
-from surefoot.values import dataclass
 
 _SAME_TIME = 1e-8
 """Times of ticks are sums and carry rounding [s]."""

@@ -2,6 +2,7 @@
 
 from bisect import bisect_right
 from collections.abc import Mapping, Sequence
+from dataclasses import dataclass
 from functools import lru_cache
 from operator import itemgetter
 
@@ -10,7 +11,6 @@ from mcap.opcode import Opcode
 from numpy.typing import NDArray
 
 from surefoot.scenarios.log.channel import ENTRY, ChannelWriter, Slab, Waiting, message_index
-from surefoot.values import dataclass
 
 Record = bytes | memoryview
 

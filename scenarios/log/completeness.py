@@ -4,6 +4,7 @@ import zlib
 from array import array
 from collections import Counter
 from collections.abc import Collection, Iterator
+from dataclasses import dataclass
 from functools import cached_property
 from itertools import groupby, pairwise
 
@@ -24,7 +25,6 @@ from surefoot.scenarios.log.scan import (
     take_definition,
 )
 from surefoot.scenarios.log.spec import PACKAGE
-from surefoot.values import dataclass
 
 _HEADER = np.dtype(
     [("opcode", "u1"), ("length", "<u8"), ("channel", "<u2"), ("sequence", "<u4"), ("time", "<u8"), ("publish", "<u8")]

@@ -2,6 +2,7 @@
 
 import zlib
 from collections.abc import Callable, Iterable, Mapping
+from dataclasses import dataclass
 from pathlib import Path
 from typing import Protocol, TypeAlias
 
@@ -10,7 +11,6 @@ from mcap.records import Attachment, Chunk, Header, Metadata
 from surefoot.scenarios.errors import LogError
 from surefoot.scenarios.log.encoding import MAGIC, Summary, chunk_head, encoded
 from surefoot.scenarios.output import reason
-from surefoot.values import dataclass
 
 _PROFILE, _LIBRARY = "", "surefoot"
 

@@ -1,14 +1,13 @@
 """What rows of the log are made of, and the table in which they wait."""
 
 from collections.abc import Callable, Iterable, Mapping, Sequence
-from dataclasses import field
+from dataclasses import dataclass, field
 from typing import Protocol
 
 import numpy as np
 from numpy.typing import NDArray
 
 from surefoot.scenarios.log.channel import ChannelWriter
-from surefoot.values import dataclass
 
 Array = NDArray[np.float64]
 Columns = Sequence[tuple[ChannelWriter, Sequence[str]]]

@@ -2,13 +2,13 @@
 
 import math
 from collections.abc import Iterable, Mapping
+from dataclasses import dataclass
 from pathlib import Path
 
 from mcap.records import Metadata
 
 from surefoot.scenarios.errors import LogError
 from surefoot.scenarios.log.file import Head, IndexedChunk, LogFile
-from surefoot.values import dataclass
 
 KEPT_RECORD = "kept"
 """Metadata record of a log that lacks the beginning of its run."""

@@ -1,6 +1,7 @@
 """Makes a whole, indexed log of what a truncated or damaged one still holds."""
 
 import zlib
+from dataclasses import dataclass
 from pathlib import Path
 from typing import BinaryIO
 
@@ -13,7 +14,6 @@ from surefoot.scenarios.log.encoding import MAGIC, Summary, encoded
 from surefoot.scenarios.log.reader import RECOVERED, Log, read
 from surefoot.scenarios.log.scan import PREFIX, index_chunk
 from surefoot.scenarios.output import shown, write_whole
-from surefoot.values import dataclass
 
 Index = dict[int, NDArray[np.void]]
 

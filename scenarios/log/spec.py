@@ -7,6 +7,7 @@ reads or writes a block of them without a loop.
 
 import json
 from collections.abc import Iterator, Mapping, Sequence
+from dataclasses import dataclass
 from functools import cache, cached_property, lru_cache
 from math import prod
 from typing import Any, Literal, NamedTuple
@@ -15,8 +16,6 @@ import numpy as np
 from google.protobuf import descriptor_pb2
 from mcap.opcode import Opcode
 from numpy.typing import NDArray
-
-from surefoot.values import dataclass
 
 Kind = Literal["double", "int"]
 

@@ -1,6 +1,7 @@
 """Channels of a log of which only some messages are written: at most so many in a second."""
 
 from collections.abc import Callable, Mapping, Sequence
+from dataclasses import dataclass
 
 from numpy.typing import ArrayLike
 
@@ -8,7 +9,6 @@ from surefoot.scenarios.log.channel import ChannelWriter, Clock, MessageWriter
 from surefoot.scenarios.log.layout import Array
 from surefoot.scenarios.log.rows import RowWriter
 from surefoot.scenarios.log.spec import ChannelSpec
-from surefoot.values import dataclass
 
 THINNED = "thinned"
 """Key in the metadata of a channel that is thinned: messages that it has at most in a second."""

@@ -3,6 +3,7 @@
 import zlib
 from collections import deque
 from collections.abc import Iterator, Mapping, Sequence
+from dataclasses import dataclass
 from functools import lru_cache
 from pathlib import Path
 from types import TracebackType
@@ -20,7 +21,6 @@ from surefoot.scenarios.log.recorder import FlightRecorder
 from surefoot.scenarios.log.rows import RowWriter
 from surefoot.scenarios.log.spec import PACKAGE, ChannelSpec
 from surefoot.scenarios.log.thinning import THINNED, Sieve, ThinnedChannel, ThinnedMessages, ThinnedRows, Thinning
-from surefoot.values import dataclass
 
 Compression = Literal["lz4", "zstd", ""]
 CHUNK_PERIOD_NS = 90_000_000

@@ -3,11 +3,11 @@
 Feet are ordered left, right; wrenches force first; poses x y z qx qy qz qw; q and v follow Pinocchio's convention.
 """
 
+from dataclasses import dataclass
 from functools import cache
 
 from surefoot.documented import doc_of
 from surefoot.scenarios.log.spec import ChannelSpec, FieldSpec
-from surefoot.values import dataclass
 from surefoot.wbc.tasks import DEFAULT_LAYOUT, TaskLayout
 
 SUPPORT_VERTICES = 8

@@ -8,7 +8,7 @@ import platform
 import re
 import subprocess
 from collections.abc import Iterator, Mapping
-from dataclasses import asdict, field, fields, replace
+from dataclasses import asdict, dataclass, field, fields, replace
 from functools import cache
 from importlib.metadata import PackageNotFoundError, distribution
 from pathlib import Path
@@ -20,7 +20,6 @@ from surefoot.forces import Push
 from surefoot.native import modules
 from surefoot.scenarios.errors import LogError
 from surefoot.similarity import Similarity
-from surefoot.values import dataclass
 
 RECORD = "run"
 """Name of the metadata record."""

@@ -2,6 +2,7 @@
 
 import math
 import os
+from dataclasses import dataclass
 
 import numpy as np
 from numpy.typing import NDArray
@@ -17,7 +18,6 @@ from surefoot.scenarios.log.layout import Place, RowLayout
 from surefoot.scenarios.record import channels
 from surefoot.scenarios.record.channels import SUPPORT_VERTICES, Sizes
 from surefoot.scenarios.record.provenance import BEGUN_RECORD, AskedPush
-from surefoot.values import dataclass
 
 Array = NDArray[np.float64]
 

@@ -1,7 +1,7 @@
 """What a controller is put together of: a walk, and parts of Surefoot or of others."""
 
 from collections.abc import Callable, Iterator, Mapping
-from dataclasses import fields, replace
+from dataclasses import dataclass, fields, replace
 from operator import index
 from typing import TYPE_CHECKING, Any
 
@@ -22,7 +22,6 @@ from surefoot.scenarios.setup.parts import TASK, guarded
 from surefoot.scenarios.setup.sized import clock
 from surefoot.scenarios.setup.stance import Body
 from surefoot.scenarios.setup.walk import Walk, resolve
-from surefoot.values import dataclass
 from surefoot.wbc.cone import Sole
 from surefoot.wbc.controller import WholeBodyController
 from surefoot.wbc.tasks import TASKS, Task, TaskFactory

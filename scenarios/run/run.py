@@ -4,6 +4,7 @@ import gc
 import sys
 from collections.abc import Callable, Iterator, Mapping
 from contextlib import contextmanager, suppress
+from dataclasses import dataclass
 from functools import lru_cache
 from pathlib import Path
 from typing import TYPE_CHECKING, cast
@@ -39,7 +40,6 @@ from surefoot.scenarios.run.skeleton import ClosedLoop, End, OnProgress, Progres
 from surefoot.scenarios.setup.load import load as load_scenario
 from surefoot.scenarios.setup.notes import agenda
 from surefoot.scenarios.setup.walk import Walk, resolve
-from surefoot.values import dataclass
 
 if TYPE_CHECKING:
     from surefoot.models.types import RobotDescription

@@ -18,7 +18,6 @@ from surefoot.scenarios.setup.parts import ESTIMATE, guarded
 from surefoot.scenarios.setup.walk import Walk
 from surefoot.sim.measurement import Measurement
 from surefoot.sim.sensor_errors import SensorErrors
-from surefoot.values import opened
 from surefoot.wbc.estimation.estimate import Deviation, Estimate, Planned
 from surefoot.wbc.estimation.estimator import SensedState
 from surefoot.wbc.estimation.footing import Footing, ImuMount
@@ -27,8 +26,6 @@ from surefoot.wbc.estimation.torques import TorqueWrench
 from surefoot.wbc.types import NONE_TOUCHES, Array, FootSensing, WbcReference, WbcReport
 
 _OPTIONS = ("sensing", "options")
-
-_OpenSensing = opened(FootSensing)
 
 
 def sensed_state(walk: Walk, **options: Any) -> SensedState:
@@ -188,15 +185,13 @@ def foot_sensing(
             that are felt.
         touching: see `FootSensing`.
     """
-    made, age, sure = _OpenSensing(), estimate.wrench_age, estimate.deviation
-    made.normal_force, made.wrench = (wrench.item(2), wrench.item(8)), wrench if wanted else None
-    made.contact, made.load_deviation, made.touching = estimate.contact, (0.0, 0.0), touching
+    deviation, age, sure = (0.0, 0.0), estimate.wrench_age, estimate.deviation
     if inferred is not None:
-        made.load_deviation, age = inferred.deviation, age + inferred.late
+        deviation, age = inferred.deviation, age + inferred.late
     if sure is not None:
-        made.load_deviation = sure.force, sure.moment
-    made.wrench_age, made.__class__ = age, FootSensing
-    return made  # type: ignore[no-any-return]
+        deviation = sure.force, sure.moment
+    forces = wrench.item(2), wrench.item(8)
+    return FootSensing(forces, wrench if wanted else None, estimate.contact, deviation, age, touching)
 
 
 def unsure(deviation: Deviation, state: CentroidalState, feet: FeetState) -> tuple[CentroidalState, FeetState]:

@@ -3,7 +3,7 @@
 import time
 from collections.abc import Callable, Iterator, Sequence
 from contextlib import contextmanager
-from dataclasses import replace
+from dataclasses import dataclass, replace
 from traceback import format_exception
 from typing import Literal, Protocol
 
@@ -19,7 +19,6 @@ from surefoot.scenarios.run.tick import Look, Spent
 from surefoot.scenarios.setup.gait import PushPoint
 from surefoot.scenarios.setup.keys import scenario_problem
 from surefoot.scenarios.setup.walk import Walk
-from surefoot.values import dataclass
 from surefoot.wbc.controller import WholeBodyController
 
 _PHASE_NAMES = {PhaseKind.STAND: "standing", PhaseKind.DOUBLE: "double support", PhaseKind.SINGLE: "single support"}

@@ -1,5 +1,6 @@
 """What there is to see of a control tick: of what walks, and of a simulation that is stepped from outside."""
 
+from dataclasses import dataclass
 from typing import NamedTuple
 
 import numpy as np
@@ -8,7 +9,6 @@ from numpy.typing import NDArray
 from surefoot.planner.plan import PlanSample, WalkPlan
 from surefoot.planner.types import PhaseKind
 from surefoot.sim.measurement import Measurement
-from surefoot.values import dataclass
 from surefoot.wbc.types import RobotState, WbcReport
 
 Array = NDArray[np.float64]

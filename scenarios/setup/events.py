@@ -3,7 +3,7 @@
 import math
 from bisect import bisect_right
 from collections.abc import Iterator, Sequence
-from dataclasses import replace
+from dataclasses import dataclass, replace
 
 import numpy as np
 from numpy.typing import NDArray
@@ -31,7 +31,6 @@ from surefoot.scenarios.setup.gait import (
 from surefoot.scenarios.setup.walk import Walk
 from surefoot.sim.pushes import physics_window
 from surefoot.sim.sensor_errors import SOON
-from surefoot.values import dataclass
 
 Array = NDArray[np.float64]
 

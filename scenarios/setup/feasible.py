@@ -4,7 +4,7 @@ What a refusal proposes has been tried: the scenario with it goes through every 
 """
 
 import math
-from dataclasses import replace
+from dataclasses import dataclass, replace
 from functools import lru_cache
 from shlex import quote
 from typing import TYPE_CHECKING, Any, ClassVar
@@ -26,7 +26,6 @@ from surefoot.scenarios.setup.stance import Body, feet_at, leg_inertia, start_po
 from surefoot.scenarios.setup.stances import check_stances
 from surefoot.scenarios.setup.terrain import KINDS
 from surefoot.scenarios.setup.walk import Walk, resolve
-from surefoot.values import dataclass
 
 if TYPE_CHECKING:
     from surefoot.planner.parameters import LegInertia

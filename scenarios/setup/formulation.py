@@ -2,7 +2,7 @@
 
 import math
 from collections.abc import Iterator
-from dataclasses import replace
+from dataclasses import dataclass, replace
 from functools import cached_property, lru_cache
 from typing import Any
 
@@ -27,7 +27,6 @@ from surefoot.scenarios.setup.gait import longest_landing, step_region
 from surefoot.scenarios.setup.parts import profile_guard
 from surefoot.scenarios.setup.terrain.ground import Ground
 from surefoot.similarity import Similarity
-from surefoot.values import dataclass
 
 LEG_SHARE = 0.9
 """Share of the span of the legs that steps on command make use of: with all of it both are straight at touchdown, and

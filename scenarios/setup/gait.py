@@ -2,6 +2,7 @@
 
 import math
 from collections.abc import Sequence
+from dataclasses import dataclass
 
 import numpy as np
 
@@ -14,7 +15,6 @@ from surefoot.planner.steps.source import CommandSource, steps_ordered
 from surefoot.planner.swing.step_region import StepRegion
 from surefoot.planner.types import Array, Foot, Footstep, PhaseInfo, PhaseKind, Twist
 from surefoot.scenarios.file import schema
-from surefoot.values import dataclass
 
 EQUAL_STEPS = ("steps", "step_length", "lateral_step", "turn")
 """Keys of a gait of equal steps, which say nothing beside a velocity or footsteps."""

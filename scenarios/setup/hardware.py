@@ -1,7 +1,7 @@
 """Sensors and motors of a scenario: what their keys mean, and which of them cannot act."""
 
 from collections.abc import Iterator
-from dataclasses import fields, replace
+from dataclasses import dataclass, fields, replace
 from functools import lru_cache
 from typing import Any
 
@@ -12,7 +12,6 @@ from surefoot.scenarios.file.sensing import SENSOR_KEYS, MotorSettings, Sensing
 from surefoot.sim.drives import IDEAL, DriveErrors
 from surefoot.sim.sensor_errors import PRESETS, Delivery, SensorErrors
 from surefoot.similarity import Similarity
-from surefoot.values import dataclass
 
 _GROUPS = {"joints": "encoder", "imu": "imu", "feet": "wrench"}
 """How the keys of each group of sensors begin."""

@@ -1,11 +1,12 @@
 """Tables of keys: what the layers below call them, and which of them each fidelity feels."""
 
+from dataclasses import dataclass
+
 from surefoot.errors import ParameterError
 from surefoot.planner.references.com_height import Rise
 from surefoot.scenarios.errors import Key, Problem
 from surefoot.scenarios.file.schema import PendulumSettings
 from surefoot.scenarios.file.sensing import SENSOR_KEYS
-from surefoot.values import dataclass
 
 _NAMES: dict[Key, Key] = {
     ("gait", "apex_ss"): ("gait", "apex_single"),

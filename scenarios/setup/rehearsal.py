@@ -1,6 +1,7 @@
 """The first steps of a walk, gone through by the planner's chain of links: what the legs cannot do is told before."""
 
 import math
+from dataclasses import dataclass
 from typing import TYPE_CHECKING
 
 import numpy as np
@@ -12,7 +13,6 @@ from surefoot.planner.sampling import PlanSampler
 from surefoot.planner.types import Array, CentroidalState, FeetState, Foot, PhaseKind
 from surefoot.polygon import convex_hull
 from surefoot.scenarios.setup.walk import Walk
-from surefoot.values import dataclass
 
 if TYPE_CHECKING:
     from surefoot.models.types import RobotDescription

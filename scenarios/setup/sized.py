@@ -10,7 +10,7 @@ import copy
 import math
 from collections.abc import Iterator
 from contextlib import suppress
-from dataclasses import fields, is_dataclass
+from dataclasses import dataclass, fields, is_dataclass
 from functools import lru_cache
 from typing import Any, TypeVar
 
@@ -32,7 +32,6 @@ from surefoot.scenarios.judge.metrics import known
 from surefoot.scenarios.setup.robot import POSTURE, Robots, Rule, is_known, nearer_landings, rules
 from surefoot.scenarios.setup.walk import Walk
 from surefoot.similarity import REFERENCE, REFERENCE_SIZE, Similarity
-from surefoot.values import dataclass
 from surefoot.wbc.parameters import WbcParameters
 
 _KEY = "sized_for"

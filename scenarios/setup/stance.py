@@ -1,7 +1,7 @@
 """How a robot stands: what that takes of its joints, and the posture, its noise and the feet when a run begins."""
 
 import math
-from dataclasses import replace
+from dataclasses import dataclass, replace
 from functools import lru_cache
 
 import numpy as np
@@ -19,7 +19,6 @@ from surefoot.planner.parameters import LegInertia
 from surefoot.planner.types import FeetState
 from surefoot.scenarios.setup.walk import Walk
 from surefoot.streams import generator
-from surefoot.values import dataclass
 from surefoot.wbc.ik import PostureIk, PostureTarget
 from surefoot.wbc.leaning import line_centre
 from surefoot.wbc.limits import JointLimits

@@ -13,7 +13,7 @@ with a force that goes from its sole through the CoM (`surefoot.wbc.statics.bear
 
 import math
 from collections.abc import Iterator
-from dataclasses import replace
+from dataclasses import dataclass, replace
 
 import numpy as np
 
@@ -27,7 +27,6 @@ from surefoot.planner.types import GRAVITY, Array, Foot, Footstep
 from surefoot.scenarios.file.schema import Scenario
 from surefoot.scenarios.setup.stance import Body, body_of, start_posture
 from surefoot.scenarios.setup.walk import Walk, resolve
-from surefoot.values import dataclass
 from surefoot.wbc.ik import PostureIk, PostureResult, PostureTarget
 from surefoot.wbc.statics import bearing_torque
 

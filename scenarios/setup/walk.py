@@ -2,7 +2,7 @@
 
 import math
 from collections.abc import Mapping
-from dataclasses import field, replace
+from dataclasses import dataclass, field, replace
 from functools import cached_property
 from operator import index
 from typing import TYPE_CHECKING, Any
@@ -43,7 +43,6 @@ from surefoot.scenarios.setup.robot import describe, true_robot
 from surefoot.scenarios.setup.terrain import kind_of
 from surefoot.scenarios.setup.terrain.ground import Ground, tiles_of, tilt_of
 from surefoot.similarity import REFERENCE_SIZE, Similarity
-from surefoot.values import dataclass
 from surefoot.wbc.parameters import WbcParameters
 
 if TYPE_CHECKING:

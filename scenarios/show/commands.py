@@ -2,6 +2,7 @@
 
 import json
 import math
+from dataclasses import dataclass
 from pathlib import Path
 from typing import TYPE_CHECKING, Annotated
 
@@ -10,7 +11,6 @@ import typer
 from surefoot.lazy import importing
 from surefoot.scenarios.errors import LogError
 from surefoot.scenarios.show.options import MISSED, AsJson, From, LogFile, Replace, To, with_options
-from surefoot.values import dataclass
 
 if TYPE_CHECKING:
     from surefoot.scenarios.log import Log

@@ -2,7 +2,7 @@
 
 import math
 from collections.abc import Iterator
-from dataclasses import asdict
+from dataclasses import asdict, dataclass
 from pathlib import Path
 from typing import Any
 
@@ -29,7 +29,6 @@ from surefoot.scenarios.show.differences import (
     unreadable,
 )
 from surefoot.scenarios.show.logview import LogView
-from surefoot.values import dataclass
 
 TOLERANCE = 1e-6
 

@@ -1,6 +1,7 @@
 """Where two runs part, channel by channel, bit by bit and by a tolerance; and what their logs were made of."""
 
 from collections.abc import Callable, Collection, Iterator, Mapping, Sequence
+from dataclasses import dataclass
 from functools import partial
 from operator import itemgetter
 from typing import Any
@@ -15,7 +16,6 @@ from surefoot.scenarios.judge.metrics import measure
 from surefoot.scenarios.log import ChannelData, FieldSpec, Log
 from surefoot.scenarios.log.stretches import FIRST, LAST, between
 from surefoot.scenarios.record.provenance import RECORD, SCENARIO_FILE
-from surefoot.values import dataclass
 
 WALL_CLOCK = ("/process", "/timing")
 """Topics that differ between any two runs."""

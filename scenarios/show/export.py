@@ -4,6 +4,7 @@ import csv
 import importlib
 import zipfile
 from collections.abc import Callable, Iterator, Mapping
+from dataclasses import dataclass
 from pathlib import Path
 
 import numpy as np
@@ -11,7 +12,6 @@ import numpy as np
 from surefoot.scenarios.errors import LogError, require
 from surefoot.scenarios.log import ChannelData, FieldSpec, Log
 from surefoot.scenarios.output import refuse_existing, write_whole
-from surefoot.values import dataclass
 
 _ROWS_AT_ONCE = 4096
 

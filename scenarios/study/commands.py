@@ -1,6 +1,7 @@
 """The commands that make many runs: sweep, check, bench and paper."""
 
 import json
+from dataclasses import dataclass
 from pathlib import Path
 from typing import Annotated
 
@@ -17,7 +18,6 @@ from surefoot.scenarios.show.options import (
     settings,
     with_options,
 )
-from surefoot.values import dataclass
 
 app = typer.Typer()
 

@@ -1,9 +1,8 @@
 """What an estimator says, how sure it is of that, and what it is told back."""
 
 from collections.abc import Mapping
-from dataclasses import field
+from dataclasses import dataclass, field
 
-from surefoot.values import dataclass
 from surefoot.wbc.types import Array, RobotState
 
 

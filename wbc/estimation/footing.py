@@ -2,12 +2,12 @@
 
 import math
 from collections.abc import Callable
+from dataclasses import dataclass
 from typing import TYPE_CHECKING
 
 import numpy as np
 import pinocchio as pin
 
-from surefoot.values import dataclass
 from surefoot.wbc.types import Array
 
 if TYPE_CHECKING:

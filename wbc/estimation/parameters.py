@@ -5,7 +5,8 @@ sheet says: those numbers were measured in simulated walks. Forces and moments a
 `surefoot.similarity`); an IMU is one of any size.
 """
 
-from surefoot.values import dataclass
+from dataclasses import dataclass
+
 from surefoot.wbc.tunable import check, number
 
 

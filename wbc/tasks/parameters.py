@@ -1,6 +1,7 @@
 """Weights and gains of the tasks."""
 
-from surefoot.values import dataclass
+from dataclasses import dataclass
+
 from surefoot.wbc.tunable import check, number
 
 

@@ -1,11 +1,11 @@
 """What a task is to the whole-body QP, and what several tasks have in common."""
 
 from collections.abc import Callable, Iterable
+from dataclasses import dataclass
 from typing import Protocol
 
 import pinocchio as pin
 
-from surefoot.values import dataclass
 from surefoot.wbc.model import BodyFrames, RobotTerms
 from surefoot.wbc.tasks import law
 from surefoot.wbc.tasks.registry import TaskLayout

@@ -2,6 +2,7 @@
 
 import json
 import math
+from dataclasses import dataclass
 from functools import partial
 from pathlib import Path
 from typing import TYPE_CHECKING, Annotated
@@ -20,7 +21,6 @@ from surefoot.scenarios.show.options import (
     scenarios_from,
     with_options,
 )
-from surefoot.values import dataclass
 
 if TYPE_CHECKING:
     from surefoot.scenarios.run.run import Result

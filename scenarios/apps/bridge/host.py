@@ -1,7 +1,7 @@
 """The plant's side of a bridge: a simulated robot that does what it is told, or is damped."""
 
 import math
-from dataclasses import replace
+from dataclasses import dataclass, field, replace
 
 from surefoot.errors import ParameterError
 from surefoot.forces import Push
@@ -17,7 +17,6 @@ from surefoot.sim.errors import SimulationDiverged
 from surefoot.sim.measurement import Measurement
 from surefoot.sim.readings import SensorSuite
 from surefoot.sim.world import World
-from surefoot.values import dataclass
 
 _SOON = 1e-9
 """By what times of ticks may miss one another, for rounding [s]."""
@@ -34,7 +33,7 @@ class Care:
         torque_rate: by which torques may change; see `Limits`.
     """
 
-    disturbance: Disturbance = Disturbance()
+    disturbance: Disturbance = field(default_factory=Disturbance)
     watchdog: float = math.inf
     soft_start: float = 0.0
     torque_rate: float = math.inf

@@ -2,11 +2,11 @@
 
 import heapq
 import math
+from dataclasses import dataclass
 
 from surefoot.errors import ParameterError
 from surefoot.joints import JointCommand
 from surefoot.streams import Stream, generator
-from surefoot.values import dataclass
 
 _SOON = 1e-9
 """What arrives so shortly after a tick is there at the tick [s]."""

@@ -6,7 +6,7 @@ such as the pose of its base, is in a part of its own.
 
 import json
 from collections.abc import Iterable, Mapping
-from dataclasses import asdict
+from dataclasses import asdict, dataclass
 from functools import lru_cache
 from typing import Any
 
@@ -18,7 +18,6 @@ from surefoot.joints import JointCommand, Servo
 from surefoot.readings import Reading, Readings
 from surefoot.scenarios.errors import LinkError
 from surefoot.sim.measurement import Array, Measurement, is_rotation
-from surefoot.values import dataclass
 
 
 @lru_cache(maxsize=4)

@@ -2,6 +2,7 @@
 
 import contextlib
 from collections.abc import Mapping, Sequence
+from dataclasses import dataclass
 from typing import Any
 
 import numpy as np
@@ -30,7 +31,6 @@ from surefoot.scenarios.run.planning import RunFault
 from surefoot.scenarios.run.plant import measured_tick
 from surefoot.scenarios.setup.walk import Walk
 from surefoot.sim.measurement import Array, Measurement
-from surefoot.values import dataclass
 
 PATIENCE = 10.0
 """How long a plant may take for an answer [s]."""

@@ -3,7 +3,7 @@
 import contextlib
 import time
 from collections.abc import Callable, Mapping
-from dataclasses import replace
+from dataclasses import dataclass, replace
 from queue import Empty
 from typing import Any
 
@@ -13,7 +13,6 @@ from surefoot.scenarios.apps.bridge.host import Care, Host
 from surefoot.scenarios.apps.bridge.messages import command_of, end_bytes, push_of, start_of, state_bytes, why_of
 from surefoot.scenarios.errors import LinkClosedError, LinkError
 from surefoot.scenarios.setup.walk import Walk
-from surefoot.values import dataclass
 
 PATIENCE, GETTING_READY = 10.0, 300.0
 """How long a controller may take for an answer, and to get ready [s]."""

@@ -3,6 +3,7 @@
 import math
 from collections import deque
 from collections.abc import Iterator, Sequence
+from dataclasses import dataclass
 
 import numpy as np
 from scipy.spatial.transform import Rotation
@@ -22,7 +23,6 @@ from surefoot.scenarios.show.replay.content import PUSH_SHOWN, Array, Facts, Rep
 from surefoot.scenarios.show.replay.extract import surfaces
 from surefoot.sim.bodies import BodyPoses
 from surefoot.sim.scene import world_mjcf
-from surefoot.values import dataclass
 from surefoot.wbc.model import RobotTerms
 from surefoot.wbc.zmp import centre_of_pressure, measured_zmp
 

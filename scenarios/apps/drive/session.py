@@ -5,7 +5,7 @@ import time
 from collections import deque
 from collections.abc import Callable
 from contextlib import suppress
-from dataclasses import asdict, replace
+from dataclasses import asdict, dataclass, replace
 from queue import Queue
 from typing import Any, Protocol
 
@@ -14,7 +14,6 @@ from surefoot.planner.types import Twist
 from surefoot.scenarios.run.planning import RunFault
 from surefoot.scenarios.run.simulation import Simulation, Tick
 from surefoot.scenarios.run.skeleton import End
-from surefoot.values import dataclass
 
 
 @dataclass(frozen=True, slots=True)

@@ -2,7 +2,7 @@
 
 import math
 from collections.abc import Callable, Iterator
-from dataclasses import asdict, replace
+from dataclasses import asdict, dataclass, replace
 from typing import Any
 
 import numpy as np
@@ -22,7 +22,6 @@ from surefoot.scenarios.errors import ScenarioError
 from surefoot.scenarios.judge.metrics import plain
 from surefoot.scenarios.setup.stance import Body, TorqueMargin, body_of, on_one_foot, standing
 from surefoot.scenarios.show.console import print_table
-from surefoot.values import dataclass
 
 Array = NDArray[np.float64]
 

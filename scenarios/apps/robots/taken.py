@@ -1,7 +1,7 @@
 """Which scenarios of the catalogue a robot takes, looked at or run, and how far that is."""
 
 from collections.abc import Callable, Iterable, Iterator, Mapping, Sequence
-from dataclasses import replace
+from dataclasses import dataclass, replace
 from pathlib import Path
 from typing import TYPE_CHECKING, Any, Literal, NamedTuple
 
@@ -15,7 +15,6 @@ from surefoot.scenarios.run.simulation import Simulation
 from surefoot.scenarios.setup.load import load
 from surefoot.scenarios.show.console import TerminalLine
 from surefoot.scenarios.study.campaigns.engine import side_by_side
-from surefoot.values import dataclass
 
 if TYPE_CHECKING:
     from rich.progress import ProgressColumn

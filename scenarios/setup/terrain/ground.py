@@ -2,7 +2,7 @@
 
 import math
 from collections.abc import Iterator
-from dataclasses import replace
+from dataclasses import dataclass, replace
 from functools import cached_property
 
 import numpy as np
@@ -21,7 +21,6 @@ from surefoot.scenarios.file.schema import Gait, GroundError, Scenario, Start, T
 from surefoot.scenarios.file.units import meant
 from surefoot.similarity import Similarity
 from surefoot.streams import Stream, generator
-from surefoot.values import dataclass
 
 PLATFORM = 1.0
 """Level ground kept before the first and after the last footstep on a platform, for the reference robot [m]."""

@@ -1,6 +1,7 @@
 """The page of all figures of a log, one of them, or two runs over each other, as a file."""
 
 from collections.abc import Callable
+from dataclasses import dataclass
 from functools import partial
 from pathlib import Path
 from textwrap import shorten
@@ -21,7 +22,6 @@ from surefoot.scenarios.show.figures.motion import draw_balance, draw_feet, draw
 from surefoot.scenarios.show.kit.figures import DASHED, Area, canvas, curve, format_of, in_style, legend, save
 from surefoot.scenarios.show.kit.shading import NOTHING, Background, Panel, background, draw_panels
 from surefoot.scenarios.show.logview import LogView, MissingError
-from surefoot.values import dataclass
 
 DrawFigure = Callable[[Area, LogView, Background], None]
 

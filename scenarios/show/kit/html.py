@@ -2,9 +2,8 @@
 
 import html
 from collections.abc import Iterable, Sequence
+from dataclasses import dataclass
 from importlib.resources import files
-
-from surefoot.values import dataclass
 
 MISSING = "–"
 """Stands where there is no number."""

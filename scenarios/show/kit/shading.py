@@ -1,6 +1,7 @@
 """Axes of time: panels below each other, and behind all curves what happened: supports, pushes, a fall."""
 
 from collections.abc import Callable, Iterable, Sequence
+from dataclasses import dataclass
 
 import numpy as np
 from matplotlib.axes import Axes
@@ -13,7 +14,6 @@ from surefoot.scenarios.judge.walking import fall_time
 from surefoot.scenarios.palette import BLACK, PUSH
 from surefoot.scenarios.show.kit.figures import Area, heading, legend, or_say
 from surefoot.scenarios.show.logview import FOOT_NAMES, LogView, MissingError
-from surefoot.values import dataclass
 
 _DOUBLE_SUPPORT = 1
 _SINGLE_GREY, _DOUBLE_GREY = "#E4E4E4", "#F4F4F4"

@@ -1,6 +1,7 @@
 """What a replay shows, whatever shows it: frames, surfaces on bodies, footprints, and marks made of facts."""
 
 from collections.abc import Iterator
+from dataclasses import dataclass
 from typing import Literal
 
 import numpy as np
@@ -10,7 +11,6 @@ from surefoot.planner.geometry import level_corners, rotations
 from surefoot.scenarios import palette
 from surefoot.scenarios.palette import Color
 from surefoot.scenarios.show.logview import FOOT_NAMES
-from surefoot.values import dataclass
 
 Array = NDArray[np.float64]
 

@@ -5,6 +5,7 @@ import html
 import json
 from collections.abc import Mapping, Sequence
 from contextlib import suppress
+from dataclasses import dataclass
 from importlib.resources import files
 from pathlib import Path
 from string import Template
@@ -20,7 +21,6 @@ from surefoot.scenarios.show.replay.content import Array, Replay, ReplayWindow
 from surefoot.scenarios.show.replay.extract import extract
 from surefoot.scenarios.show.replay.gate import serving
 from surefoot.scenarios.show.replay.scene import ViserScene
-from surefoot.values import dataclass
 
 
 @dataclass(frozen=True, slots=True)

@@ -3,7 +3,7 @@
 import itertools
 import time
 from collections.abc import Callable, Iterable, Iterator
-from dataclasses import replace
+from dataclasses import dataclass, replace
 from fractions import Fraction
 from pathlib import Path
 from typing import Any
@@ -25,7 +25,6 @@ from surefoot.scenarios.show.replay.extract import extract
 from surefoot.sim.gl import RenderingUnavailableError
 from surefoot.sim.marks import Mark
 from surefoot.sim.render import Camera, Image, Quality, render_frames
-from surefoot.values import dataclass
 
 TRAIL_STEP, TRAIL_LENGTH = 3, 300
 """Frames between the points of a trail, and frames that it reaches back."""

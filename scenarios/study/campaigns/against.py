@@ -3,13 +3,13 @@
 import csv
 import math
 from collections.abc import Iterator, Mapping, Sequence
+from dataclasses import dataclass
 from pathlib import Path
 
 from surefoot.scenarios.errors import ScenarioError
 from surefoot.scenarios.output import reason
 from surefoot.scenarios.study.campaigns.campaign import Campaign
 from surefoot.scenarios.study.campaigns.points import Cell, Outcome
-from surefoot.values import dataclass
 
 BASELINE = "baseline"
 """Stands for the table that comes with Surefoot."""

@@ -3,7 +3,7 @@
 import itertools
 import math
 from collections.abc import Iterator, Mapping, Sequence
-from dataclasses import replace
+from dataclasses import dataclass, replace
 from pathlib import Path
 from typing import Any, NamedTuple
 
@@ -16,7 +16,6 @@ from surefoot.scenarios.setup.load import Written, for_robot, key_problems, writ
 from surefoot.scenarios.setup.robot import Robots, is_known
 from surefoot.scenarios.study.campaigns.shipped import ENDING, shipped
 from surefoot.scenarios.study.campaigns.spec import MOST_RUNS, Bisect, Spec
-from surefoot.values import dataclass
 
 SCENARIO, SEARCH = "scenario", "bisect."
 """Keys that are no scenario's and may vary as any other: which scenario, and the range of the search."""

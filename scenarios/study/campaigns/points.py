@@ -5,7 +5,7 @@ import json
 import shlex
 import zlib
 from collections.abc import Generator, Iterator, Mapping, Sequence
-from dataclasses import field
+from dataclasses import dataclass, field
 from functools import cached_property
 from typing import Any, Literal, Protocol
 
@@ -14,7 +14,6 @@ import numpy as np
 from surefoot.scenarios.judge.metrics import known
 from surefoot.scenarios.study.campaigns.campaign import SCENARIO, SEARCH, Base, Campaign
 from surefoot.scenarios.study.campaigns.spec import Bisect, Draw
-from surefoot.values import dataclass
 
 RunStatus = Literal["pass", "fail", "refused", "broken"]
 """Criteria met; missed; a scenario that cannot be run; a run without a result, which is tried again."""

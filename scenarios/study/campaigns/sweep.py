@@ -5,6 +5,7 @@ import queue
 import threading
 from collections.abc import Callable, Iterable, Iterator, Sequence
 from contextlib import suppress
+from dataclasses import dataclass
 from functools import partial
 from pathlib import Path
 from typing import TYPE_CHECKING, Any, Literal, get_args
@@ -26,7 +27,6 @@ from surefoot.scenarios.study.campaigns.table import (
     wilson,
     write_table,
 )
-from surefoot.values import dataclass
 
 if TYPE_CHECKING:
     from rich.progress import ProgressColumn

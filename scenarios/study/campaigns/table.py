@@ -8,6 +8,7 @@ import itertools
 import json
 import math
 from collections.abc import Callable, Iterable, Iterator, Mapping, Sequence
+from dataclasses import dataclass
 from pathlib import Path
 from statistics import NormalDist
 from typing import Any, NamedTuple
@@ -19,7 +20,6 @@ from surefoot.scenarios.judge.metrics import known
 from surefoot.scenarios.output import write_whole
 from surefoot.scenarios.study.campaigns.points import Cell, Outcome, facts
 from surefoot.scenarios.study.campaigns.spec import described, text
-from surefoot.values import dataclass
 
 TableValue = bool | int | float | str | None
 _MOST_WHOLE = 2**63 - 1

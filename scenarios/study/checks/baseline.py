@@ -4,6 +4,7 @@ import contextlib
 import json
 import math
 from collections.abc import Iterable, Iterator, Mapping
+from dataclasses import dataclass
 from pathlib import Path
 from typing import Any, Literal
 
@@ -20,7 +21,6 @@ from surefoot.scenarios.output import write_whole
 from surefoot.scenarios.record.provenance import WORLD_FILE
 from surefoot.scenarios.study.checks.signs import COLUMNS, FAR, SIGNS, Trace
 from surefoot.sim.options import Option, world_options
-from surefoot.values import dataclass
 
 ENDING = ".baseline.yaml"
 

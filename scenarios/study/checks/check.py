@@ -5,7 +5,7 @@ import re
 import shutil
 import time
 from collections.abc import Callable, Sequence
-from dataclasses import replace
+from dataclasses import dataclass, replace
 from pathlib import Path
 from typing import Literal
 
@@ -23,7 +23,6 @@ from surefoot.scenarios.study.campaigns.engine import side_by_side
 from surefoot.scenarios.study.checks.baseline import ENDING, Baseline, Move, read_baseline, write_baseline
 from surefoot.scenarios.study.checks.blunt import blunt
 from surefoot.scenarios.study.checks.signs import Parting
-from surefoot.values import dataclass
 
 OWN = Path(catalogue.__file__).resolve().parents[1] / "baselines"
 """Baselines of the catalogue."""

@@ -6,6 +6,7 @@ same state, so that what one does differently there is its controller's doing al
 
 import math
 from collections.abc import Callable, Mapping, Sequence
+from dataclasses import dataclass
 from functools import partial
 
 import numpy as np
@@ -19,7 +20,6 @@ from surefoot.scenarios.judge.feet import stance_slips
 from surefoot.scenarios.judge.walking import runs_of
 from surefoot.scenarios.log import Log
 from surefoot.scenarios.show.logview import FOOT_NAMES, LOADED
-from surefoot.values import dataclass
 
 LONGEST_LAG = 10
 """Lags that are tried [ticks]."""

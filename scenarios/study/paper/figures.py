@@ -1,6 +1,7 @@
 """The paper's figures, drawn anew from the logs: runs side by side, quantities below each other."""
 
 from collections.abc import Callable, Mapping, Sequence
+from dataclasses import dataclass
 from functools import partial
 from typing import Any
 
@@ -18,7 +19,6 @@ from surefoot.scenarios.show.logview import LogView, MissingError
 from surefoot.scenarios.study.paper import studies
 from surefoot.scenarios.study.paper.results import WORLD_NAMES, Results, Sample
 from surefoot.scenarios.study.paper.studies import STAIRS, WALK, PaperWorld, Study
-from surefoot.values import dataclass
 
 Views = Sequence[tuple[str, LogView]]
 

@@ -3,7 +3,7 @@
 import math
 import statistics
 from collections.abc import Iterable, Mapping, Sequence
-from dataclasses import field
+from dataclasses import dataclass, field
 from datetime import UTC, datetime
 from itertools import product
 from pathlib import Path
@@ -22,7 +22,6 @@ from surefoot.scenarios.study.campaigns.points import Point, Record, Single
 from surefoot.scenarios.study.campaigns.sweep import CampaignBar, run_cells
 from surefoot.scenarios.study.paper import studies
 from surefoot.scenarios.study.paper.studies import Experiment, PaperWorld, Study
-from surefoot.values import dataclass
 
 ENDED = ("completed", "fall")
 """How a run ends that is a result; a fall is one."""

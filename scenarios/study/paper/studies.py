@@ -2,10 +2,9 @@
 
 import shlex
 from collections.abc import Iterable
+from dataclasses import dataclass
 from itertools import chain, product, starmap
 from typing import Literal
-
-from surefoot.values import dataclass
 
 PaperWorld = Literal["cart-table", "pendulum", "full"]
 """The paper's own plant, which executes the planned jerk and cannot fall; the true pendulum; the robot in physics."""

@@ -2,7 +2,7 @@
 
 import math
 from collections.abc import Callable, Sequence
-from dataclasses import asdict
+from dataclasses import asdict, dataclass
 from typing import Any
 
 import numpy as np
@@ -11,7 +11,6 @@ from surefoot.scenarios.judge.metrics import plain
 from surefoot.scenarios.study.campaigns.table import wilson
 from surefoot.scenarios.study.tour.ride import PunchTaken, TourResult
 from surefoot.scenarios.study.tour.rules import DURATION, SLOT
-from surefoot.values import dataclass
 
 RESAMPLES = 4000
 """Of the tours, from which the interval of a mean is read [-]."""

@@ -1,7 +1,7 @@
 """One tour: the harness around a controller, and what is written down of it."""
 
 import math
-from dataclasses import replace
+from dataclasses import dataclass, replace
 
 import numpy as np
 from numpy.typing import NDArray
@@ -14,7 +14,6 @@ from surefoot.scenarios.study.tour.robot import ARM_JOINTS, TourRobot, tour_robo
 from surefoot.scenarios.study.tour.rows import COMMAND_RATE, ROWS, Row, command_to
 from surefoot.scenarios.study.tour.rules import DURATION, LOWEST, SLOT, ArmWalk, Punch, drawn
 from surefoot.scenarios.study.tour.world import RATE, TourWorld
-from surefoot.values import dataclass
 
 Array = NDArray[np.float64]
 

@@ -1,5 +1,6 @@
 """The rows of the benchmark: what a controller is given of the robot, and what it gives."""
 
+from dataclasses import dataclass
 from functools import lru_cache
 from importlib import resources
 from typing import Any
@@ -14,7 +15,6 @@ from surefoot.scenarios.run.controller import Controller
 from surefoot.scenarios.setup.load import load
 from surefoot.scenarios.study.tour.odometry import LegOdometry
 from surefoot.scenarios.study.tour.robot import robot_file
-from surefoot.values import dataclass
 
 GAIN = 1.0
 """Of the velocity towards a place over the distance from it, and of the yaw rate over the angle [1/s]."""

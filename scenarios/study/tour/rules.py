@@ -2,12 +2,12 @@
 
 import math
 from collections.abc import Callable
+from dataclasses import dataclass
 
 import numpy as np
 from numpy.typing import NDArray
 
 from surefoot.streams import Stream, generator
-from surefoot.values import dataclass
 
 Array = NDArray[np.float64]
 

@@ -7,7 +7,7 @@ from surefoot.planner.references.zmp_reference import ZmpReference
 pytestmark = pytest.mark.unit
 
 
-def test_the_jerk_before_is_turned_once_it_is_asked_for():
+def test_the_jerk_before_is_turned_into_the_plan_frame():
     before, turn = np.random.default_rng(0).normal(size=(50, 2)), np.array([[0.8, -0.6], [0.6, 0.8]])
     still = np.zeros((2, 2))
     reference = ZmpReference(np.zeros((9, 2)), np.zeros((9, 2)), np.ones((9, 2)), np.zeros(9))
@@ -16,5 +16,3 @@ def test_the_jerk_before_is_turned_once_it_is_asked_for():
     turned = before @ turn
     np.testing.assert_array_equal(problem.last_jerk, turned[0])
     np.testing.assert_array_equal(problem.fallback, np.vstack((turned[1:], np.zeros((1, 2)))))
-    with pytest.raises(AttributeError, match="no attribute 'jerk'"):
-        _ = problem.jerk

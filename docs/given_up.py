@@ -18,7 +18,7 @@ import numpy as np
 from numpy.typing import NDArray
 
 from surefoot.planner.parameters import RecoveryParameters
-from surefoot.planner.recovery.recovery import counted, falling
+from surefoot.planner.recovery.falling import counted, falling
 from surefoot.planner.types import Balance
 from surefoot.scenarios.log import read
 from surefoot.scenarios.record.provenance import RunConstants, relevant_versions

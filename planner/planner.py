@@ -1,47 +1,34 @@
 """The walking planner: the four modules of the paper, put together once per tick."""
 
 import math
-from copy import copy
 from dataclasses import replace
-from functools import partial
 
 import numpy as np
 
 from surefoot.errors import ParameterError
 from surefoot.planner.check import check_durations, check_height
+from surefoot.planner.flight import swinging_to, upcoming
 from surefoot.planner.ground.terrain import Terrain, flat
-from surefoot.planner.laws.law import Motion, MotionProblem, StepContext
+from surefoot.planner.laws.law import Motion
 from surefoot.planner.laws.profiles import PROFILES, Profile
-from surefoot.planner.model.world_motion import WorldMotion
+from surefoot.planner.look import View, look
+from surefoot.planner.measured import Measured
 from surefoot.planner.parameters import PlannerParameters
 from surefoot.planner.plan import WalkPlan
-from surefoot.planner.recovery.recovery import Recovery, Sight, falling
-from surefoot.planner.recovery.step_problem import StepBounds, StepProblem
+from surefoot.planner.problem import problem_of
+from surefoot.planner.recovery.falling import falling
 from surefoot.planner.references.com_height import HeightProfile, SmoothHeight
-from surefoot.planner.references.window import ReferencePreview, Window
-from surefoot.planner.references.zmp_reference import Support
-from surefoot.planner.steps.adaptation import Dcm
-from surefoot.planner.steps.beginning import begun
+from surefoot.planner.state import Orders, SwingStage, WalkState
 from surefoot.planner.steps.commands import STANDING, Command
-from surefoot.planner.steps.execution import Execution
 from surefoot.planner.steps.gait import GaitParameters
 from surefoot.planner.steps.schedule import Schedule
 from surefoot.planner.steps.source import CommandSource
 from surefoot.planner.swing.course import Ground
 from surefoot.planner.swing.leg_reach import LegReach
 from surefoot.planner.swing.step_region import StepRegion
-from surefoot.planner.types import (
-    Array,
-    Balance,
-    CentroidalState,
-    FeetState,
-    Footstep,
-    PhaseKind,
-    PlanStatus,
-    SolverStatus,
-)
-
-_STILL = np.zeros(3)
+from surefoot.planner.track import track
+from surefoot.planner.types import Balance, CentroidalState, FeetState, Footstep, PlanStatus, SolverStatus
+from surefoot.planner.walk_model import WalkModel
 
 
 class WalkingPlanner:
@@ -67,6 +54,7 @@ class WalkingPlanner:
     Attributes:
         gait: the walk.
         parameters: the planner's own parameters.
+        state: of the walk, a value; a plan makes the next one of it.
         motion: the law's answer of the last tick, with the QPs that it solved; None before the first.
 
     Raises:
@@ -94,34 +82,27 @@ class WalkingPlanner:
         for name, size in (("foot_length", foot_length), ("foot_width", foot_width)):
             if not (size > 0.0 and math.isfinite(size)):
                 raise ParameterError((name,), f"{name} is {size:g}", "it must be a finite number greater than 0")
-        half_size = 0.5 * np.array([foot_length, foot_width])
+        ground = Ground(terrain, 0.5 * np.array([foot_length, foot_width]), p)
         heights = height_profile or profile.height or SmoothHeight()
-        self._preview = ReferencePreview(gait, heights, p, half_size)
-        schedule = begun(gait, feet, Ground(terrain, half_size, p), self._preview.reach + 1)
         legs = legs.adapting(p) if legs is not None and profile.catches else None
-        self._execution = Execution(schedule, self._preview.reach + 1, legs)
-        self._recovery = Recovery(self._execution, half_size)
-        heights_ahead = self._execution.schedule.support_points[:, 2]
-        check_height(heights, gait, self._execution.samples(self._preview.reach), heights_ahead)
-        self._world = WorldMotion(p.sample_time, p.horizon)
-        self._law = profile.law(p, heights.standing(gait))
-        self._plan: WalkPlan | None = None
+        model = WalkModel.of(gait, ground, heights, legs)
+        self.state = WalkState.start(model, feet)
+        points = self.state.schedule.support_points[:, 2]
+        check_height(heights, gait, self.state.samples(model.reach), points)
+        self._rules, self._law = profile.rules, profile.law(p, heights.standing(gait))
         region = region or StepRegion(p.reach_length, p.reach_width, (foot_length, foot_width), p.recovery.sole_gap)
         self._region, self._bare = region, not terrain.has_edges
-        self._source: CommandSource | None = None
-        self._told: tuple[GaitParameters, CommandSource | None] | None = None
-        self._known: tuple[Schedule, Support, Array, float] | None = None
         self.motion: Motion | None = None
 
     @property
     def schedule(self) -> Schedule:
         """The steps in sight: landed ones as measured, the others as nominally planned from them."""
-        return self._execution.schedule
+        return self.state.schedule
 
     @property
     def orders(self) -> Command:
         """What the walk does of what it has been told, with the velocity that it follows."""
-        source, gait = self._source, self._execution.schedule.gait
+        source, gait = self.state.orders.source, self.state.schedule.gait
         now = Command(None, None, gait.single_support, gait.double_support, gait.swing_height)
         if source is None:
             return now
@@ -146,22 +127,16 @@ class WalkingPlanner:
             what = "a command on ground with edges, for which footsteps and swings were laid"
             raise ParameterError(("command",), what, "command a walk on bare ground")
         changed = {name: getattr(command, name) for name in ("single_support", "double_support", "swing_height")}
-        gait, told = self._told or (self._execution.schedule.gait, None)
+        orders = self.state.orders
+        gait, told = orders.new or (self.state.schedule.gait, None)
         gait = replace(gait, **{name: value for name, value in changed.items() if value is not None})
         check_durations(gait, self.parameters.sample_time)
         # Steps of a source that is kept are asked for anew, too: their strides follow from the durations.
-        source = told or self._source
+        source = told or orders.source
         if command.twist is not None or command.places is not None or command.march:
             size, twist = self.parameters.size, command.twist or STANDING
             source = CommandSource(self.gait, self._region, twist, command.places or (), size, command.march)
-        self._told = gait, source
-
-    def _obey(self, time: float) -> None:
-        """Do what has been commanded since the last plan."""
-        if self._told is not None:
-            gait, source = self._told
-            self._execution.change(gait, source, time)
-            self._told, self._source = None, source or self._source
+        self.state = replace(self.state, orders=Orders(orders.source, (gait, source)))
 
     def update(self, state: CentroidalState, feet: FeetState) -> WalkPlan:
         """Plan from a measurement; call it once per sample time.
@@ -173,172 +148,88 @@ class WalkingPlanner:
         Raises:
             ValueError: the measured CoM or feet are not finite.
         """
-        body, soles = (*state.com.tolist(), *state.com_velocity.tolist()), feet.position.ravel().tolist()
-        measured = (*body, *soles, *feet.yaw.tolist())
-        if not all(map(math.isfinite, measured)):
-            raise ValueError(f"The measured CoM or feet are not finite at {state.time:g} s.")
-        execution, time = self._execution, state.time
-        dcm, see = partial(self._dcm, state), partial(self._sight, state)
-        execution.advance(feet, dcm)
-        self._obey(time)
-        execution.fix_imminent(time, feet, 0.0 if self._plan is None else self._plan.balance.planned)
-        sight = see()
-        support, local, window = self._recovery.landing(feet, dcm, see, sight) if execution.adapted else sight
-        if self._recovery.steps_out(local, window):
-            support, local, window = see()
-        # Online constraints generator: the box comes with the reference, the reach of the feet here.
-        unsure = self._unsure(state, window)
-        step = StepProblem.of(time, execution, feet, support.frame)
-        balance = self._recovery.balance(step, local, support, window, self._plan, unsure)
-        if self._recovery.goes_again(time, feet, see, (support, local, window), balance, unsure):
-            support, local, window = see()
-            step = StepProblem.of(time, execution, feet, support.frame)
-            balance = self._recovery.balance(step, local, support, window, self._plan, unsure)
-        adjusted = self._recovery.adjusted(step, local, window, unsure)
-        if adjusted is not None and adjusted.more and self._recovery.adds_steps(balance.planned):
-            support, local, window = see()
-            step = StepProblem.of(time, execution, feet, support.frame)
-            adjusted = self._recovery.adjusted(step, local, window, unsure)
-        left = execution.time_left
-        if adjusted is not None and execution.end_in(adjusted.left, time):
-            window = self._preview.window(execution, support, local[:, 0], time, state.lasting)
-            balance = replace(balance, delay=balance.delay + (execution.time_left - left))
-        free = execution.free
-        problem = self._problem(local, support, window, step, adjusted, free)
+        measured = Measured(state, feet)
+        view = look(track(self.state, measured), measured)
+        for rule in self._rules:
+            view = rule(view)
         # TVMPC, or the law that stands in its place.
-        motion = self.motion = self._law.plan(problem)
-        shifts = motion.shifts @ support.rotation.T if any(motion.shifts.ravel().tolist()) else np.zeros((2, 2))
-        footsteps = execution.upcoming(time, free, shifts)
-        catching = execution.catching
-        if free[0] or catching:
-            shift = shifts[0] if free[0] else balance.shift
-            counts = balance.lost, catching, balance.safe
-            balance = Balance(balance.planned, balance.movable, shift, balance.delay, *counts)
-        if execution.phase.swing_foot is not None:
-            execution.swing_to(footsteps[0], time, feet, motion.solver is SolverStatus.HELD)
-        self._plan = self._world_plan(time, support, window, local, motion, footsteps, balance)
-        if self._plan.phase.left < 2.0 * self.parameters.sample_time:  # the next tick may begin another
-            later = execution.foresight.next_of(execution)
-            if later is not None:
-                self._preview.foresee(later)
-        return self._plan
+        self.motion = self._law.plan(problem_of(view))
+        walk, plan = planned(view, self.motion)
+        self.state = replace(walk, plan=plan)
+        return plan
 
-    def _dcm(self, state: CentroidalState) -> Dcm | None:
-        """DCM in the world frame by the ω of the last plan, and that [m, 1/s]; None without one."""
-        if self._plan is None:
-            return None
-        (x, y, _), (u, v, _), omega = state.com.tolist(), state.com_velocity.tolist(), self._plan.omega.item(0)
-        return x + u / omega, y + v / omega, omega
 
-    @staticmethod
-    def _unsure(state: CentroidalState, window: Window) -> float:
-        """Two standard deviations of the DCM [m]."""
-        com, velocity = state.deviation
-        if not com and not velocity:
-            return 0.0
-        return 2.0 * math.hypot(com, velocity / float(window.omega[0]))
+def planned(view: View, motion: Motion) -> tuple[WalkState, WalkPlan]:
+    """The state whose swing foot goes where a motion has its step land, and the plan of the tick in the world frame."""
+    state, support, measured = view.state, view.support, view.measured
+    shifts = motion.shifts @ support.rotation.T if any(motion.shifts.ravel().tolist()) else np.zeros((2, 2))
+    footsteps = upcoming(state, measured.time, shifts)
+    balance, catching = view.balance, state.catching
+    if state.free[0] or catching:
+        shift = shifts[0] if state.free[0] else balance.shift
+        balance = replace(balance, shift=shift, catching=catching)
+    if state.phase.swing_foot is not None:
+        state = swinging_to(state, footsteps[0], measured, motion.solver is SolverStatus.HELD)
+    return state, _world_plan(view, state, motion, footsteps, balance)
 
-    def _sight(self, state: CentroidalState, other: Execution | None = None) -> Sight:
-        """What carries the robot now, its CoM in that plan frame, and the references from now on.
 
-        Of another execution it is what would be seen: the preview goes on from what it has seen of its own.
-        """
-        execution, preview = (self._execution, self._preview) if other is None else (other, copy(self._preview))
-        support = preview.support(execution)
-        # Position and velocity as measured, acceleration as the last plan had it for now.
-        bend = _STILL if self._plan is None else self._plan.com_acceleration[1]
-        local = self._world.local(state.com, state.com_velocity, bend, support.frame)
-        return support, local, preview.window(execution, support, local[:, 0], state.time, state.lasting)
+def _world_plan(
+    view: View, state: WalkState, motion: Motion, footsteps: tuple[Footstep, ...], balance: Balance
+) -> WalkPlan:
+    """What a tick has decided, in the world frame.
 
-    def _world_plan(
-        self,
-        time: float,
-        support: Support,
-        window: Window,
-        local: Array,
-        motion: Motion,
-        footsteps: tuple[Footstep, ...],
-        balance: Balance,
-    ) -> WalkPlan:
-        """What a tick has decided, in the world frame."""
-        execution, reference, count = self._execution, window.reference, self.parameters.horizon + 1
-        stiffness, offset = window.stiffness[:count], window.offset[:count]
-        ahead = stiffness, window.height.height[:, :count], offset, reference.point[:count], reference.gain[:count]
-        frame = support.rotation, support.origin
-        com, jerk, zmp, offset, point = self._world.of(local, motion.jerk, motion.shifts, ahead, frame)
-        return WalkPlan(
-            time=time,
-            sample_time=self.parameters.sample_time,
-            com=com[0],
-            com_velocity=com[1],
-            com_acceleration=com[2],
-            jerk=jerk,
-            zmp=zmp,
-            zmp_offset=offset,
-            zmp_reference=point,
-            stiffness=stiffness,
-            omega=window.omega[:count],
-            phase=execution.info,
-            contacts=window.contacts[:count],
-            load_left=window.load_left[:count],
-            support_polygon=support.outer,
-            inner_polygon=support.inner,
-            footholds=support.footholds,
-            footsteps=footsteps,
-            swing=execution.swing,
-            roll=execution.roll(time),
-            status=self._status(motion, balance),
-            balance=balance,
-        )
+    Args:
+        view: of the tick.
+        state: with the swing that is flown on.
+        motion: the law's.
+        footsteps: the next ones.
+        balance: with what the plan makes of the landing to come.
+    """
+    support, window, time = view.support, view.window, view.measured.time
+    model, reference = state.model, window.reference
+    count = model.parameters.horizon + 1
+    stiffness, offset = window.stiffness[:count], window.offset[:count]
+    ahead = stiffness, window.height.height[:, :count], offset, reference.point[:count], reference.gain[:count]
+    com, jerk, zmp, offset, point = model.world.of(view.local, motion.jerk, motion.shifts, ahead, support.frame)
+    return WalkPlan(
+        time=time,
+        sample_time=model.parameters.sample_time,
+        com=com[0],
+        com_velocity=com[1],
+        com_acceleration=com[2],
+        jerk=jerk,
+        zmp=zmp,
+        zmp_offset=offset,
+        zmp_reference=point,
+        stiffness=stiffness,
+        omega=window.omega[:count],
+        phase=state.info,
+        contacts=window.contacts[:count],
+        load_left=window.load_left[:count],
+        support_polygon=support.outer,
+        inner_polygon=support.inner,
+        footholds=support.footholds,
+        footsteps=footsteps,
+        swing=state.swing.trajectory,
+        roll=state.roll(time),
+        status=_status(state, motion, balance),
+        balance=balance,
+    )
 
-    def _problem(
-        self,
-        local: Array,
-        support: Support,
-        window: Window,
-        step: StepProblem | None,
-        adjusted: StepBounds | None,
-        free: tuple[bool, bool],
-    ) -> MotionProblem:
-        before = np.zeros((self.parameters.horizon, 2)) if self._plan is None else self._plan.jerk
-        ahead = window.stiffness, window.omega, window.driving
-        steps = self._step_context(support, step, adjusted, free)
-        return MotionProblem.after(before, local, ahead, steps, support.rotation)
 
-    def _step_context(
-        self, support: Support, step: StepProblem | None, adjusted: StepBounds | None, free: tuple[bool, bool]
-    ) -> StepContext:
-        execution, here, left, transfer = self._execution, None, 0.0, 0.0
-        increment, side = self._increments(support)
-        if step is not None and execution.phase.kind is PhaseKind.SINGLE:
-            double = execution.schedule.step(execution.phase.step).double
-            here, left, transfer = step.swing[0], execution.time_left, double * self.parameters.sample_time
-        bounds = self._recovery.bounds(increment, free, here, left, adjusted)
-        return StepContext(increment, (side, -side), free, here, left, transfer, *bounds)
-
-    def _increments(self, support: Support) -> tuple[Array, float]:
-        """Displacements of the next two footsteps, shape (2, 2) [m], and side of the first; they stay as steps do."""
-        execution, schedule, known = self._execution, self._execution.schedule, self._known
-        if known is None or known[0] is not schedule or known[1] is not support:
-            landed, increment = execution.landed, np.zeros((2, 2))
-            places = schedule.positions[schedule.index(landed) :][:3, :2]
-            ahead = (places[1:] - places[:-1]) @ support.rotation
-            increment[: len(ahead)] = ahead
-            side = schedule.step(landed).place.foot.other.side
-            self._known = known = schedule, support, increment, side
-        return known[2], known[3]
-
-    def _status(self, motion: Motion, balance: Balance) -> PlanStatus:
-        age, told = 0, self._plan is not None and self._plan.status.falling
-        if motion.solver is SolverStatus.HELD:
-            age = (self._plan.status.age if self._plan is not None else 0) + 1
-        return PlanStatus(
-            solver=motion.solver,
-            zmp_slack=motion.zmp_slack,
-            terminal_slack=motion.terminal_slack,
-            infeasible=motion.infeasible,
-            age=age,
-            late_touchdown=self._execution.waited,
-            early_touchdown=self._execution.early,
-            falling=(told or balance.lost > 0) and falling(balance, told, self.parameters.recovery),
-        )
+def _status(state: WalkState, motion: Motion, balance: Balance) -> PlanStatus:
+    """How a plan was made."""
+    last, swing, age = state.plan, state.swing, 0
+    falls = last is not None and last.status.falling
+    if motion.solver is SolverStatus.HELD:
+        age = (0 if last is None else last.status.age) + 1
+    return PlanStatus(
+        solver=motion.solver,
+        zmp_slack=motion.zmp_slack,
+        terminal_slack=motion.terminal_slack,
+        infeasible=motion.infeasible,
+        age=age,
+        late_touchdown=swing.waited,
+        early_touchdown=swing.stage is SwingStage.LANDED,
+        falling=(falls or balance.lost > 0) and falling(balance, falls, state.model.parameters.recovery),
+    )

@@ -184,7 +184,7 @@ class PlanStatus:
         late_touchdown: ticks for which the phase clock has waited for the touchdown.
         early_touchdown: the swing foot has landed before its time; its foothold is fixed, single support goes on.
         falling: no step will save the body any more, as far as the planner can tell; see
-            `planner.recovery.recovery.falling`.
+            `planner.recovery.falling.falling`.
     """
 
     solver: SolverStatus

@@ -13,6 +13,7 @@ from surefoot.planner.model.jerk import BLOCK_STARTS
 from surefoot.planner.parameters import PlannerParameters
 from surefoot.planner.plan import Planner
 from surefoot.planner.references.com_height import HeightProfile, PaperHeight
+from surefoot.planner.rules import RULES, Rule
 
 
 @dataclass(frozen=True, slots=True)
@@ -30,6 +31,7 @@ class Profile:
             that the legs can do (see `planner.recovery.step_adjustment`).
         planner: makes a planner that takes the place of `planner.planner.WalkingPlanner`, from the same arguments; None
             for that one.
+        rules: what is made of the steps to come, in their order (see `planner.rules`).
     """
 
     name: str
@@ -40,6 +42,7 @@ class Profile:
     height: HeightProfile | None = None
     catches: bool = False
     planner: Callable[..., Planner] | None = None
+    rules: tuple[Rule, ...] = RULES
 
 
 _PAPER = PlannerParameters(

@@ -4,13 +4,10 @@ import math
 from dataclasses import dataclass
 from functools import lru_cache
 
-import numpy as np
-
 from surefoot.planner.geometry import seen_from, wrap_angle
-from surefoot.planner.steps.execution import Execution
 from surefoot.planner.steps.step import Step, room_left, shortest_swing
 from surefoot.planner.swing.course import Ground
-from surefoot.planner.types import Array, FeetState, Footstep, PhaseKind
+from surefoot.planner.types import Array, Footstep
 
 
 @dataclass(frozen=True, slots=True)
@@ -46,47 +43,9 @@ class StepProblem:
         """Where it lands as the schedule has it, shape (2,) [m]."""
         return self.place.position[:2]
 
-    @classmethod
-    def of(cls, time: float, execution: Execution, feet: FeetState, frame: tuple[Array, Array]) -> "StepProblem | None":
-        """That of a tick; None where no step is to come.
-
-        Args:
-            time: now [s].
-            execution: the clock and the steps in sight.
-            feet: the measured feet.
-            frame: its stance foot's, the plan frame: rotation to the world, shape (2, 2), and origin, shape (2,) [m].
-        """
-        phase, (rotation, origin), v, w = execution.info, frame, 0.0, 0.0
-        if not phase.leads_to:
-            return None
-        schedule, clock, landed = execution.schedule, execution.clock, execution.landed
-        step = schedule.step(landed + 1)
-        swings, foot = phase.kind is PhaseKind.SINGLE, step.place.foot
-        yet = min(1.0, (step.touchdown - clock.now) / step.single)
-        # In plain numbers: a product of small arrays takes longer than all of this.
-        (a, b), (c, d) = rotation.tolist()
-        (u, o), (x, y, _) = origin.tolist(), feet.position[foot].tolist()
-        if execution.swing is not None:
-            v, w, *_ = execution.swing.coefficients(time)[1].tolist()
-        x, y = x - u, y - o
-        hips = math.inf if execution.legs is None else execution.legs.acceleration[0]
-        place, face, shortest, crosses = _known(step, schedule.step(landed), schedule.ground, hips)
-        return StepProblem(
-            place=place,
-            swing=np.array(((x * a + y * c, x * b + y * d), (v * a + w * c, v * b + w * d))),
-            double=0.0 if swings else phase.left,
-            single=phase.left if swings else step.single * clock.sample_time,
-            cycle=schedule.gait.period,
-            shortest=yet * shortest,
-            face=face,
-            crosses=crosses,
-            last=execution.stops,
-            adapted=execution.adapted,
-        )
-
 
 @lru_cache(maxsize=2)
-def _known(step: Step, stance: Step, ground: Ground, hips: float) -> tuple[Footstep, Array, float, bool]:
+def landing_place(step: Step, stance: Step, ground: Ground, hips: float) -> tuple[Footstep, Array, float, bool]:
     """What of a `StepProblem` is the same from plan to plan: place, face, its whole shortest swing, whether it crosses.
 
     The hips swing a foot with an acceleration, infinite for legs that nobody knows [m/s^2].

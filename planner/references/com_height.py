@@ -6,7 +6,6 @@ already over the front foot: the rear leg is then too short. So there are two pl
 """
 
 import math
-from collections.abc import Callable
 from dataclasses import dataclass
 from enum import Enum
 from typing import Protocol
@@ -298,33 +297,31 @@ class HeightPreview:
         return HeightPreview(self.height[:, :count], self.stiffness[:count])
 
 
-def preview_height(
-    profile: HeightProfile,
-    gait: GaitParameters,
-    samples: PhaseSamples,
-    support_height: Array,
-    zmp_height: Array,
-    length: float = 1.0,
-    transition: Callable[[Array], Array | None] | None = None,
-) -> HeightPreview:
-    """CoM height and pendulum stiffness of a window, but for the first and the last of its samples.
-
-    λ counts the height above the ZMP, z - p_z; the paper's equation leaves p_z out, which is wrong on stairs. Measured
-    footholds of a falling robot may lie anywhere: λ stays finite and positive.
+def law_height(profile: HeightProfile, gait: GaitParameters, samples: PhaseSamples, support_height: Array) -> Array:
+    """CoM height of a window by its law, but for the first and the last of its samples, shape (3, n).
 
     Args:
         profile: law of the height.
         gait: the walk.
         samples: its phases over the window, shape (n + 2,).
         support_height: heights of the support points in sight, shape (m,) [m].
+    """
+    return np.ascontiguousarray(profile.height(gait, samples, support_height)[:, 1:-1])
+
+
+def preview_height(profile: HeightProfile, height: Array, zmp_height: Array, length: float = 1.0) -> HeightPreview:
+    """CoM height of a window with its pendulum stiffness.
+
+    λ counts the height above the ZMP, z - p_z; the paper's equation leaves p_z out, which is wrong on stairs. Measured
+    footholds of a falling robot may lie anywhere: λ stays finite and positive.
+
+    Args:
+        profile: law of the height.
+        height: z, z', z'' in the world frame, shape (3, n) [m, m/s, m/s^2].
         zmp_height: height of the ground under the ZMP reference, shape (n,) [m].
         length: size of the robot (see `surefoot.similarity`) [-].
-        transition: what takes the place of the law's height, None where that stays; it always stays by default.
     """
-    height, stiffness = np.empty((3, len(zmp_height))), np.empty(len(zmp_height))
-    height[...] = profile.height(gait, samples, support_height)[:, 1:-1]
-    moved = None if transition is None else transition(height)
-    height = height if moved is None else moved
+    stiffness = np.empty(len(zmp_height))
     pressing, over = preview_limits(profile, length)
     _stiffen(height, zmp_height, pressing, over, stiffness)
     return HeightPreview(height, stiffness)

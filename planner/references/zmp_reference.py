@@ -9,7 +9,6 @@ from numpy.typing import NDArray
 
 from surefoot import algebra
 from surefoot.planner.geometry import CORNERS, frame_rotation, points_of_sole
-from surefoot.planner.steps.execution import Execution
 from surefoot.planner.steps.phases import PhaseSamples
 from surefoot.planner.steps.schedule import Schedule
 from surefoot.planner.types import Array, Foot, Footstep, PhaseKind
@@ -268,8 +267,8 @@ def _share_load(samples: PhaseSamples, on_left: Array, load: Array) -> None:
 
 def present_support(
     last: Support | None,
-    execution: Execution,
-    half_size: Array,
+    key: SupportKey,
+    phase: PhaseKind,
     margin: float,
     room: tuple[float, float],
 ) -> Support:
@@ -277,24 +276,24 @@ def present_support(
 
     Args:
         last: support of the tick before.
-        execution: the steps in sight, and how far they have been made.
-        half_size: half of the sole's length and width, shape (2,) [m].
+        key: of what this one follows from.
+        phase: the kind of phase now.
         margin: share of the sole in which the ZMP must stay [-].
         room: what of the half size the ankles can bear, forward and sideways [m].
     """
-    schedule, landed, phase = execution.schedule, execution.landed, execution.phase
-    key = SupportKey(schedule, landed, phase.start, execution.free)
     if last is not None and last.key == key:
         return last
+    schedule, landed, ground = key.schedule, key.landed, key.schedule.ground
+    half_size = ground.half_size
     latest, before = schedule.step(landed).place, schedule.step(landed - 1).place
-    standing = (latest,) if phase.kind is PhaseKind.SINGLE else (latest, before)
+    standing = (latest,) if phase is PhaseKind.SINGLE else (latest, before)
     known = {} if last is None else {id(sole.place): sole for sole in last.soles}
     soles = tuple(known.get(id(place)) or Sole.of(place, half_size, margin) for place in standing)
     if last is not None and [*map(id, soles)] == [*map(id, last.soles)]:
         outer, inner = last.outer, last.inner
     else:
         outer, inner = hulls_of(soles)
-    stay = not schedule.ground.terrain.footholds.follow
+    stay = not ground.terrain.footholds.follow
     table = support_table(schedule, landed, key.free, np.minimum(margin * half_size, room), stay)
     return Support(
         key=key,

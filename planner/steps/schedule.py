@@ -147,6 +147,11 @@ class Schedule:
         """The last step in sight."""
         return self.steps[-1]
 
+    @property
+    def last_phase(self) -> Phase:
+        """The last phase in sight."""
+        return self.phases[-1]
+
     def index(self, number: int) -> int:
         """Where a step is in `steps`."""
         return number - self.steps[0].number

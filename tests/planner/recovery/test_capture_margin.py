@@ -12,9 +12,9 @@ from surefoot.forces import Push
 from surefoot.planner.parameters import PlannerParameters, StepAdaptation
 from surefoot.planner.planner import WalkingPlanner
 from surefoot.planner.recovery.capture_margin import CaptureMargin
+from surefoot.planner.recovery.falling import falling
 from surefoot.planner.recovery.outlook import Outlook
 from surefoot.planner.recovery.reach import StepReach
-from surefoot.planner.recovery.recovery import falling
 from surefoot.planner.recovery.step_problem import StepProblem
 from surefoot.planner.references.com_height import HeightPreview
 from surefoot.planner.references.window import Window

@@ -11,11 +11,11 @@ from pendulum_walk import LEGS, walk_pendulum
 from surefoot.forces import Push
 from surefoot.planner.ground.stairs import Direction, Stairs
 from surefoot.planner.ground.terrain import Site
+from surefoot.planner.laws.profiles import PROFILES
 from surefoot.planner.parameters import PlannerParameters, StepAdaptation
 from surefoot.planner.planner import WalkingPlanner
-from surefoot.planner.recovery.recovery import Recovery
 from surefoot.planner.references.com_height import Rise, SmoothHeight
-from surefoot.planner.steps.execution import Execution
+from surefoot.planner.rules import goes_again
 from surefoot.planner.steps.gait import GaitParameters
 from surefoot.planner.swing.quintics import PEAK
 from surefoot.planner.types import PhaseKind
@@ -99,15 +99,21 @@ def test_the_body_goes_down_for_a_step_that_legs_do_not_span_at_its_height(stand
     assert max(missing) < 0.005
 
 
-def test_a_body_that_has_gone_down_comes_up_again_all_the_way(stand, monkeypatch):
+def test_a_body_that_has_gone_down_comes_up_again_all_the_way(stand):
     """However little is left of it: a difference that would change nothing else does."""
     gait = GaitParameters(
         steps=6, step_length=0.3, single_support=0.5, double_support=0.12, com_height=0.95, apex_ss=0.0, apex_ds=0.0
     )
     lowering = {2: 0.009, 3: 0.0035}
-    told = property(lambda self: lowering.get(self.landed, 0.0), lambda self, value: None)
-    monkeypatch.setattr(Execution, "lowering", told, raising=False)
-    planner, com = WalkingPlanner(gait, stand(), 0.22, 0.11, legs=LEGS), np.array([0.0, 0.0, gait.com_height])
+
+    class Lowered(WalkingPlanner):
+        """A planner whose legs want the CoM lower after some steps."""
+
+        def update(self, state, feet):
+            self.state = replace(self.state, lowering=lowering.get(self.state.landed, 0.0))
+            return super().update(state, feet)
+
+    planner, com = Lowered(gait, stand(), 0.22, 0.11, legs=LEGS), np.array([0.0, 0.0, gait.com_height])
     plans = walk_pendulum(planner, stand(), gait.duration, com=com).plans
     lowest = {n: min(plan.com[0, 2] for plan in plans if plan.phase.step == n) for n in (3, 6)}
     assert lowest[3] == pytest.approx(0.941, abs=1e-9)
@@ -157,19 +163,23 @@ def test_a_foot_that_has_just_landed_steps_again_where_the_other_one_would_cross
 
 
 @pytest.mark.parametrize(("share", "again"), [(0.5, True), (2.0, False)])
-def test_a_foot_does_not_step_again_from_where_the_other_one_no_longer_is(stand, monkeypatch, share, again):
+def test_a_foot_does_not_step_again_from_where_the_other_one_no_longer_is(stand, share, again):
     """One that landed short, or whose landing was put off, would be taken to stand where it was lifted."""
-    asked, whole, off = [], Recovery.goes_again, np.array([share * P.recovery.tolerance, 0.0, 0.0])
+    asked, off = [], np.array([share * P.recovery.tolerance, 0.0, 0.0])
 
-    def astray(recovery, time, feet, *rest):
-        asked.append(whole(recovery, time, replace(feet, position=feet.position + off), *rest))
-        return asked[-1]
+    def astray(view):
+        feet = view.measured.feet
+        moved = replace(view, measured=replace(view.measured, feet=replace(feet, position=feet.position + off)))
+        found = goes_again(moved)
+        asked.append(found is not moved)
+        return replace(found, measured=view.measured)
 
-    monkeypatch.setattr(Recovery, "goes_again", astray)
+    usual = PROFILES["default"]
+    profile = replace(usual, rules=tuple(astray if rule is goes_again else rule for rule in usual.rules))
     slow = replace(P, recovery=replace(P.recovery, least_single=0.16, least_double=0.06))
     gait = GaitParameters(steps=6, step_length=0.0, single_support=0.4, double_support=0.12, com_height=0.95)
     push = Push(gait.lift_off(4) - 0.14, 0.1, 660.0 * np.array([0.0, 1.0, 0.0]))
-    planner = WalkingPlanner(gait, stand(), 0.22, 0.11, parameters=slow, legs=LEGS)
+    planner = WalkingPlanner(gait, stand(), 0.22, 0.11, parameters=slow, legs=LEGS, profile=profile)
     walk_pendulum(planner, stand(), gait.lift_off(4) + 0.1, com=np.array([0.0, 0.0, 0.95]), pushes=(push,))
     assert any(asked) == again
 

@@ -8,6 +8,7 @@ from surefoot.planner.references.com_height import (
     PaperHeight,
     Rise,
     SmoothHeight,
+    law_height,
     preview_height,
 )
 from surefoot.planner.references.height_transition import HeightTransition
@@ -30,7 +31,8 @@ def preview(schedule):
         samples = plan.schedule.samples(np.maximum(np.arange(-1.0, plan.last + 11.0), 0.0))
         index = samples.index[1:-1]
         ground = support[index] + samples.fraction[1:-1] * np.append(np.diff(support), 0.0)[index]
-        return preview_height(profile, gait, samples, support, ground), ground, plan
+        height = law_height(profile, gait, samples, support)
+        return preview_height(profile, height, ground), ground, plan
 
     return of
 

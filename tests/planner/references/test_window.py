@@ -7,14 +7,16 @@ import pytest
 from pendulum_walk import walk_pendulum
 
 from surefoot.forces import Push
+from surefoot.planner import walk_model
+from surefoot.planner.look import look
+from surefoot.planner.measured import Measured
 from surefoot.planner.model.dcm import viability_weights
 from surefoot.planner.model.leg_chain import LegChain, Link
 from surefoot.planner.model.time_scaling import TimeScaling
 from surefoot.planner.parameters import LegInertia, PlannerParameters, RecoveryParameters
 from surefoot.planner.planner import WalkingPlanner
-from surefoot.planner.references import window
 from surefoot.planner.references.leg_offset import LegOffset
-from surefoot.planner.references.window import OffsetTable
+from surefoot.planner.references.offset_table import OffsetTable
 from surefoot.planner.references.zmp_reference import SupportKey
 from surefoot.planner.steps.gait import GaitParameters
 from surefoot.planner.swing.leg_reach import LegReach
@@ -72,7 +74,7 @@ class Recorded:
 
     def update(self, state, feet):
         plan = self.planner.update(state, feet)
-        self.given.append((state, feet, self.planner._execution.aim is not None))
+        self.given.append((state, feet, self.planner.state.aim is not None))
         return plan
 
 
@@ -98,7 +100,7 @@ def test_an_offset_that_serves_is_about_what_it_would_be_anew(stand, monkeypatch
             made.append(moving[-1] is not None)
             return self.offset.made(moving, *given)
 
-    monkeypatch.setattr(window, "LegOffset", Counted)
+    monkeypatch.setattr(walk_model, "LegOffset", Counted)
     usual, push = planner(), Push(gait.lift_off(2) + 0.06, 0.1, np.array([250.0, 0.0, 0.0]))
     end, com = gait.lift_off(2) + 0.48, np.array([0.0, 0.0, 0.95])
     plans = walk_pendulum(usual, stand(), end, com=com, pushes=(push,)).plans
@@ -121,14 +123,14 @@ def test_plans_depend_on_values_and_not_on_objects(stand, copied):
     for change in (False, True):
         planner = WalkingPlanner(gait, stand(), 0.2, 0.1, parameters=PlannerParameters(leg=LEG))
         for tick in range(4):
-            execution, place = planner._execution, planner.schedule.step(1).place.position
+            place = planner.schedule.step(1).place.position
             if tick == 1:
-                execution.fix(place)
+                planner.state = planner.state.deciding(place)
             if change and tick == 2:
                 if copied:
-                    execution.schedule = replace(execution.schedule)
+                    planner.state = replace(planner.state, schedule=replace(planner.schedule))
                 else:
-                    execution.fix(place + np.array([0.05, 0.0, 0.0]))
+                    planner.state = planner.state.deciding(place + np.array([0.05, 0.0, 0.0]))
             state = CentroidalState(0.02 * tick, np.array([0.001 * tick, 0.0, 1.0]), np.zeros(3))
             plan = planner.update(state, stand())
         plans.append(plan)
@@ -139,12 +141,13 @@ def test_plans_depend_on_values_and_not_on_objects(stand, copied):
 
 def test_a_window_stays_as_it_was_when_the_next_one_is_looked_at(stand):
     planner = WalkingPlanner(GaitParameters(steps=3), stand(), 0.2, 0.1, parameters=PlannerParameters(leg=LEG))
-    execution, preview = planner._execution, planner._preview
-    windows, kept = [], []
+    windows, kept, state = [], [], planner.state
     for tick in range(2):
-        execution.clock = replace(execution.clock, now=60.0 + tick, ticks=tick)
-        support = preview.support(execution)
-        windows.append(preview.window(execution, support, np.zeros(2), 0.02 * tick))
+        state = replace(state, clock=replace(state.clock, now=60.0 + tick, ticks=tick))
+        body = CentroidalState(0.02 * tick, np.array([0.0, 0.0, 1.0]), np.zeros(3))
+        view = look(state, Measured(body, stand()))
+        windows.append(view.window)
+        state = view.state
         names = ("offset", "stiffness", "omega", "load_left", "contacts")
         kept.append({name: getattr(windows[0], name).copy() for name in names})
         kept[tick]["height"], kept[tick]["point"] = windows[0].height.height.copy(), windows[0].driving.point.copy()

@@ -8,12 +8,11 @@ from hypothesis import strategies as st
 from surefoot.planner.geometry import frame_rotation, signed_distance, sole_corners
 from surefoot.planner.ground.terrain import flat
 from surefoot.planner.parameters import PlannerParameters
-from surefoot.planner.references.zmp_reference import hull_of, present_support, support_table, zmp_reference
-from surefoot.planner.steps.execution import Execution
+from surefoot.planner.references.zmp_reference import SupportKey, hull_of, present_support, support_table, zmp_reference
 from surefoot.planner.steps.gait import GaitParameters
 from surefoot.planner.steps.schedule import Schedule
 from surefoot.planner.swing.course import Ground
-from surefoot.planner.types import Foot, Footstep
+from surefoot.planner.types import Foot, Footstep, PhaseKind
 from surefoot.polygon import convex_hull
 
 pytestmark = pytest.mark.unit
@@ -90,8 +89,9 @@ def test_the_box_of_a_stand_is_as_wide_as_both_feet(setup):
 @pytest.mark.parametrize("room", [(np.inf, np.inf), (0.03, np.inf), (0.03, 0.02)])
 def test_the_box_keeps_to_what_the_ankles_bear(stand, room):
     parameters = PlannerParameters(cop_room=room)
-    execution = Execution(Schedule.start(GaitParameters(), stand(), Ground(flat(), HALF, parameters)), 151)
-    support = present_support(None, execution, HALF, 0.9, parameters.cop_room)
+    schedule = Schedule.start(GaitParameters(), stand(), Ground(flat(), HALF, parameters)).extended(151.0)
+    key = SupportKey(schedule, 0, 0.0, (True, True))
+    support = present_support(None, key, PhaseKind.STAND, 0.9, parameters.cop_room)
     np.testing.assert_allclose(support.table[0, :, 4:6].min(axis=0), np.minimum(0.9 * HALF, room))
 
 

@@ -3,20 +3,23 @@ import pytest
 from scipy.spatial.transform import Rotation
 
 from surefoot.planner.ground.terrain import flat
+from surefoot.planner.measured import Measured
 from surefoot.planner.model.leg_chain import LegChain, Link
 from surefoot.planner.orientation import sole_rotation
 from surefoot.planner.parameters import PlannerParameters
 from surefoot.planner.planner import WalkingPlanner
 from surefoot.planner.plants import IdealFeet
+from surefoot.planner.references.com_height import SmoothHeight
 from surefoot.planner.references.nominal_feet import NominalFeet
 from surefoot.planner.sampling import PlanSampler
-from surefoot.planner.steps.execution import Execution
+from surefoot.planner.state import WalkState
 from surefoot.planner.steps.gait import GaitParameters
-from surefoot.planner.steps.schedule import Schedule
 from surefoot.planner.swing.course import Ground
 from surefoot.planner.swing.heel_off import FootRoll, bump
 from surefoot.planner.swing.leg_reach import LegReach
+from surefoot.planner.track import advanced
 from surefoot.planner.types import CentroidalState, Foot, PhaseKind
+from surefoot.planner.walk_model import WalkModel
 
 pytestmark = pytest.mark.unit
 
@@ -78,18 +81,20 @@ def test_a_heel_is_lifted_no_harder_than_hips_swing_a_foot(stand, hips, left, be
     """A double support that is cut short by a push would roll the foot, by the same angle, at many times its rate."""
     ground = Ground(flat(), np.array([0.11, 0.055]), PlannerParameters(reach_length=0.8))
     legs = LegReach(0.27, 0.2, 0.115, 0.12, 0.24, (hips, 50.0))
-    execution = Execution(Schedule.start(GAIT, stand(GAIT.step_width), ground), 151, legs)
-    while execution.phase.kind is not PhaseKind.DOUBLE or execution.phase.roll is None:
-        execution.advance(stand(GAIT.step_width))
+    feet = stand(GAIT.step_width)
+    state = WalkState.start(WalkModel.of(GAIT, ground, SmoothHeight(), legs), feet)
+    measured = Measured(CentroidalState(0.0, np.array([0.0, 0.0, GAIT.com_height]), np.zeros(3)), feet)
+    while state.phase.kind is not PhaseKind.DOUBLE or state.phase.roll is None:
+        state = advanced(state, measured)
     for _ in range(begun):
-        execution.advance(stand(GAIT.step_width))
-    time = 0.02 * execution.clock.ticks
-    assert (execution.roll(time).start < time) is bool(begun)
-    execution.end_in(left, time)
-    assert (execution.roll(time) is not None) is rolls
-    while execution.phase.kind is PhaseKind.DOUBLE:
-        execution.advance(stand(GAIT.step_width))
-    assert (execution.phase.roll is not None) is rolls
+        state = advanced(state, measured)
+    time = 0.02 * state.clock.ticks
+    assert (state.roll(time).start < time) is bool(begun)
+    state = state.ending_in(left, time)
+    assert (state.roll(time) is not None) is rolls
+    while state.phase.kind is PhaseKind.DOUBLE:
+        state = advanced(state, measured)
+    assert (state.phase.roll is not None) is rolls
 
 
 def test_a_roll_begins_in_double_support_and_ends_before_touchdown(walk):

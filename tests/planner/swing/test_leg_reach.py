@@ -4,15 +4,19 @@ import numpy as np
 import pytest
 from pendulum_walk import LEGS
 
+from surefoot.planner.flight import swinging_to
 from surefoot.planner.geometry import frame_rotation
 from surefoot.planner.ground.terrain import Box, Terrain
+from surefoot.planner.measured import Measured
 from surefoot.planner.parameters import PlannerParameters
-from surefoot.planner.steps.execution import Execution
+from surefoot.planner.references.com_height import SmoothHeight
+from surefoot.planner.state import WalkState
 from surefoot.planner.steps.gait import GaitParameters
-from surefoot.planner.steps.schedule import Schedule
 from surefoot.planner.swing.course import Ground
 from surefoot.planner.swing.step_region import StepRegion
-from surefoot.planner.types import Footstep
+from surefoot.planner.track import advanced
+from surefoot.planner.types import CentroidalState, Footstep
+from surefoot.planner.walk_model import WalkModel
 
 pytestmark = pytest.mark.unit
 
@@ -74,15 +78,13 @@ def test_the_body_goes_as_low_as_legs_need_that_span_a_stride(stride):
 def test_the_body_goes_down_where_steps_may_land_anywhere(stand, ground, free):
     """On stairs its height follows the faces, and knees need what is above them."""
     legs = replace(LEGS, height=0.85, length=0.94)
-    at_rest = Schedule.start(
-        GaitParameters(steps=1), stand(), Ground(ground, np.array([0.11, 0.055]), PlannerParameters())
-    )
-    execution = Execution(at_rest, 151, legs)
-    while execution.phase.swing_foot is None:
-        execution.advance(stand())
-    stance = execution.schedule.step(0).place
+    gait, soles = GaitParameters(steps=1), Ground(ground, np.array([0.11, 0.055]), PlannerParameters())
+    state = WalkState.start(WalkModel.of(gait, soles, SmoothHeight(), legs), stand())
+    measured = Measured(CentroidalState(0.0, np.array([0.0, 0.0, gait.com_height]), np.zeros(3)), stand())
+    while state.phase.swing_foot is None:
+        state = advanced(state, measured)
+    stance = state.schedule.step(0).place
     landing = Footstep(stance.foot.other, stance.position + np.array([0.7, 0.0, 0.0]), 0.0)
     for adapted, lowers in ((False, False), (True, free)):
-        execution.adapted = adapted
-        execution.swing_to(landing, 0.02 * execution.clock.now, stand(), False)
-        assert execution.lowering == (pytest.approx(legs.lowering(0.7)) if lowers else 0.0)
+        swung = swinging_to(replace(state, adapted=adapted), landing, measured, False)
+        assert swung.lowering == (pytest.approx(legs.lowering(0.7)) if lowers else 0.0)

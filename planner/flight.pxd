@@ -1,0 +1,1 @@
+from surefoot.planner.state cimport WalkState

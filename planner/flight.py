@@ -1,0 +1,98 @@
+"""Where the next footsteps are to land, and how the swing foot goes there."""
+
+import math
+from dataclasses import replace
+
+import numpy as np
+
+from surefoot.planner.geometry import greatest, sole_pose, wrap_angle
+from surefoot.planner.measured import Measured
+from surefoot.planner.state import Swing, WalkState
+from surefoot.planner.swing.leg_reach import around_stance_leg
+from surefoot.planner.swing.trajectory import LEAST_GLIDE, SwingTrajectory, start_swing
+from surefoot.planner.types import Array, FeetState, Footstep
+
+_SAME_GROUND = 1e-3
+"""Footstep shift up to which the ground height is not looked up again, of the reference robot [m]."""
+
+_SAME_TARGET = 1e-4
+"""Difference of touchdown pose that is not worth a new swing trajectory, likewise [m, rad]."""
+
+_TOLD = 3
+"""Footsteps to come that a plan tells [-]."""
+
+
+def upcoming(state: WalkState, time: float, shifts: Array) -> tuple[Footstep, ...]:
+    """The next footsteps.
+
+    Args:
+        state: now.
+        time: now [s].
+        shifts: of the first two from their nominal increments, in the world frame, shape (2, 2) [m].
+    """
+    planned, ahead, left, ways, free = [], 0.0, 0.0, shifts.tolist(), state.free
+    for n, step in enumerate(state.schedule.after(state.landed)[:_TOLD]):
+        x, y = ways[n] if n < len(ways) and free[n] else (0.0, 0.0)
+        ahead, left = (ahead + x, left + y) if state.model.follows else (x, y)
+        place = _shifted(state, step.place, ahead, left)
+        touchdown = time + state.clock.until(step.touchdown) * state.clock.sample_time
+        planned.append(Footstep(place.foot, place.position, place.yaw, place.normal, step.number, touchdown))
+    return tuple(planned)
+
+
+def _shifted(state: WalkState, place: Footstep, ahead: float, left: float) -> Footstep:
+    """A footstep so far off in the world frame [m], on the ground that is there."""
+    if ahead == 0.0 and left == 0.0:
+        return place
+    x, y, z = place.position.tolist()
+    x, y, normal, terrain = x + ahead, y + left, place.normal, state.model.terrain
+    if abs(ahead) + abs(left) > _SAME_GROUND * state.model.parameters.size.length:
+        z = terrain.height(x, y)
+        normal = terrain.normal(x, y) if terrain.has_edges else normal
+    return replace(place, position=np.array([x, y, z]), normal=normal)
+
+
+def swinging_to(state: WalkState, landing: Footstep, measured: Measured, held: bool) -> WalkState:
+    """The state whose swing foot goes on to where it is to land, in single support.
+
+    Args:
+        state: now.
+        landing: the footstep.
+        measured: with the feet, from one of which a swing begins.
+        held: keep to the target of before.
+    """
+    model, stance, swing = state.model, state.schedule.step(state.landed).place, state.swing.trajectory
+    astray, lowering, time = state.astray, state.lowering, measured.time
+    if swing is None:
+        # Of the place where it landed the height is believed, too: what is off is off in both, and not the map.
+        x, y, height = measured.feet.position[stance.foot].tolist()
+        astray = model.parameters.search.astray(astray, height - model.terrain.height(x, y))
+        swing = _begun(state, landing, time, measured.feet, astray)
+    elif not (state.decided or held):
+        swing = _aimed(state, swing, landing, time)
+    if model.legs is not None:
+        lowering = model.legs.lowering(math.dist(landing.position, stance.position)) if state.catching else 0.0
+        swing = around_stance_leg(swing, stance, model.legs, time, state.clock.sample_time)
+    flown = Swing(state.swing.stage, swing, state.swing.waited, state.swing.again)
+    return replace(state, swing=flown, astray=astray, lowering=lowering)
+
+
+def _begun(state: WalkState, landing: Footstep, time: float, feet: FeetState, astray: float) -> SwingTrajectory:
+    """A swing from where the foot is."""
+    target = sole_pose(landing.position, landing.yaw, landing.normal)
+    foot, leaving = landing.foot, state.schedule.step(state.landed - 1).place
+    yaw = leaving.yaw + wrap_angle(float(feet.yaw[foot]) - leaving.yaw)
+    pose = sole_pose(feet.position[foot], yaw, leaving.normal)
+    unsure, course = (feet.height_deviation, astray), state.schedule.step(state.phase.step).course
+    model = state.model
+    return start_swing(foot, pose, target, time, state.left, course, model.parameters, unsure, model.hardest)
+
+
+def _aimed(state: WalkState, swing: SwingTrajectory, landing: Footstep, time: float) -> SwingTrajectory:
+    """The swing that goes to a footstep, where that is another one."""
+    size, target = state.model.parameters.size, sole_pose(landing.position, landing.yaw, landing.normal)
+    target[2] -= swing.aim
+    if greatest(np.abs(target - swing.target) / np.repeat([size.length, 1.0], 3)) <= _SAME_TARGET:
+        return swing
+    # Over edges the foot keeps to the times in which its course clears them.
+    return swing.retargeted(time, target, state.catching, LEAST_GLIDE * size.time)

@@ -1,0 +1,2 @@
+cdef class Measured:
+    cdef readonly object body, feet

@@ -1,0 +1,44 @@
+"""What a tick measures, as the planner takes it."""
+
+import math
+from dataclasses import dataclass
+
+from surefoot.planner.types import CentroidalState, FeetState
+
+
+@dataclass(frozen=True)
+class Measured:
+    """CoM and feet of a tick; world frame.
+
+    Attributes:
+        body: the CoM, and since when it is so.
+        feet: both of them.
+
+    Raises:
+        ValueError: the CoM or the feet are not finite.
+    """
+
+    body: CentroidalState
+    feet: FeetState
+
+    def __post_init__(self) -> None:
+        """Refuse what is not finite."""
+        body, feet = self.body, self.feet
+        numbers = (*body.com.tolist(), *body.com_velocity.tolist(), *feet.position.ravel().tolist(), *feet.yaw.tolist())
+        if not all(map(math.isfinite, numbers)):
+            raise ValueError(f"The measured CoM or feet are not finite at {self.time:g} s.")
+
+    @property
+    def time(self) -> float:
+        """When that was [s]."""
+        return self.body.time
+
+    def dcm(self, omega: float) -> tuple[float, float, float]:
+        """DCM in the world frame, of that rate [1/s], and the rate [m, 1/s]."""
+        (x, y, _), (u, v, _) = self.body.com.tolist(), self.body.com_velocity.tolist()
+        return x + u / omega, y + v / omega, omega
+
+    def unsure(self, omega: float) -> float:
+        """Two standard deviations of the DCM, of that rate [1/s, m]."""
+        com, velocity = self.body.deviation
+        return 2.0 * math.hypot(com, velocity / omega) if com or velocity else 0.0

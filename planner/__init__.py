@@ -20,10 +20,12 @@ if TYPE_CHECKING:
     from surefoot.planner.laws.law import BuiltQps, Motion, MotionPlanner, MotionProblem, QpLaw
     from surefoot.planner.laws.profiles import PROFILES, Profile
     from surefoot.planner.laws.qp import Qp, QpSolution, solve
+    from surefoot.planner.look import View
     from surefoot.planner.parameters import LegInertia, PlannerParameters, StepAdaptation
     from surefoot.planner.plan import Planner, PlanSample, WalkPlan
     from surefoot.planner.planner import WalkingPlanner
     from surefoot.planner.plants import IdealFeet, Pendulum
+    from surefoot.planner.rules import RULES, Rule
     from surefoot.planner.sampling import PlanSampler
     from surefoot.planner.steps.commands import Command, velocity_bouts, walk_of
     from surefoot.planner.steps.gait import Bout, GaitParameters
@@ -31,6 +33,7 @@ if TYPE_CHECKING:
 
 __all__ = [
     "PROFILES",
+    "RULES",
     "Bout",
     "Box",
     "BuiltQps",
@@ -55,9 +58,11 @@ __all__ = [
     "Qp",
     "QpLaw",
     "QpSolution",
+    "Rule",
     "StepAdaptation",
     "Terrain",
     "Twist",
+    "View",
     "WalkPlan",
     "WalkingPlanner",
     "flat",
@@ -74,8 +79,10 @@ if not TYPE_CHECKING:  # a type checker shall still refuse names that are not th
             "laws.law": ("BuiltQps", "Motion", "MotionPlanner", "MotionProblem", "QpLaw"),
             "laws.profiles": ("PROFILES", "Profile"),
             "laws.qp": ("Qp", "QpSolution", "solve"),
+            "look": ("View",),
             "parameters": ("LegInertia", "PlannerParameters", "StepAdaptation"),
             "plan": ("PlanSample", "Planner", "WalkPlan"),
+            "rules": ("RULES", "Rule"),
             "sampling": ("PlanSampler",),
             "planner": ("WalkingPlanner",),
             "plants": ("IdealFeet", "Pendulum"),

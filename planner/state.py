@@ -271,8 +271,7 @@ class WalkState:
         state, schedule = replace(self, clock=clock), self.schedule
         # A heel that would be lifted harder than hips swing a foot stays down.
         roll = state.roll(time)
-        begins = roll is not None and roll.start >= time
-        if begins and roll.hardest(time, time + state.time_left) > self.model.hardest:
+        if roll is not None and roll.lifts_harder(self.model.hardest, time, time + state.time_left):
             schedule = adaptation.with_foot_flat(schedule, self.landed + 1)
         return state.on(schedule).swing_put_off(time, before)
 

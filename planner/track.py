@@ -8,7 +8,6 @@ from surefoot.planner.model.time_scaling import CLOCK_ROUNDING, TimeScaling
 from surefoot.planner.state import Orders, SwingStage, WalkState
 from surefoot.planner.steps import adaptation
 from surefoot.planner.steps.gait import GaitParameters
-from surefoot.planner.steps.source import StepSource
 from surefoot.planner.types import PhaseKind
 
 _LEAST_LEFT = 3.0
@@ -88,11 +87,7 @@ def obeyed(state: WalkState, time: float) -> WalkState:
     state = replace(state, schedule=replace(state.schedule, gait=gait))
     if source is None and gait.swing_height == before.swing_height:
         return state
-    return state.on(_reordered(state, source))
-
-
-def _reordered(state: WalkState, source: StepSource | None) -> "adaptation.Schedule":
-    return state.schedule.reordered(state.clock.now, source)
+    return state.on(state.schedule.reordered(state.clock.now, source))
 
 
 def _retimed(state: WalkState, gait: GaitParameters, time: float) -> WalkState:

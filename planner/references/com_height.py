@@ -306,7 +306,9 @@ def law_height(profile: HeightProfile, gait: GaitParameters, samples: PhaseSampl
         samples: its phases over the window, shape (n + 2,).
         support_height: heights of the support points in sight, shape (m,) [m].
     """
-    return np.ascontiguousarray(profile.height(gait, samples, support_height)[:, 1:-1])
+    height = np.empty((3, len(samples.clock) - 2))
+    height[...] = profile.height(gait, samples, support_height)[:, 1:-1]
+    return height
 
 
 def preview_height(profile: HeightProfile, height: Array, zmp_height: Array, length: float = 1.0) -> HeightPreview:

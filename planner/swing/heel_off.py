@@ -93,6 +93,10 @@ class FootRoll:
         """Greatest acceleration with which it lifts the sole's centre between two instants [m/s^2]."""
         return self.toe * max(abs(self.evaluate(time)[2]) for time in np.linspace(begin, end, _LOOKED_AT).tolist())
 
+    def lifts_harder(self, most: float, begin: float, end: float) -> bool:
+        """The sole's centre is lifted harder than so much [m/s^2] from an instant to another one, as the roll begins."""
+        return self.start >= begin and self.hardest(begin, end) > most
+
     def centre(self, time: float, level: Array, rates: Array) -> tuple[Array, Array]:
         """Where the sole's centre is and how it moves, with the foot turned about its toe edge.
 

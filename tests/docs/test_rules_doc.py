@@ -1,0 +1,19 @@
+"""The page of recovery tells of each rule what its first sentence says, in their order."""
+
+import inspect
+import re
+from pathlib import Path
+
+import pytest
+
+from surefoot.planner.rules import RULES
+
+pytestmark = pytest.mark.unit
+
+PAGE = Path(__file__).parents[2] / "docs" / "recovery.md"
+
+
+def test_the_rules_are_told_in_their_order():
+    section = PAGE.read_text().split("## The rules in their order")[1].split("\n## ")[0]
+    told = re.findall(r"^\| `(\w+)` \| (.+) \|$", section, re.M)
+    assert told == [(rule.__name__, inspect.getdoc(rule).splitlines()[0]) for rule in RULES]

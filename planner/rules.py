@@ -5,8 +5,8 @@ would come of a state is asked by the same look, and nobody keeps it.
 """
 
 import math
-from collections.abc import Callable
 from dataclasses import replace
+from typing import Protocol
 
 import numpy as np
 
@@ -17,7 +17,12 @@ from surefoot.planner.steps.adaptation import with_step_in_place, with_steps_rep
 from surefoot.planner.track import ended, going_again, lands_short
 from surefoot.planner.types import Foot, PhaseKind
 
-Rule = Callable[[View], View]
+
+class Rule(Protocol):
+    """Something that is made of the steps to come where they do not hold the body."""
+
+    def __call__(self, view: View, /) -> View:
+        """The same view where nothing is made, else that of what is; of what it is given it changes nothing."""
 
 
 def ends(view: View) -> View:

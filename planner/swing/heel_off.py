@@ -94,7 +94,7 @@ class FootRoll:
         return self.toe * max(abs(self.evaluate(time)[2]) for time in np.linspace(begin, end, _LOOKED_AT).tolist())
 
     def lifts_harder(self, most: float, begin: float, end: float) -> bool:
-        """The sole's centre is lifted harder than so much [m/s^2] from an instant to another one, as the roll begins."""
+        """The sole's centre is lifted harder than this between two instants, in which the roll begins [m/s^2]."""
         return self.start >= begin and self.hardest(begin, end) > most
 
     def centre(self, time: float, level: Array, rates: Array) -> tuple[Array, Array]:

@@ -110,7 +110,6 @@ class WalkingPlanner:
         self._region, self._bare = region, not terrain.has_edges
         self._source: CommandSource | None = None
         self._told: tuple[GaitParameters, CommandSource | None] | None = None
-        self._known: tuple[Schedule, Support, Array, float] | None = None
         self.motion: Motion | None = None
 
     @property
@@ -217,10 +216,6 @@ class WalkingPlanner:
         if execution.phase.swing_foot is not None:
             execution.swing_to(footsteps[0], time, feet, motion.solver is SolverStatus.HELD)
         self._plan = self._world_plan(time, support, window, local, motion, footsteps, balance)
-        if self._plan.phase.left < 2.0 * self.parameters.sample_time:  # the next tick may begin another
-            later = execution.foresight.next_of(execution)
-            if later is not None:
-                self._preview.foresee(later)
         return self._plan
 
     def _dcm(self, state: CentroidalState) -> Dcm | None:
@@ -317,16 +312,12 @@ class WalkingPlanner:
         return StepContext(increment, (side, -side), free, here, left, transfer, *bounds)
 
     def _increments(self, support: Support) -> tuple[Array, float]:
-        """Displacements of the next two footsteps, shape (2, 2) [m], and side of the first; they stay as steps do."""
-        execution, schedule, known = self._execution, self._execution.schedule, self._known
-        if known is None or known[0] is not schedule or known[1] is not support:
-            landed, increment = execution.landed, np.zeros((2, 2))
-            places = schedule.positions[schedule.index(landed) :][:3, :2]
-            ahead = (places[1:] - places[:-1]) @ support.rotation
-            increment[: len(ahead)] = ahead
-            side = schedule.step(landed).place.foot.other.side
-            self._known = known = schedule, support, increment, side
-        return known[2], known[3]
+        """Displacements of the next two footsteps, shape (2, 2) [m], and side of the first."""
+        landed, schedule, increment = self._execution.landed, self._execution.schedule, np.zeros((2, 2))
+        places = schedule.positions[schedule.index(landed) :][:3, :2]
+        ahead = (places[1:] - places[:-1]) @ support.rotation
+        increment[: len(ahead)] = ahead
+        return increment, schedule.step(landed).place.foot.other.side
 
     def _status(self, motion: Motion, balance: Balance) -> PlanStatus:
         age, told = 0, self._plan is not None and self._plan.status.falling

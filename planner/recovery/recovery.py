@@ -54,6 +54,12 @@ def falling(balance: Balance, before: bool, numbers: RecoveryParameters) -> bool
     return balance.safe < numbers.regained_plans if before else balance.lost >= numbers.fall_plans
 
 
+def capture_point(local: Array, window: Window) -> tuple[Array, Array]:
+    """CoM and DCM of a position and velocity per axis at the begin of a window, shape (2,) each [m]."""
+    com = local[:, 0]
+    return com, com + local[:, 1] / window.omega[0]
+
+
 class Recovery:
     """Watches the balance of the body, inserts steps, and adjusts the next one, of an execution.
 
@@ -71,11 +77,10 @@ class Recovery:
         self._planned = Outlook(p)
         self._movable = None if legs is None else CaptureMargin(legs, p, half_size)
         self.adjustment = None if legs is None else StepAdjustment(legs, p)
-        self._seen: tuple[Array, Window, Array, Array] | None = None
 
     def planned(self, local: Array, window: Window) -> float:
         """How far the DCM is inside what the CoP captures with steps as planned [m]; arguments as of `balance`."""
-        return self._planned.margin(self._capture_point(local, window)[1], window)
+        return self._planned.margin(capture_point(local, window)[1], window)
 
     def landing(self, feet: FeetState, dcm: Callable[[], Dcm | None], see: See, sight: Sight) -> Sight:
         """Let single support of a step that catches the body end with its touchdown, and tell what is seen then.
@@ -106,7 +111,7 @@ class Recovery:
             return False
         schedule, now = execution.schedule, execution.clock.now
         numbers, standing = self._parameters.recovery, execution.phase.kind is PhaseKind.STAND
-        error = (self._capture_point(local, window)[1] - self._planned.nominal(window)).tolist()
+        error = (capture_point(local, window)[1] - self._planned.nominal(window)).tolist()
         box, most = window.driving.half_size[-1].tolist(), max(map(abs, error))
         if all(abs(astray) <= numbers.stand_share * half for astray, half in zip(error, box, strict=True)):
             # Once it is at rest the robot brings its feet side by side again.
@@ -169,7 +174,7 @@ class Recovery:
             return False
         if not execution.may_go_again:
             return False
-        places, schedule = self._capture_point(local, window), execution.schedule
+        places, schedule = capture_point(local, window), execution.schedule
         foot = schedule.step(execution.landed).place.foot
         if not feet.contact[foot] or foot.side * float(places[1][1]) <= -float(schedule.ground.half_size[1]):
             return False
@@ -187,7 +192,7 @@ class Recovery:
         if margins[-1] < balance.movable + unsure + numbers.tolerance:
             return False
         _, local, window = see(other)
-        found = self.adjustment.solve(*self._capture_point(local, window), window, again, unsure)
+        found = self.adjustment.solve(*capture_point(local, window), window, again, unsure)
         if found is not None and found.cost > numbers.again_cost:
             return False
         execution.adopt(other)
@@ -217,7 +222,7 @@ class Recovery:
             last: the plan before; None for the first.
             unsure: how far the DCM may be from where it is estimated, by which both margins are less [m].
         """
-        execution, p, (com, dcm) = self._execution, self._parameters, self._capture_point(local, window)
+        execution, p, (com, dcm) = self._execution, self._parameters, capture_point(local, window)
         planned = movable = self._planned.margin(dcm, window)
         if step is None:
             planned = movable = max(planned, signed_distance(support.outer, support.origin + support.rotation @ dcm))
@@ -240,7 +245,7 @@ class Recovery:
         execution = self._execution
         if self.adjustment is None or step is None or not execution.free[0]:
             return None
-        adjusted = self.adjustment.solve(*self._capture_point(local, window), window, step, unsure)
+        adjusted = self.adjustment.solve(*capture_point(local, window), window, step, unsure)
         execution.adapted |= adjusted is not None
         return adjusted
 
@@ -275,11 +280,3 @@ class Recovery:
         if adjusted is not None:
             boxes[0] = adjusted.box
         return shifts_within(boxes, increment, free)
-
-    def _capture_point(self, local: Array, window: Window) -> tuple[Array, Array]:
-        """CoM and DCM of a position and velocity per axis, shape (2,) each [m]; the same arrays for the same state."""
-        seen = self._seen
-        if seen is None or seen[0] is not local or seen[1] is not window:
-            com = local[:, 0]
-            self._seen = seen = local, window, com, com + local[:, 1] / window.omega[0]
-        return seen[2], seen[3]

@@ -2,14 +2,12 @@
 
 import math
 from dataclasses import dataclass
-from functools import lru_cache
 
 import numpy as np
 
 from surefoot.planner.geometry import seen_from, wrap_angle
 from surefoot.planner.steps.execution import Execution
-from surefoot.planner.steps.step import Step, room_left, shortest_swing
-from surefoot.planner.swing.course import Ground
+from surefoot.planner.steps.step import room_left, shortest_swing
 from surefoot.planner.types import Array, FeetState, Footstep, PhaseKind
 
 
@@ -70,33 +68,22 @@ class StepProblem:
             v, w, *_ = execution.swing.coefficients(time)[1].tolist()
         x, y = x - u, y - o
         hips = math.inf if execution.legs is None else execution.legs.acceleration[0]
-        place, face, shortest, crosses = _known(step, schedule.step(landed), schedule.ground, hips)
+        stance, ground = schedule.step(landed), schedule.ground
+        seen, turn = seen_from(stance.place, step.place), wrap_angle(step.place.yaw - stance.place.yaw)
+        face = seen.position[:2] + room_left(step, stance.place, ground.parameters.recovery.parallel)
+        whole = 0.0 if hips == math.inf else shortest_swing(step, hips, ground.parameters.recovery.lifting)
         return StepProblem(
-            place=place,
+            place=Footstep(seen.foot, seen.position, turn, seen.normal, seen.step, seen.touchdown_time),
             swing=np.array(((x * a + y * c, x * b + y * d), (v * a + w * c, v * b + w * d))),
             double=0.0 if swings else phase.left,
             single=phase.left if swings else step.single * clock.sample_time,
             cycle=schedule.gait.period,
-            shortest=yet * shortest,
+            shortest=yet * whole,
             face=face,
-            crosses=crosses,
+            crosses=ground.terrain.footholds.crossed(step.lift),
             last=execution.stops,
             adapted=execution.adapted,
         )
-
-
-@lru_cache(maxsize=2)
-def _known(step: Step, stance: Step, ground: Ground, hips: float) -> tuple[Footstep, Array, float, bool]:
-    """What of a `StepProblem` is the same from plan to plan: place, face, its whole shortest swing, whether it crosses.
-
-    The hips swing a foot with an acceleration, infinite for legs that nobody knows [m/s^2].
-    """
-    numbers = ground.parameters.recovery
-    seen, turn = seen_from(stance.place, step.place), wrap_angle(step.place.yaw - stance.place.yaw)
-    place = Footstep(seen.foot, seen.position, turn, seen.normal, seen.step, seen.touchdown_time)
-    face = place.position[:2] + room_left(step, stance.place, numbers.parallel)
-    shortest = 0.0 if hips == math.inf else shortest_swing(step, hips, numbers.lifting)
-    return place, face, shortest, ground.terrain.footholds.crossed(step.lift)
 
 
 @dataclass(frozen=True, slots=True)

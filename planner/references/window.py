@@ -144,7 +144,6 @@ class ReferencePreview:
         self._count, self._length = parameters.horizon + parameters.preview + 1, parameters.size.length
         self._room = parameters.cop_room
         self._numbers = parameters.recovery
-        self._support: Support | None = None
         self._offsets: OffsetTable | None = None
         self._legs: LegOffset | None = None
         if self._leg.chain is not None:
@@ -161,12 +160,7 @@ class ReferencePreview:
 
     def support(self, execution: Execution) -> Support:
         """What carries the robot now."""
-        self._support = present_support(self._support, execution, self._half_size, self._margin, self._room)
-        return self._support
-
-    def foresee(self, execution: Execution) -> None:
-        """Make now what the next tick makes of its support, if the execution then is this one."""
-        self.support(execution)
+        return present_support(execution, self._half_size, self._margin, self._room)
 
     def window(
         self,

@@ -179,24 +179,14 @@ class SupportKey(NamedTuple):
     free: tuple[bool, bool]
 
 
-class Sole(NamedTuple):
-    """Corners of a foot that stands, anticlockwise, shape (4, 2) each [m].
+Sole = tuple[Array, Array]
+"""Corners of a foot that stands, and of its sole shrunk to the ZMP margin, anticlockwise, shape (4, 2) each [m]."""
 
-    Attributes:
-        place: where it stands.
-        outer: those of the sole.
-        inner: those of the sole shrunk to the ZMP margin.
-    """
 
-    place: Footstep
-    outer: Array
-    inner: Array
-
-    @classmethod
-    def of(cls, place: Footstep, half_size: Array, margin: float) -> "Sole":
-        """That of a foot, arguments as of `present_support`."""
-        corners = points_of_sole(place, np.concatenate((CORNERS * half_size, CORNERS * (margin * half_size))))
-        return cls(place, corners[:4], corners[4:])
+def sole_of(place: Footstep, half_size: Array, margin: float) -> Sole:
+    """That of a foot, arguments as of `present_support`."""
+    corners = points_of_sole(place, np.concatenate((CORNERS * half_size, CORNERS * (margin * half_size))))
+    return corners[:4], corners[4:]
 
 
 def hull_of(corners: Array, *others: Array) -> Array:
@@ -208,9 +198,10 @@ def hull_of(corners: Array, *others: Array) -> Array:
     return np.concatenate((corners[first:], corners[:first]))
 
 
-def hulls_of(soles: tuple[Sole, ...]) -> tuple[Array, Array]:
+def hulls_of(soles: list[Sole]) -> tuple[Array, Array]:
     """Convex hulls of soles and of what of them is inside the ZMP margin, as `convex_hull` tells them."""
-    return hull_of(*(sole.outer for sole in soles)), hull_of(*(sole.inner for sole in soles))
+    outer, inner = zip(*soles, strict=True)
+    return hull_of(*outer), hull_of(*inner)
 
 
 @dataclass(frozen=True, slots=True)
@@ -227,7 +218,6 @@ class Support:
         outer: support polygon of the planned soles, shape (v, 2) [m].
         inner: support polygon of the soles shrunk to the ZMP margin, shape (v, 2) [m].
         footholds: where the left and the right foot stand, or stood last.
-        soles: those on which the robot stands.
     """
 
     key: SupportKey
@@ -239,7 +229,6 @@ class Support:
     outer: Array
     inner: Array
     footholds: tuple[Footstep, Footstep]
-    soles: tuple[Sole, ...]
 
     @property
     def frame(self) -> tuple[Array, Array]:
@@ -266,17 +255,10 @@ def _share_load(samples: PhaseSamples, on_left: Array, load: Array) -> None:
         load[k] = (1.0 - share) * on_left[i] + share * on_left[min(i + 1, last)]
 
 
-def present_support(
-    last: Support | None,
-    execution: Execution,
-    half_size: Array,
-    margin: float,
-    room: tuple[float, float],
-) -> Support:
-    """The support of this tick, the last one while its key stays.
+def present_support(execution: Execution, half_size: Array, margin: float, room: tuple[float, float]) -> Support:
+    """The support of this tick.
 
     Args:
-        last: support of the tick before.
         execution: the steps in sight, and how far they have been made.
         half_size: half of the sole's length and width, shape (2,) [m].
         margin: share of the sole in which the ZMP must stay [-].
@@ -284,16 +266,9 @@ def present_support(
     """
     schedule, landed, phase = execution.schedule, execution.landed, execution.phase
     key = SupportKey(schedule, landed, phase.start, execution.free)
-    if last is not None and last.key == key:
-        return last
     latest, before = schedule.step(landed).place, schedule.step(landed - 1).place
     standing = (latest,) if phase.kind is PhaseKind.SINGLE else (latest, before)
-    known = {} if last is None else {id(sole.place): sole for sole in last.soles}
-    soles = tuple(known.get(id(place)) or Sole.of(place, half_size, margin) for place in standing)
-    if last is not None and [*map(id, soles)] == [*map(id, last.soles)]:
-        outer, inner = last.outer, last.inner
-    else:
-        outer, inner = hulls_of(soles)
+    outer, inner = hulls_of([sole_of(place, half_size, margin) for place in standing])
     stay = not schedule.ground.terrain.footholds.follow
     table = support_table(schedule, landed, key.free, np.minimum(margin * half_size, room), stay)
     return Support(
@@ -306,5 +281,4 @@ def present_support(
         outer=outer,
         inner=inner,
         footholds=(latest, before) if latest.foot is Foot.LEFT else (before, latest),
-        soles=soles,
     )

@@ -10,9 +10,8 @@ from surefoot.planner.geometry import greatest, sole_pose, wrap_angle
 from surefoot.planner.model.time_scaling import CLOCK_ROUNDING, TimeScaling
 from surefoot.planner.steps import adaptation
 from surefoot.planner.steps.beginning import in_sight
-from surefoot.planner.steps.foresight import Foresight
 from surefoot.planner.steps.gait import GaitParameters
-from surefoot.planner.steps.phases import Phase, PhaseSamples
+from surefoot.planner.steps.phases import PhaseSamples
 from surefoot.planner.steps.schedule import Schedule
 from surefoot.planner.steps.source import StepSource
 from surefoot.planner.swing.heel_off import FootRoll
@@ -63,7 +62,6 @@ class Execution:
         lowering: how much lower than by its law the CoM is for legs to span the step adapted now or just before [m].
         adapts: whether footsteps may be adapted at all.
         legs: what they can do; None where it is not known.
-        foresight: of the tick in which the next phase begins.
     """
 
     def __init__(self, schedule: Schedule, window: int, legs: LegReach | None = None) -> None:
@@ -71,7 +69,7 @@ class Execution:
         self.landed, self.waited, self.lowering, self._astray, t = 0, 0, 0.0, 0.0, parameters.sample_time
         self.early = self.fixed = self.adapted = self.resent = False
         self.swing: SwingTrajectory | None = None
-        self.clock, self.foresight = TimeScaling(t), Foresight()
+        self.clock = TimeScaling(t)
         # Where footsteps were chosen for the faces that they land on it takes legs that are known to move them.
         self._wide = schedule.ground.terrain.footholds.follow
         self.adapts = parameters.step_adaptation.places and (self._wide or legs is not None)
@@ -79,8 +77,6 @@ class Execution:
         self._parameters, self._size, self._terrain = parameters, parameters.size, schedule.ground.terrain
         self._pose = np.repeat([self._size.length, 1.0], 3)
         self._hardest = math.inf if legs is None else legs.acceleration[0]  # knees are about as strong as hips
-        self._told: tuple[Phase, TimeScaling, Schedule, PhaseInfo] | None = None
-        self._aimed: Array | None = None  # place for which the swing's target was looked at last
         self._lead, self._patience = parameters.touchdown_lead / t, round(parameters.late_touchdown / t)
         self.follow(schedule)
 
@@ -93,15 +89,11 @@ class Execution:
     @property
     def info(self) -> PhaseInfo:
         """The phase now, in seconds."""
-        told, phase, t = self._told, self.phase, self._parameters.sample_time
-        if told is not None and told[0] is phase and told[1] is self.clock and told[2] is self.schedule:
-            return told[3]
+        phase, t = self.phase, self._parameters.sample_time
         elapsed, duration = (self.clock.now - phase.start) * t, phase.samples * t
         follows = phase if phase.stance is not None else self.schedule.phase(phase.end)
         leads_to = follows.step if follows.stance is not None else 0
-        info = PhaseInfo(phase.kind, phase.stance, phase.step, elapsed, duration, leads_to, self.time_left)
-        self._told = phase, self.clock, self.schedule, info
-        return info
+        return PhaseInfo(phase.kind, phase.stance, phase.step, elapsed, duration, leads_to, self.time_left)
 
     @property
     def left(self) -> float:
@@ -165,7 +157,7 @@ class Execution:
                 self.early = True
                 self.fix(feet.position[swing])
         elif over:
-            self.schedule = self.foresight.forgotten(self.schedule, clock.now)
+            self.schedule = self.schedule.forgotten(clock.now)
         elif phase.kind is PhaseKind.STAND:
             self.schedule = adaptation.with_feet_slid(self.schedule, self.landed, feet, self._size.length)
         self.clock = clock
@@ -250,7 +242,7 @@ class Execution:
 
     def land(self, position: Array, now: float) -> None:
         """Go on with the next foot, shape (3,) [m], at an instant of the clock [samples]."""
-        self.schedule = self.foresight.forgotten(self.schedule, now)
+        self.schedule = self.schedule.forgotten(now)
         self.fix(position)
         self.landed += 1
         if self.adapted and self.legs is not None:
@@ -329,8 +321,8 @@ class Execution:
             unsure, course = (feet.height_deviation, self._astray), self.schedule.step(self.phase.step).course
             numbers, hardest = self._parameters, self._hardest
             self.swing = start_swing(foot, pose, target, time, self.left, course, numbers, unsure, hardest)
-        elif not (self.fixed or held or place is self._aimed):
-            target, self._aimed = sole_pose(place, landing.yaw, landing.normal), place
+        elif not (self.fixed or held):
+            target = sole_pose(place, landing.yaw, landing.normal)
             target[2] -= self.swing.aim
             if greatest(np.abs(target - self.swing.target) / self._pose) > _SAME_TARGET:
                 # Over edges the foot keeps to the times in which its course clears them.

@@ -91,7 +91,7 @@ def test_the_box_of_a_stand_is_as_wide_as_both_feet(setup):
 def test_the_box_keeps_to_what_the_ankles_bear(stand, room):
     parameters = PlannerParameters(cop_room=room)
     execution = Execution(Schedule.start(GaitParameters(), stand(), Ground(flat(), HALF, parameters)), 151)
-    support = present_support(None, execution, HALF, 0.9, parameters.cop_room)
+    support = present_support(execution, HALF, 0.9, parameters.cop_room)
     np.testing.assert_allclose(support.table[0, :, 4:6].min(axis=0), np.minimum(0.9 * HALF, room))
 
 

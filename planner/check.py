@@ -1,19 +1,14 @@
 """What of a walk is refused before it is walked: heights and durations, and steps that are not yet in sight."""
 
-from collections.abc import Hashable
 from dataclasses import replace
-from functools import lru_cache
 
 import numpy as np
 
 from surefoot.errors import ParameterError, at_least
 from surefoot.planner.references.com_height import (
     STEEPEST_FALL,
-    BentKneeHeight,
     HeightProfile,
-    PaperHeight,
     Rise,
-    SmoothHeight,
     shortest_support,
 )
 from surefoot.planner.steps.gait import GaitParameters
@@ -41,18 +36,7 @@ def check_walk(schedule: Schedule, height_profile: HeightProfile) -> None:
     Raises:
         ParameterError: see `WalkingPlanner`.
     """
-    start = replace(schedule, steps=schedule.steps[:2], stands=True)
-    if isinstance(height_profile, Hashable) and type(height_profile) in _OWN:
-        _check_once(start, height_profile)
-    else:  # of one that others made nobody knows what it depends on
-        _check(start, height_profile)
-
-
-_OWN: tuple[type, ...] = SmoothHeight, BentKneeHeight, PaperHeight
-
-
-def _check(schedule: Schedule, height_profile: HeightProfile) -> None:
-    gait = schedule.gait
+    schedule, gait = schedule.with_steps(schedule.steps[:2], stands=True), schedule.gait
     if not gait.bouts and not schedule.ground.terrain.has_edges:
         gait = replace(gait, steps=min(gait.steps, _DISTINCT))
     schedule = replace(schedule, gait=gait, source=GaitSource(gait))
@@ -64,10 +48,6 @@ def _check(schedule: Schedule, height_profile: HeightProfile) -> None:
         clock += _AT_ONCE - 2
         last = schedule.phases[-1].start
         schedule = schedule.forgotten(clock)
-
-
-_check_once = lru_cache(maxsize=4)(_check)
-"""The same for walks that begin with the very steps of one that has passed, as in run after run of a campaign."""
 
 
 def check_height(profile: HeightProfile, gait: GaitParameters, samples: PhaseSamples, support_height: Array) -> None:

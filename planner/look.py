@@ -94,7 +94,7 @@ def look(state: WalkState, measured: Measured) -> View:
     model = state.model
     margin, room = model.parameters.foot_margin, model.parameters.cop_room
     key = SupportKey(state.schedule, state.landed, state.phase.start, state.free)
-    support = present_support(state.memory.support, key, state.phase.kind, margin, room)
+    support = present_support(key, state.phase.kind, margin, room)
     # Position and velocity as measured, acceleration as the last plan had it for now.
     bend = _STILL if state.plan is None else state.plan.com_acceleration[1]
     local = model.world.local(measured.body.com, measured.body.com_velocity, bend, support.frame)
@@ -127,7 +127,7 @@ def references(
     course, transition, seen_height = _transferred(state, law)
     high = preview_height(model.heights, course, whole.height, model.parameters.size.length)
     offset, table = _offsets(state, support, (samples, whole.point, high), position, time, lasting)
-    memory = Memory(support, table, transition, seen_height)
+    memory = Memory(table, transition, seen_height)
     reference, height, window = whole.part(slice(count)), high.part(count), slice(1, count + 1)
     stiffness = model.softening * height.stiffness
     if lasting is not None:

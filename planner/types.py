@@ -39,7 +39,7 @@ class PhaseKind(IntEnum):
     SINGLE = 2
 
 
-@dataclass(frozen=True, slots=True)
+@dataclass(frozen=True)
 class Footstep:
     """A foothold: where a foot stands, stood, or is to land.
 
@@ -122,7 +122,7 @@ class Twist(NamedTuple):
         return Footstep(foot, np.array([ahead, side * beside, 0.0]), self.yaw)
 
 
-@dataclass(frozen=True, slots=True)
+@dataclass(frozen=True)
 class CentroidalState:
     """What the planner is told of the body at one instant.
 
@@ -141,7 +141,7 @@ class CentroidalState:
     deviation: tuple[float, float] = (0.0, 0.0)
 
 
-@dataclass(frozen=True, slots=True)
+@dataclass(frozen=True)
 class FeetState:
     """What the planner is told of the feet at one instant.
 
@@ -171,7 +171,7 @@ class SolverStatus(IntEnum):
     """Both solvers failed on an axis: its previous jerk sequence was shifted and kept."""
 
 
-@dataclass(frozen=True, slots=True)
+@dataclass(frozen=True)
 class PlanStatus:
     """How a plan was made.
 
@@ -197,7 +197,7 @@ class PlanStatus:
     falling: bool = False
 
 
-@dataclass(frozen=True, slots=True)
+@dataclass(frozen=True)
 class Balance:
     """What is left to the body, and what of it a plan makes use of; NaN from a planner that does not tell.
 
@@ -222,7 +222,7 @@ class Balance:
     safe: int = 0
 
 
-@dataclass(frozen=True, slots=True)
+@dataclass(frozen=True)
 class PhaseInfo:
     """Where a plan stands in the gait.
 

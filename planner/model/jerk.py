@@ -11,7 +11,6 @@ The Δu form Y = S_x x(0) + S_u1 u(-1) + S_u ΔU is eq. (10) and eq. (11) of the
 """
 
 from dataclasses import dataclass
-from functools import lru_cache
 
 import numpy as np
 
@@ -90,17 +89,8 @@ def predict(sample_time: float, basis: Array) -> Prediction:
     Args:
         sample_time: T [s].
         basis: move parametrisation, shape (N, m).
-
-    Returns:
-        matrices that cannot be written to: equal arguments give the same ones, in run after run of a campaign.
     """
-    return _predict(sample_time, basis.shape, basis.astype(np.float64).tobytes())
-
-
-@lru_cache(maxsize=4)
-def _predict(sample_time: float, shape: tuple[int, int], numbers: bytes) -> Prediction:
-    basis = np.frombuffer(numbers).reshape(shape)
-    n = shape[0]
+    n = len(basis)
     time = sample_time * np.arange(n + 1)
     one, zero = np.ones_like(time), np.zeros_like(time)
     state = np.stack(
@@ -120,10 +110,7 @@ def _predict(sample_time: float, shape: tuple[int, int], numbers: bytes) -> Pred
             np.where(past, t, 0.0),
         ]
     )
-    moves = np.ascontiguousarray(samples @ basis)
-    for array in (state, moves, samples):
-        array.flags.writeable = False
-    return Prediction(state, moves, samples, basis)
+    return Prediction(state, np.ascontiguousarray(samples @ basis), samples, basis)
 
 
 def zmp_response(response: Array, stiffness: Array) -> Array:

@@ -2,7 +2,6 @@
 
 import math
 from dataclasses import dataclass
-from functools import lru_cache
 
 from surefoot.planner.geometry import seen_from, wrap_angle
 from surefoot.planner.steps.step import Step, room_left, shortest_swing
@@ -44,7 +43,6 @@ class StepProblem:
         return self.place.position[:2]
 
 
-@lru_cache(maxsize=2)
 def landing_place(step: Step, stance: Step, ground: Ground, hips: float) -> tuple[Footstep, Array, float, bool]:
     """What of a `StepProblem` is the same from plan to plan: place, face, its whole shortest swing, whether it crosses.
 
@@ -62,7 +60,7 @@ def landing_place(step: Step, stance: Step, ground: Ground, hips: float) -> tupl
 class StepBounds:
     """The solution for the next step: a time, and a set of places, of which the law of motion takes one.
 
-    `Recovery.bounds` makes bounds of shifts of it, which the `StepContext` of a law carries.
+    `planner.problem` makes bounds of shifts of it, which the `StepContext` of a law carries.
 
     Attributes:
         left: time until the present phase is to end [s].

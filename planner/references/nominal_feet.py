@@ -1,7 +1,6 @@
 """How both feet move over a window as steps are planned, on which the momentum of the legs depends."""
 
 import math
-from functools import lru_cache
 
 import numpy as np
 
@@ -10,8 +9,7 @@ from surefoot.planner import quintic
 from surefoot.planner.model.time_scaling import CLOCK_ROUNDING
 from surefoot.planner.steps.phases import Phase, PhaseSamples
 from surefoot.planner.steps.schedule import Schedule
-from surefoot.planner.steps.step import Step, unit_swing
-from surefoot.planner.swing.course import Ground
+from surefoot.planner.steps.step import unit_swing
 from surefoot.planner.swing.trajectory import TOUCHING, SwingTrajectory
 from surefoot.planner.types import Array, PhaseKind
 
@@ -209,10 +207,4 @@ def swing_of(phase: Phase, schedule: Schedule, elapsed: float) -> tuple[SwingTra
     step, late = schedule.step(phase.step), elapsed % 1.0
     if min(late, 1.0 - late) <= CLOCK_ROUNDING:
         return step.swing, 0.0
-    return _rest_of(step, phase.samples - late, schedule.ground), late
-
-
-@lru_cache(maxsize=16)
-def _rest_of(step: Step, samples: float, ground: Ground) -> SwingTrajectory:
-    """The swing of a step that has so many samples, the same from plan to plan."""
-    return unit_swing(samples, step.climb, step.course, ground.parameters)
+    return unit_swing(phase.samples - late, step.climb, step.course, schedule.ground.parameters), late

@@ -178,24 +178,14 @@ class SupportKey(NamedTuple):
     free: tuple[bool, bool]
 
 
-class Sole(NamedTuple):
-    """Corners of a foot that stands, anticlockwise, shape (4, 2) each [m].
+Sole = tuple[Array, Array]
+"""Corners of a foot that stands, and of its sole shrunk to the ZMP margin, anticlockwise, shape (4, 2) each [m]."""
 
-    Attributes:
-        place: where it stands.
-        outer: those of the sole.
-        inner: those of the sole shrunk to the ZMP margin.
-    """
 
-    place: Footstep
-    outer: Array
-    inner: Array
-
-    @classmethod
-    def of(cls, place: Footstep, half_size: Array, margin: float) -> "Sole":
-        """That of a foot, arguments as of `present_support`."""
-        corners = points_of_sole(place, np.concatenate((CORNERS * half_size, CORNERS * (margin * half_size))))
-        return cls(place, corners[:4], corners[4:])
+def sole_of(place: Footstep, half_size: Array, margin: float) -> Sole:
+    """That of a foot, arguments as of `present_support`."""
+    corners = points_of_sole(place, np.concatenate((CORNERS * half_size, CORNERS * (margin * half_size))))
+    return corners[:4], corners[4:]
 
 
 def hull_of(corners: Array, *others: Array) -> Array:
@@ -207,9 +197,10 @@ def hull_of(corners: Array, *others: Array) -> Array:
     return np.concatenate((corners[first:], corners[:first]))
 
 
-def hulls_of(soles: tuple[Sole, ...]) -> tuple[Array, Array]:
+def hulls_of(soles: list[Sole]) -> tuple[Array, Array]:
     """Convex hulls of soles and of what of them is inside the ZMP margin, as `convex_hull` tells them."""
-    return hull_of(*(sole.outer for sole in soles)), hull_of(*(sole.inner for sole in soles))
+    outer, inner = zip(*soles, strict=True)
+    return hull_of(*outer), hull_of(*inner)
 
 
 @dataclass(frozen=True, slots=True)
@@ -226,7 +217,6 @@ class Support:
         outer: support polygon of the planned soles, shape (v, 2) [m].
         inner: support polygon of the soles shrunk to the ZMP margin, shape (v, 2) [m].
         footholds: where the left and the right foot stand, or stood last.
-        soles: those on which the robot stands.
     """
 
     key: SupportKey
@@ -238,7 +228,6 @@ class Support:
     outer: Array
     inner: Array
     footholds: tuple[Footstep, Footstep]
-    soles: tuple[Sole, ...]
 
     @property
     def frame(self) -> tuple[Array, Array]:
@@ -265,36 +254,21 @@ def _share_load(samples: PhaseSamples, on_left: Array, load: Array) -> None:
         load[k] = (1.0 - share) * on_left[i] + share * on_left[min(i + 1, last)]
 
 
-def present_support(
-    last: Support | None,
-    key: SupportKey,
-    phase: PhaseKind,
-    margin: float,
-    room: tuple[float, float],
-) -> Support:
-    """The support of this tick, the last one while its key stays.
+def present_support(key: SupportKey, phase: PhaseKind, margin: float, room: tuple[float, float]) -> Support:
+    """The support of this tick.
 
     Args:
-        last: support of the tick before.
-        key: of what this one follows from.
+        key: what it follows from.
         phase: the kind of phase now.
         margin: share of the sole in which the ZMP must stay [-].
         room: what of the half size the ankles can bear, forward and sideways [m].
     """
-    if last is not None and last.key == key:
-        return last
     schedule, landed, ground = key.schedule, key.landed, key.schedule.ground
-    half_size = ground.half_size
     latest, before = schedule.step(landed).place, schedule.step(landed - 1).place
     standing = (latest,) if phase is PhaseKind.SINGLE else (latest, before)
-    known = {} if last is None else {id(sole.place): sole for sole in last.soles}
-    soles = tuple(known.get(id(place)) or Sole.of(place, half_size, margin) for place in standing)
-    if last is not None and [*map(id, soles)] == [*map(id, last.soles)]:
-        outer, inner = last.outer, last.inner
-    else:
-        outer, inner = hulls_of(soles)
+    outer, inner = hulls_of([sole_of(place, ground.half_size, margin) for place in standing])
     stay = not ground.terrain.footholds.follow
-    table = support_table(schedule, landed, key.free, np.minimum(margin * half_size, room), stay)
+    table = support_table(schedule, landed, key.free, np.minimum(margin * ground.half_size, room), stay)
     return Support(
         key=key,
         rotation=frame_rotation(latest.yaw),
@@ -305,5 +279,4 @@ def present_support(
         outer=outer,
         inner=inner,
         footholds=(latest, before) if latest.foot is Foot.LEFT else (before, latest),
-        soles=soles,
     )

@@ -76,7 +76,7 @@ def _with_feet_swapped(schedule: Schedule) -> Schedule:
     *before, one, other = schedule.steps
     swapped = (replace(step, nominal=by.nominal, place=by.place) for step, by in ((one, other), (other, one)))
     gait = replace(schedule.gait, first_foot=Foot(schedule.gait.first_foot).other)
-    return replace(schedule, gait=gait, steps=(*before, *swapped))
+    return replace(schedule.with_steps((*before, *swapped)), gait=gait)
 
 
 def aligned(schedule: Schedule, number: int) -> Schedule:
@@ -85,7 +85,7 @@ def aligned(schedule: Schedule, number: int) -> Schedule:
     aside = frame_rotation(step.nominal.yaw)[:, 1]
     shift = aside * float(aside @ (step.place.position - step.nominal.position)[:2])
     later = (replace(one, place=one.beside(shift, terrain)) for one in schedule.after(number))
-    return replace(schedule, steps=(*schedule.steps[: schedule.index(number) + 1], *later), shift=shift)
+    return schedule.placed((*schedule.steps[: schedule.index(number) + 1], *later), shift)
 
 
 def with_feet_slid(schedule: Schedule, number: int, feet: FeetState, length: float) -> Schedule:
@@ -123,13 +123,13 @@ def with_heel_lifted(schedule: Schedule, number: int, radius: float) -> Schedule
     if angle <= (step.roll.angle if step.roll else 0.0):
         return schedule
     step = replace(step, roll=roll_span(stance.double, step.lift_off, step.single, angle))
-    return replace(schedule, steps=(*schedule.steps[:at], step, *schedule.steps[at + 1 :]))
+    return schedule.with_steps((*schedule.steps[:at], step, *schedule.steps[at + 1 :]))
 
 
 def with_foot_flat(schedule: Schedule, number: int) -> Schedule:
     """The foot that makes the step of a number does not roll as it leaves the ground."""
     at, steps = schedule.index(number), schedule.steps
-    return replace(schedule, steps=(*steps[:at], replace(steps[at], roll=None), *steps[at + 1 :]))
+    return schedule.with_steps((*steps[:at], replace(steps[at], roll=None), *steps[at + 1 :]))
 
 
 def lands_short(schedule: Schedule, number: int, feet: FeetState, dcm: Dcm | None, legs: LegReach | None) -> bool:

@@ -1,52 +1,25 @@
-"""How a walk begins: its schedule, laid out, which is kept for run after run of a campaign that begins alike."""
+"""How a walk begins: its schedule, laid out and in sight."""
 
 import math
-import pickle
-from dataclasses import dataclass, field
-from functools import lru_cache
 
-from surefoot.planner.ground.terrain import Terrain
 from surefoot.planner.steps.gait import GaitParameters
 from surefoot.planner.steps.schedule import Schedule
 from surefoot.planner.swing.course import Ground
 from surefoot.planner.types import FeetState
 
 
-@dataclass(frozen=True, slots=True)
-class _Beginning:
-    """What a schedule begins with, equal to one in which every number is the same."""
-
-    numbers: bytes
-    window: float
-    gait: GaitParameters = field(compare=False)
-    feet: FeetState = field(compare=False)
-    ground: Ground = field(compare=False)
-
-
 def begun(gait: GaitParameters, feet: FeetState, ground: Ground, window: float = 0.0) -> Schedule:
-    """The laid-out schedule of a robot that stands, the same object for equal arguments.
+    """The laid-out schedule of a robot that stands.
 
     Args:
-        gait: as of `Schedule.start`.
-        feet: likewise.
-        ground: likewise.
+        gait: gives the durations and what else all steps have in common.
+        feet: where the feet stand.
+        ground: to lay steps on.
         window: how far the plans of its first phase look ahead, all of which is in sight [samples].
 
     Raises:
         ParameterError: see `Schedule.extended`.
     """
-    if type(ground.terrain) is not Terrain:  # of one that others made nobody knows what it depends on
-        return _seen(gait, feet, ground, window)
-    told = gait, feet.position, feet.yaw, ground.half_size, ground.parameters, ground.terrain
-    return _begun(_Beginning(pickle.dumps(told), window, gait, feet, ground))
-
-
-@lru_cache(maxsize=4)
-def _begun(beginning: _Beginning) -> Schedule:
-    return _seen(beginning.gait, beginning.feet, beginning.ground, beginning.window)
-
-
-def _seen(gait: GaitParameters, feet: FeetState, ground: Ground, window: float) -> Schedule:
     schedule = Schedule.start(gait, feet, ground).laid_out()
     return in_sight(schedule, 0.0, window) if window else schedule
 

@@ -88,6 +88,11 @@ def phases_of(steps: Sequence[Step], stands: bool) -> tuple[Phase, ...]:
     return tuple(phases)
 
 
+def phases_since(begin: float, steps: Sequence[Step], stands: bool) -> tuple[Phase, ...]:
+    """Those of them that are not over at an instant of the clock [samples]."""
+    return tuple([phase for phase in phases_of(steps, stands) if phase.end > begin + CLOCK_ROUNDING])
+
+
 @dataclass(frozen=True, slots=True)
 class PhaseTable:
     """Phases in order, without gaps, as columns of n rows.

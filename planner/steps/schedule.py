@@ -6,10 +6,9 @@ robot stands until the next bout.
 """
 
 import math
-from bisect import bisect_left, bisect_right
+from bisect import bisect_right
 from contextlib import suppress
 from dataclasses import dataclass, field, replace
-from functools import cached_property
 from operator import attrgetter
 
 import numpy as np
@@ -20,9 +19,9 @@ from surefoot.planner.geometry import wrap_angle
 from surefoot.planner.model.time_scaling import CLOCK_ROUNDING
 from surefoot.planner.steps.footsteps import start_footholds
 from surefoot.planner.steps.gait import GaitParameters, in_samples
-from surefoot.planner.steps.phases import Phase, PhaseSamples, PhaseTable, phases_of
+from surefoot.planner.steps.phases import Phase, PhaseSamples, PhaseTable, phases_since
 from surefoot.planner.steps.source import GaitSource, StepSource
-from surefoot.planner.steps.step import Step, Stop, durations, known_step, lay, start_step
+from surefoot.planner.steps.step import Step, Stop, durations, laid_step, lay, start_step
 from surefoot.planner.swing.course import Ground
 from surefoot.planner.types import Array, FeetState, Foot, PhaseKind, Twist
 
@@ -35,8 +34,8 @@ _STOP_AHEAD = 4
 _LAID_OUT = 120.0
 """Time of a walk on bare ground whose steps are laid before it begins; a minute of them takes some milliseconds [s]."""
 
-_START, _OF_PHASES = attrgetter("start"), ("phases", "phase_table", "first_support", "supports", "on_left", "yaws")
-"""When a phase begins, and what of a schedule does not depend on where its steps land."""
+_START = attrgetter("start")
+"""When a phase begins."""
 
 
 @dataclass(frozen=True)
@@ -54,6 +53,7 @@ class Schedule:
         shift: where steps that come into sight lie from their nominal places, shape (2,) [m].
         begin: phases that were over by then are forgotten [samples].
         laid: steps of the walk as they are nominally laid, of which those that come into sight are taken.
+        phases: the phases in sight in order, without gaps; they follow from steps, `stands` and `begin`.
     """
 
     gait: GaitParameters
@@ -63,7 +63,8 @@ class Schedule:
     stands: bool
     shift: Array = field(compare=False)
     begin: float
-    laid: tuple[Step, ...] = field(default=(), compare=False)
+    laid: tuple[Step, ...] = field(compare=False)
+    phases: tuple[Phase, ...] = field(compare=False)
 
     @classmethod
     def start(
@@ -81,29 +82,17 @@ class Schedule:
         steps = tuple(
             start_step(number, place, path, gait, ground) for number, place in zip((-1, 0), places, strict=True)
         )
-        return cls(gait, ground, source or GaitSource(gait), steps, True, np.zeros(2), 0.0)
+        phases = phases_since(0.0, steps, True)
+        return cls(gait, ground, source or GaitSource(gait), steps, True, np.zeros(2), 0.0, (), phases)
 
     # What follows from a schedule.
 
-    @cached_property
-    def phases(self) -> tuple[Phase, ...]:
-        """The phases in sight in order, without gaps."""
-        return self._remembered(phases_of(self.steps, self.stands))
-
-    def _remembered(self, phases: tuple[Phase, ...]) -> tuple[Phase, ...]:
-        return tuple(phase for phase in phases if phase.end > self.begin + CLOCK_ROUNDING)
-
-    @cached_property
-    def phase_table(self) -> PhaseTable:
-        """The same as columns."""
-        return PhaseTable.of(self.phases)
-
-    @cached_property
+    @property
     def first_support(self) -> int:
         """Number in the walk of the first support point in sight."""
         return max(self.phases[0].support - 2, 0)
 
-    @cached_property
+    @property
     def supports(self) -> NDArray[np.intp]:
         """Support points of the ZMP in sight, as indices of the two steps that each lies between, shape (m, 2).
 
@@ -118,26 +107,27 @@ class Schedule:
             points.append((self.steps[-1].support + 1, (len(self.steps) - 2, len(self.steps) - 1)))
         return np.array([between for number, between in points if number >= self.first_support])
 
-    @cached_property
+    @property
     def positions(self) -> Array:
         """Where the steps land, sole centres in the world frame, shape (n, 3) [m]."""
         return np.array([step.place.position for step in self.steps])
 
-    @cached_property
+    @property
     def yaws(self) -> Array:
         """Their headings, unwrapped, shape (n,) [rad]."""
         return np.array([step.place.yaw for step in self.steps])
 
     def at_supports(self, values: Array) -> Array:
         """What values of the steps, shape (n, ...), are at the support points: means of two, shape (m, ...)."""
-        return np.asarray(0.5 * (values[self.supports[:, 0]] + values[self.supports[:, 1]]))
+        one, other = self.supports.T
+        return np.asarray(0.5 * (values[one] + values[other]))
 
-    @cached_property
+    @property
     def on_left(self) -> Array:
         """Share of the weight on the left foot at the support points, shape (m,) [-]."""
         return self.at_supports(np.array([float(step.place.foot is Foot.LEFT) for step in self.steps]))
 
-    @cached_property
+    @property
     def support_points(self) -> Array:
         """The support points, shape (m, 3) [m]."""
         return self.at_supports(self.positions)
@@ -168,7 +158,7 @@ class Schedule:
         """Heading of a step against the one before it; zero where there is none [rad]."""
         if number > self.last.number:
             return 0.0
-        return wrap_angle(float(self.yaws[self.index(number)] - self.yaws[self.index(number - 1)]))
+        return wrap_angle(self.step(number).place.yaw - self.step(number - 1).place.yaw)
 
     def phase(self, clock: float) -> Phase:
         """The phase at an instant, the first in sight if it lies before."""
@@ -184,7 +174,8 @@ class Schedule:
 
     def samples(self, clock: Array, rate: tuple[Array, Array] | None = None) -> PhaseSamples:
         """The phases where the clock shows some instants; arguments as of `PhaseSamples`."""
-        return PhaseSamples(self.phase_table, clock, self.ground.parameters.sample_time, self.first_support, rate)
+        table, sample_time = PhaseTable.of(self.phases), self.ground.parameters.sample_time
+        return PhaseSamples(table, clock, sample_time, self.first_support, rate)
 
     def usual_samples(self, phase: Phase) -> float:
         """How long a phase would last that had not begun [samples]."""
@@ -253,7 +244,7 @@ class Schedule:
         before = None if self.stands else last.stride
         order = self.source.order(last.ordinal + 1, before, self._end, self.gait.period)
         if order is None:
-            return None if self.stands else replace(self, stands=True)
+            return None if self.stands else self.with_steps(self.steps, stands=True)
         (stride, stand), stop = order, None
         if self.stands:
             stop = Stop.usual(max(in_samples(stand, t), now - last.end), self.durations[1])
@@ -262,21 +253,20 @@ class Schedule:
     def followed(self, stride: Twist, stop: Stop | None, inserted: bool = False) -> "Schedule":
         """The schedule with one more step."""
         one, other = self.steps[-2:]
-        step = None if inserted else known_step(self.laid, (one, other), stride, stop, self.durations)
+        step = None if inserted else laid_step(self.laid, (one, other), stride, stop, self.durations)
         step = step or lay(stride, (one, other), self.gait, self.ground, stop, inserted)
         place = step.beside(self.shift, self.ground.terrain)
-        step = step.landing(place.position, place.normal)
-        longer = self._with((*self.steps, step), False, self.shift)
-        until = bisect_left(self.phases, other.number, key=attrgetter("step"))
-        vars(longer)["phases"] = self.phases[:until] + self._remembered(phases_of((other, step), False))
-        return longer
+        return self.with_steps((*self.steps, step.landing(place.position, place.normal)), stands=False)
 
-    def _with(self, steps: tuple[Step, ...], stands: bool, shift: Array) -> "Schedule":
-        return Schedule(self.gait, self.ground, self.source, steps, stands, shift, self.begin, self.laid)
+    def with_steps(self, steps: tuple[Step, ...], stands: bool | None = None, begin: float | None = None) -> "Schedule":
+        """The schedule of other steps; its end in a stand, and what is forgotten, stay unless they are given."""
+        stands, begin = self.stands if stands is None else stands, self.begin if begin is None else begin
+        phases = phases_since(begin, steps, stands)
+        return Schedule(self.gait, self.ground, self.source, steps, stands, self.shift, begin, self.laid, phases)
 
     def until(self, number: int, stands: bool) -> "Schedule":
         """The schedule without the steps after one, with which the robot then stands or not."""
-        return replace(self, steps=self.steps[: self.index(number) + 1], stands=stands)
+        return self.with_steps(self.steps[: self.index(number) + 1], stands)
 
     def forgotten(self, clock: float) -> "Schedule":
         """What lies behind an instant is let go of, but for the phase of the sample before it."""
@@ -284,9 +274,7 @@ class Schedule:
         first = next(phase for phase in self.phases if phase.end > begin + CLOCK_ROUNDING)
         if first is self.phases[0]:
             return self
-        rest = replace(self, steps=self.steps[max(self.index(first.step - 3), 0) :], begin=begin)
-        vars(rest)["phases"] = self.phases[self.phases.index(first) :]
-        return rest
+        return self.with_steps(self.steps[max(self.index(first.step - 3), 0) :], begin=begin)
 
     def reordered(self, now: float, source: StepSource | None = None) -> "Schedule":
         """All steps but the one being swung and the one to which the weight is being shifted are asked for anew.
@@ -302,10 +290,10 @@ class Schedule:
         shifts = present.kind is PhaseKind.DOUBLE and later[0].kind is PhaseKind.SINGLE
         kept = self.until(present.leaves if shifts else present.step, stands=not shifts)
         if present.kind is PhaseKind.SINGLE:
-            kept = replace(kept, stands=later[1].kind is PhaseKind.STAND)
+            kept = kept.with_steps(kept.steps, later[1].kind is PhaseKind.STAND)
         if source is not None:
             last = replace(kept.last, ordinal=kept.last.number)
-            return replace(kept, source=source, steps=(*kept.steps[:-1], last))
+            return replace(kept.with_steps((*kept.steps[:-1], last)), source=source)
         for step in self.after(kept.last.number):
             kept = kept.followed(step.stride, step.stop, inserted=True) if step.inserted else kept
         return kept
@@ -320,7 +308,7 @@ class Schedule:
             elif step.touchdown > begun:
                 step = replace(step, double=double)
             steps.append(step)
-        return replace(self, gait=gait, steps=tuple(steps))
+        return replace(self.with_steps(tuple(steps)), gait=gait)
 
     def moved(self, number: int, position: Array) -> "Schedule":
         """A step lands somewhere else, and those after it are shifted by as much.
@@ -335,20 +323,15 @@ class Schedule:
         step, position = self.steps[at], np.array(position)
         if not terrain.footholds.follow:
             moved = step.landing(position, step.place.normal)
-            return self._placed((*self.steps[:at], moved, *self.steps[at + 1 :]), self.shift)
-        way, positions = position[:2] - step.place.position[:2], self.positions.copy()
-        places = positions[at:]
+            return self.placed((*self.steps[:at], moved, *self.steps[at + 1 :]), self.shift)
+        way, places = position[:2] - step.place.position[:2], self.positions[at:]
         places[0] = position
         places[1:, :2] += way
         places[1:, 2] = terrain.heights(places[1:, :2])
         landings = zip(self.steps[at:], places, terrain.normals(places[:, :2]), strict=True)
         later = (step.landing(place, normal) for step, place, normal in landings)
-        placed = self._placed((*self.steps[:at], *later), self.shift + way)
-        vars(placed)["positions"] = positions
-        return placed
+        return self.placed((*self.steps[:at], *later), self.shift + way)
 
-    def _placed(self, steps: tuple[Step, ...], shift: Array) -> "Schedule":
-        """The schedule with steps that differ in their places alone, of which the same phases follow."""
-        placed = self._with(steps, self.stands, shift)
-        vars(placed).update({name: vars(self)[name] for name in _OF_PHASES if name in vars(self)})
-        return placed
+    def placed(self, steps: tuple[Step, ...], shift: Array) -> "Schedule":
+        """The schedule of steps that differ in their places alone, and of a shift; its phases stay."""
+        return replace(self, steps=steps, shift=shift)

@@ -242,16 +242,18 @@ def lay(
     return step
 
 
-def known_step(
+def laid_step(
     laid: tuple[Step, ...], before: tuple[Step, Step], stride: Twist, stop: Stop | None, lasting: tuple[float, float]
 ) -> Step | None:
-    """The step after two others, if it has been laid already, after the very same ones; None if it has not.
+    """The step after two others as it was laid before the walk; None where it would be laid otherwise now.
+
+    A walk is laid out once, since a swing over edges takes milliseconds to find.
 
     Args:
         laid: steps in order, without gaps.
-        before: as of `lay`.
-        stride: likewise.
-        stop: likewise.
+        before: the last step of its foot, and that of the other one.
+        stride: what it does to the path.
+        stop: standing before it.
         lasting: single and double support [samples].
     """
     one, other = before

@@ -1,7 +1,6 @@
 """How a swing foot gets over edges: when it glides forward and when it is highest, so that the whole sole is clear."""
 
 from dataclasses import dataclass, replace
-from functools import lru_cache
 from itertools import product
 
 import numpy as np
@@ -141,7 +140,6 @@ def _gentlest(
     return SwingCourse(_APEXES[a], *_GLIDES[g], top - higher) if clear[a, g] else None
 
 
-@lru_cache(maxsize=4)
 def _shares(samples: float, parameters: PlannerParameters) -> Array:
     """Share of the way over the ground that each glide has done, of any step, shape (64, 200)."""
     ahead = np.array([1.0, 0.0, 0.0, 0.0, 0.0, 0.0])

@@ -2,7 +2,6 @@
 
 import math
 from dataclasses import dataclass
-from functools import cache
 
 import numpy as np
 
@@ -148,14 +147,10 @@ def shifts_within(boxes: Array, increment: Array, free: tuple[bool, bool]) -> Sh
     return lower, upper
 
 
-@cache
 def unshifted(free: tuple[bool, bool]) -> Shifts:
     """Those of footsteps that stay where they are."""
     bounds = np.array([[0.0, 0.0] if moves else [_UNUSED, _UNUSED] for moves in free])
-    shifts = -bounds, bounds
-    for corner in shifts:
-        corner.flags.writeable = False
-    return shifts
+    return -bounds, bounds
 
 
 def reachable_shifts(

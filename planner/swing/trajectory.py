@@ -2,7 +2,6 @@
 
 import math
 from dataclasses import dataclass, field, replace
-from functools import lru_cache
 
 import numpy as np
 
@@ -88,7 +87,6 @@ class SwingTrajectory:
         """Whether the way bends round a corner."""
         return self.bend_time < math.inf
 
-    @lru_cache(maxsize=4)  # noqa: B019  several ask for the instant of a plan; few are kept
     def coefficients(self, time: float) -> Array:
         """Polynomials in the local time from `time` on, valid until the next of the times above, shape (6, 6)."""
         result = np.zeros((6, 6))

@@ -162,7 +162,7 @@ IN_BODIES = {
     "references.com_height": {3.0, 6.0, 10.0, 15.0, 30.0, 60.0},
     "references.height_transition": {6.0},
     "references.leg_offset": {6.0},
-    "references.nominal_feet": {16, 64.0},
+    "references.nominal_feet": {64.0},
     "references.zmp_reference": {1e-12},
     "sampling": {3.0, 4.0, 6.0, 7.0, 10.0, 15.0},
     "steps.gait": {1e-9},

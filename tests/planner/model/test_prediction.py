@@ -43,13 +43,3 @@ def test_last_block_is_kept_until_the_horizon():
 def test_bad_blocks_are_refused(starts):
     with pytest.raises(ValueError, match="must increase from 0"):
         block_moves(starts, 50)
-
-
-def test_equal_arguments_give_the_same_matrices_which_nobody_can_change():
-    one, other = predict(T, np.eye(6)), predict(T, np.eye(6))
-    assert one is other
-    assert predict(2.0 * T, np.eye(6)) is not one
-    assert predict(T, 2.0 * np.eye(6)) is not one
-    for array in (one.state, one.moves, one.samples, one.basis):
-        with pytest.raises(ValueError, match="read-only"):
-            array[0] = 1.0

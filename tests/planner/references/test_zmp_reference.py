@@ -91,7 +91,7 @@ def test_the_box_keeps_to_what_the_ankles_bear(stand, room):
     parameters = PlannerParameters(cop_room=room)
     schedule = Schedule.start(GaitParameters(), stand(), Ground(flat(), HALF, parameters)).extended(151.0)
     key = SupportKey(schedule, 0, 0.0, (True, True))
-    support = present_support(None, key, PhaseKind.STAND, 0.9, parameters.cop_room)
+    support = present_support(key, PhaseKind.STAND, 0.9, parameters.cop_room)
     np.testing.assert_allclose(support.table[0, :, 4:6].min(axis=0), np.minimum(0.9 * HALF, room))
 
 

@@ -16,8 +16,8 @@ import pytest
 from surefoot.models.registry import ROBOTS
 from surefoot.native import modules
 from surefoot.planner.laws.profiles import PROFILES
-from surefoot.scenarios.apps import cli
 from surefoot.scenarios.catalogue import SCENARIOS
+from surefoot.scenarios.cli import program as cli
 from surefoot.scenarios.judge.metrics import METRICS
 from surefoot.scenarios.run.full import PLANTS
 from surefoot.scenarios.run.sensing import ESTIMATORS

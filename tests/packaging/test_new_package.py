@@ -11,7 +11,7 @@ from pathlib import Path
 import pytest
 import yaml
 
-from surefoot.scenarios.apps.package import new
+from surefoot.apps.package.new import new
 from surefoot.scenarios.errors import ScenarioError
 
 ROOT = Path(__file__).parents[2]

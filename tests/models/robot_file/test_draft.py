@@ -9,11 +9,11 @@ import pytest
 import typer
 import yaml
 
+from surefoot.apps.robots.command import new
 from surefoot.models import RobotOptions, describe
 from surefoot.models.robot_file.draft import _feet, draft
 from surefoot.models.robot_file.schema import RobotFile, read
 from surefoot.models.types import RobotError
-from surefoot.scenarios.apps.robots.command import new
 
 pytestmark = pytest.mark.unit
 

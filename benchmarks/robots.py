@@ -18,8 +18,8 @@ from pathlib import Path
 
 import yaml
 
+from surefoot.apps.robots.draft import draft
 from surefoot.apps.robots.examine import examine, known
-from surefoot.models.robot_file.draft import draft
 from surefoot.models.types import RobotError
 from surefoot.scenarios.errors import LogError, ScenarioError, SetupError
 from surefoot.scenarios.output import write_whole

@@ -14,9 +14,8 @@ from surefoot.engine import mujoco
 from surefoot.models.consistency import EnginePair
 from surefoot.models.convert import Coordinates
 from surefoot.models.facts import facts_of
-from surefoot.models.registry import UnknownRobotError, explain
-from surefoot.models.robot_file.build import Explanation
-from surefoot.models.types import RobotDescription, RobotError
+from surefoot.models.registry import explain
+from surefoot.models.types import Explanation, RobotDescription, RobotError, UnknownRobotError
 from surefoot.plugins import PluginError
 from surefoot.scenarios.errors import ScenarioError
 from surefoot.scenarios.judge.metrics import plain

@@ -3,9 +3,9 @@
 import os
 from pathlib import Path
 
+from surefoot.apps.robots.draft import Draft, draft
 from surefoot.apps.robots.expand import expanded
 from surefoot.models.robot_file.document import UnexpandedError
-from surefoot.models.robot_file.draft import Draft, draft
 from surefoot.models.robot_file.paths import is_file, resolve
 from surefoot.scenarios.output import write_whole
 

@@ -13,12 +13,12 @@ import pinocchio as pin
 import yaml
 
 from surefoot.models.pinocchio import pinocchio_model
-from surefoot.models.robot_file.build import Explanation, explain
-from surefoot.models.robot_file.files import read_document
+from surefoot.models.registry import explain
+from surefoot.models.robot_file.files import Document, read_document
 from surefoot.models.robot_file.paths import resolve
 from surefoot.models.robot_file.schema import RobotFile
 from surefoot.models.robot_file.source import read_source
-from surefoot.models.types import RobotError
+from surefoot.models.types import Explanation, RobotError
 
 _FEWEST = 4
 """Joints that a leg has at least."""
@@ -72,8 +72,9 @@ def draft(model: str, folder: Path) -> Draft:
         RobotError: the model cannot be read.
     """
     path = resolve(model, folder)
-    name = _name(path)
-    source = read_source(RobotFile(name=name, model=model, inertia="repair"), path)
+    document = read_document(path)
+    name = _name(document)
+    source = read_source(RobotFile(name=name, model=model, inertia="repair"), document)
     feet = _feet(source.model)
     head = f"name: {_scalar(name)}\nmodel: {_scalar(model)}\n"
     if feet is None:
@@ -94,10 +95,10 @@ def draft(model: str, folder: Path) -> Draft:
     return Draft(_commented(orders[0], None), refusal)
 
 
-def _name(path: Path) -> str:
+def _name(document: Document) -> str:
     """What the model calls itself; the name of its file where it says nothing of its own."""
-    root = read_document(path).root
-    for text in (root.get("name" if root.tag == "robot" else "model", ""), path.stem):
+    root = document.root
+    for text in (root.get("name" if root.tag == "robot" else "model", ""), document.path.stem):
         name = re.sub(r"[^A-Za-z0-9._-]+", "-", text).strip("._-")
         if name:
             return name
@@ -126,7 +127,7 @@ def _tried(lines: str, model: str, path: Path) -> Explanation:
         file = Path(folder) / "robot.yaml"
         there = lines.replace(f"model: {_scalar(model)}\n", f"model: {_scalar(str(path.absolute()))}\n")
         file.write_text(there, encoding="utf-8")
-        return explain(file)
+        return explain(str(file))
 
 
 def _feet(model: pin.Model) -> tuple[str, str] | None:

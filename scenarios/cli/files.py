@@ -1,4 +1,4 @@
-"""Files by kind and name that floors above the core bring, and other packages: `list` names them, `show` prints them.
+"""Files by kind and name, which floors above the core and other packages bring, for `list` and `show`.
 
 [project.entry-points."surefoot.files"]
 campaign = "my_package.campaigns:files"    # a function without arguments: paths of texts by name
@@ -11,6 +11,9 @@ from typing import Any, NamedTuple
 from surefoot.errors import PluginError
 from surefoot.guard import MisfitError, shown
 from surefoot.plugins import Registry
+from surefoot.scenarios.errors import ScenarioError
+from surefoot.scenarios.file.source import decoded
+from surefoot.scenarios.output import reason
 
 FILES: Registry[Callable[[], Mapping[str, Path]]] = Registry("surefoot.files", None, {})
 """By the kind of the files."""
@@ -37,11 +40,24 @@ def brought() -> tuple[dict[str, Brought], tuple[str, ...]]:
     return found, tuple(refused)
 
 
-def first_line(path: Path) -> str:
-    """The first comment line of a file: what it is; empty where it cannot be read."""
+def content(path: Path) -> str:
+    """Text of a file.
+
+    Raises:
+        ScenarioError: it cannot be read, is too large, or no UTF-8.
+    """
     try:
-        return path.read_text(encoding="utf-8").split("\n", 1)[0].lstrip("# ")
-    except (OSError, ValueError):
+        with path.open("rb") as file:
+            return decoded(file, str(path))
+    except OSError as error:
+        raise ScenarioError([f"{path}: cannot be read, {reason(error)}; mend or remove it"]) from None
+
+
+def first_line(path: Path) -> str:
+    """The first comment line of a file, which says what it is; empty where it cannot be read."""
+    try:
+        return content(path).split("\n", 1)[0].lstrip("# ")
+    except ScenarioError:
         return ""
 
 

@@ -9,7 +9,7 @@ import yaml
 
 from surefoot.kept import from_sources
 from surefoot.scenarios import catalogue
-from surefoot.scenarios.cli.files import brought
+from surefoot.scenarios.cli.files import brought, content
 
 _EDITOR = """\
 # Every key has a default; `surefoot schema > surefoot.schema.json` lets an editor complete and check them:
@@ -30,7 +30,7 @@ def starter(name: str) -> str:
     if name not in catalogue.OURS and name not in catalogue.names():
         for files, _ in brought()[0].values():
             if name in files:
-                return files[name].read_text(encoding="utf-8")
+                return content(files[name])
     text = catalogue.text(name)[0]
     lines = text.splitlines(keepends=True)
     head = next((number for number, line in enumerate(lines) if not line.startswith("#")), len(lines))

@@ -5,7 +5,7 @@ from collections.abc import Callable, Iterator, Sequence
 from contextlib import contextmanager
 from dataclasses import dataclass, replace
 from traceback import format_exception
-from typing import TYPE_CHECKING, Literal, Protocol
+from typing import Literal, Protocol
 
 from surefoot.errors import PartError
 from surefoot.forces import Push
@@ -19,9 +19,7 @@ from surefoot.scenarios.run.tick import Look, Spent
 from surefoot.scenarios.setup.gait import PushPoint
 from surefoot.scenarios.setup.keys import scenario_problem
 from surefoot.scenarios.setup.walk import Walk
-
-if TYPE_CHECKING:
-    from surefoot.wbc.controller import WholeBodyController
+from surefoot.wbc.controller import WholeBodyController
 
 _PHASE_NAMES = {PhaseKind.STAND: "standing", PhaseKind.DOUBLE: "double support", PhaseKind.SINGLE: "single support"}
 
@@ -103,7 +101,7 @@ class Walker(Protocol):
         ...
 
     @property
-    def controller(self) -> "WholeBodyController | None":
+    def controller(self) -> WholeBodyController | None:
         """Its whole-body controller; None without one."""
         ...
 

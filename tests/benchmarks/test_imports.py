@@ -61,7 +61,6 @@ UNUSED = {
         *("surefoot.sim.readings", "surefoot.sim.imu_motion"),
     ),
     "sensing={source: ekf, preset: good}": (),
-    "fidelity=pendulum": ("surefoot.wbc.controller", "surefoot.wbc.tasks.stack", "proxsuite"),
 }
 """What a walk with a setting does not use, beside what none uses."""
 

@@ -85,7 +85,10 @@ EstimatorMaker = Callable[..., Estimator | SensorEstimator]
 
 
 def ekf(walk: Walk, **options: Any) -> "SensedState":
-    """An invariant Kalman filter of IMU, encoders and feet; see `scenarios.run.ekf.sensed_state`."""
+    """An invariant Kalman filter of IMU, encoders and feet.
+
+    It is imported when it is made; arguments are those of `scenarios.run.ekf.sensed_state`.
+    """
     from surefoot.scenarios.run.ekf import sensed_state
 
     return sensed_state(walk, **options)

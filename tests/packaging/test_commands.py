@@ -174,3 +174,21 @@ def test_files_that_cannot_be_had_are_told_beside_the_others(at_hand, site, body
     assert answer.code == 0 and "campaign  soak" in answer.out
     assert said in answer.err and answer.err.count("\n") == 1
     assert at_hand("show", "soak").code == 0
+
+
+@pytest.mark.parametrize(
+    ("words", "module", "extra"),
+    [
+        (("drive", "walk"), "viser", "replay"),
+        (("sweep", "push-map-pendulum", "--cluster", "tcp://127.0.0.1:1"), "distributed", "cluster"),
+    ],
+)
+def test_a_command_of_a_floor_without_its_extra_says_what_installs_it(
+    at_hand, monkeypatch, tmp_path, words, module, extra
+):
+    monkeypatch.chdir(tmp_path)
+    monkeypatch.setitem(sys.modules, module, None)
+    answer = at_hand(*words)
+    assert (answer.code, answer.out, answer.err.count("\n")) == (2, "", 1)
+    assert f"needs the package {module}; install it with: " in answer.err and f"[{extra}]" in answer.err
+    assert at_hand(words[0], "-h").code == 0

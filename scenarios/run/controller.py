@@ -27,8 +27,6 @@ from surefoot.scenarios.setup.stance import body_of, feet_at
 from surefoot.scenarios.setup.walk import Walk
 from surefoot.similarity import GRAVITY
 from surefoot.wbc.driven import DrivenRows
-from surefoot.wbc.estimation.parameters import SensorNoise
-from surefoot.wbc.estimation.torques import TorqueWrench
 from surefoot.wbc.falling import GivingWay
 from surefoot.wbc.model import RobotTerms
 from surefoot.wbc.soles import yaws
@@ -37,6 +35,7 @@ from surefoot.wbc.zmp import measured_zmp
 
 if TYPE_CHECKING:
     from surefoot.sim.measurement import Measurement
+    from surefoot.wbc.estimation.torques import TorqueWrench
 
 
 class Controller:
@@ -273,6 +272,9 @@ class Controller:
     def _inferred(self, readings: "Readings | Measurement", state: RobotState, passed: float) -> Array:
         """Wrenches of soles that feel none, by the torques of the joints, shape (2, 6) [N, N·m]."""
         if self._torques is None:
+            from surefoot.wbc.estimation.parameters import SensorNoise
+            from surefoot.wbc.estimation.torques import TorqueWrench
+
             self._torques = TorqueWrench(
                 self.body.model, self.body.frames.soles, self._period, SensorNoise(), held=not self._output.servo
             )

@@ -1,7 +1,7 @@
 """The closed loop in full physics: a simulated robot under its controller, and the log around it."""
 
 import math
-from typing import cast
+from typing import TYPE_CHECKING, cast
 
 import numpy as np
 from numpy.typing import NDArray
@@ -19,8 +19,6 @@ from surefoot.scenarios.file.registries import DEFAULTS, PLANT_NAMES
 from surefoot.scenarios.judge.body import lies
 from surefoot.scenarios.log import AttachedFile, LogWriter
 from surefoot.scenarios.record.body import Recorder
-from surefoot.scenarios.record.coupling import CouplingRecorder
-from surefoot.scenarios.record.estimation import EstimationRecorder
 from surefoot.scenarios.record.foxglove.views import BodyView
 from surefoot.scenarios.record.provenance import WORLD_FILE
 from surefoot.scenarios.record.walk import WalkRecorder
@@ -37,12 +35,16 @@ from surefoot.scenarios.setup.walk import Walk
 from surefoot.sim.drives import IDEAL, Drives
 from surefoot.sim.errors import SimulationDiverged
 from surefoot.sim.measurement import Measurement
-from surefoot.sim.readings import SensorSuite
 from surefoot.sim.world import World
 from surefoot.wbc.controller import WholeBodyController
 from surefoot.wbc.model import RobotTerms
 from surefoot.wbc.statics import LEVER, standing_torque
 from surefoot.wbc.zmp import measured_zmp
+
+if TYPE_CHECKING:
+    from surefoot.scenarios.record.coupling import CouplingRecorder
+    from surefoot.scenarios.record.estimation import EstimationRecorder
+    from surefoot.sim.readings import SensorSuite
 
 Array = NDArray[np.float64]
 
@@ -74,21 +76,31 @@ def full_loop(walk: Walk, writer: LogWriter, parts: Parts | None = None) -> Clos
     controller.reset(as_told(q, walk, body) if controller.senses.reads else q)
     sizes = controller.sizes
     writer.attach(AttachedFile(WORLD_FILE, "application/xml", world.mjcf().encode()))
-    sensors: SensorSuite | Sensors | None = None
-    if not controller.senses.reads:
+    sensors = _sensors(walk, world, plant) if controller.senses.reads else None
+    if sensors is None:
         refuse_unread(walk.sensing)
-    elif isinstance(plant, World):
-        sensors = SensorSuite(world, walk.hardware.sensors, walk.rates.control, walk.seed)
-    else:
-        sensors = cast("Sensors", plant)
     body_recorder, recorder = Recorder(writer, sizes, walk.robot.torque_limit), WalkRecorder(writer, sizes)
     view = BodyView(writer, world, walk.robot, walk.rates.control)
-    sensed = EstimationRecorder(writer, sizes) if sensors is not None else None
-    coupled = None
+    sensed, coupled = None, None
+    if sensors is not None:
+        from surefoot.scenarios.record.estimation import EstimationRecorder
+
+        sensed = EstimationRecorder(writer, sizes)
     if isinstance(plant, World) and sizes.nf:
+        from surefoot.scenarios.record.coupling import CouplingRecorder
+
         coupled = CouplingRecorder(writer, sizes, plant)
     walker = WholeBody(controller, plant, sensors, body_recorder, view, sensed, coupled)
     return ClosedLoop.of(walk, walker, recorder)
+
+
+def _sensors(walk: Walk, world: World, plant: Plant) -> "SensorSuite | Sensors":
+    """The sensors of a plant; a run whose estimator reads none does not import them."""
+    if not isinstance(plant, World):
+        return cast("Sensors", plant)
+    from surefoot.sim.readings import SensorSuite
+
+    return SensorSuite(world, walk.hardware.sensors, walk.rates.control, walk.seed)
 
 
 def simulated(walk: Walk) -> World:
@@ -142,8 +154,8 @@ class WholeBody:
         sensors: "SensorSuite | Sensors | None",
         recorder: Recorder,
         view: BodyView,
-        sensed: EstimationRecorder | None = None,
-        coupled: CouplingRecorder | None = None,
+        sensed: "EstimationRecorder | None" = None,
+        coupled: "CouplingRecorder | None" = None,
     ) -> None:
         self.mind, self.plant, self._sensors = mind, plant, sensors
         self._foreign = not isinstance(plant, World)

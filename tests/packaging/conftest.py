@@ -16,8 +16,9 @@ import pytest
 from surefoot.models.registry import ROBOTS
 from surefoot.native import modules
 from surefoot.planner.laws.profiles import PROFILES
-from surefoot.scenarios.apps import cli
 from surefoot.scenarios.catalogue import SCENARIOS
+from surefoot.scenarios.cli import program as cli
+from surefoot.scenarios.cli.files import FILES
 from surefoot.scenarios.judge.metrics import METRICS
 from surefoot.scenarios.run.full import PLANTS
 from surefoot.scenarios.run.sensing import ESTIMATORS
@@ -135,7 +136,7 @@ def importing() -> Iterator[None]:
     for name in set(sys.modules) - before:
         if name.startswith(("my_package", "broken")):
             del sys.modules[name]
-    for registry in (KINDS, PROFILES, ESTIMATORS, PLANTS, TASKS, ROBOTS, METRICS, SCENARIOS):
+    for registry in (KINDS, PROFILES, ESTIMATORS, PLANTS, TASKS, ROBOTS, METRICS, SCENARIOS, FILES):
         registry._loaded.clear()
 
 

@@ -54,7 +54,7 @@ NOTICED = {
     "steps.adaptation._SLID": "tests/planner/steps/test_slid_feet.py",
     "steps.schedule._LAID_OUT": "tests/planner/steps/test_laid_out.py",
     "steps.schedule._STOP_AHEAD": "tests/planner/steps/test_schedule.py",
-    "swing.leg_reach.STRIDE": "tests/scenarios/study/tour/test_turned.py",
+    "swing.leg_reach.STRIDE": "tests/studies/tour/test_turned.py",
     "swing.quintics.PEAK": "tests/planner/swing/test_swing_limits.py",
     "swing.quintics.BRAKING": "tests/planner/swing/test_swing_limits.py",
     "swing.quintics.GAINING": "tests/planner/swing/test_swing_limits.py",

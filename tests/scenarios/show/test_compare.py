@@ -7,7 +7,7 @@ import numpy as np
 import pytest
 from mcap.writer import Writer
 
-from surefoot.scenarios.apps import cli
+from surefoot.scenarios.cli import program as cli
 from surefoot.scenarios.errors import LogError
 from surefoot.scenarios.log import AttachedFile, ChannelSpec, LogWriter, read
 from surefoot.scenarios.record import channels

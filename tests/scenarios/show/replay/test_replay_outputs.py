@@ -13,7 +13,7 @@ import pytest
 from needs import OPENGL
 
 from surefoot.scenarios import errors
-from surefoot.scenarios.apps import cli
+from surefoot.scenarios.cli import program as cli
 from surefoot.scenarios.errors import LogError
 from surefoot.scenarios.log import read
 from surefoot.scenarios.output import write_whole

@@ -18,7 +18,7 @@ from typing import TYPE_CHECKING, Annotated
 import typer
 
 from surefoot.errors import PluginError
-from surefoot.lazy import ending_at_once, importing
+from surefoot.lazy import importing
 from surefoot.scenarios.apps.bridge import command as bridge
 from surefoot.scenarios.apps.drive import command as drive
 from surefoot.scenarios.apps.robots import command as robots
@@ -174,13 +174,7 @@ for product in (drive, bridge, shown, studies):
 app.add_typer(robots.app, name="robot", cls=Commands)
 
 
-def program() -> None:
-    """Be the command line of a process, which ends with it."""
-    with ending_at_once():
-        main()
-
-
-def main(arguments: Sequence[str] | None = None) -> None:
+def program(arguments: Sequence[str] | None = None) -> None:
     """Run the command line.
 
     An error that the user can mend is one message; a defect of the program is a traceback and an exit code of its own.

@@ -131,5 +131,5 @@ def test_the_load_goes_evenly_from_one_support_point_to_the_next(schedule):
     samples = schedule(GaitParameters(steps=4, single_support=0.5, double_support=0.2)).samples
     on_left = np.random.default_rng(0).uniform(0.0, 1.0, int(max(samples.index)) + 2)
     passed = np.add(samples.index, samples.fraction)
-    assert 0.0 < max(samples.fraction) and len(set(samples.index)) > 2
+    assert max(samples.fraction) > 0.0 and len(set(samples.index)) > 2
     np.testing.assert_allclose(load_left(samples, on_left), np.interp(passed, np.arange(len(on_left)), on_left))

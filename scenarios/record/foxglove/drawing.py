@@ -2,7 +2,7 @@
 
 import math
 from collections.abc import Iterable, Sequence
-from functools import cache, lru_cache
+from functools import lru_cache
 
 import numpy as np
 from foxglove_schemas_protobuf.ArrowPrimitive_pb2 import ArrowPrimitive
@@ -22,7 +22,7 @@ from foxglove_schemas_protobuf.SceneUpdate_pb2 import SceneUpdate
 from foxglove_schemas_protobuf.SpherePrimitive_pb2 import SpherePrimitive
 from foxglove_schemas_protobuf.TriangleListPrimitive_pb2 import TriangleListPrimitive
 from foxglove_schemas_protobuf.Vector3_pb2 import Vector3
-from google.protobuf.descriptor import Descriptor, FileDescriptor
+from google.protobuf.descriptor import FileDescriptor
 from google.protobuf.descriptor_pb2 import FileDescriptorProto, FileDescriptorSet
 from google.protobuf.message import Message
 from google.protobuf.timestamp_pb2 import Timestamp
@@ -40,15 +40,10 @@ from surefoot.sim.shapes import Shape, drawn_shapes
 
 def published(message: type[Message]) -> PublishedSchema:
     """The schema of a message class, with every file that it imports."""
-    return _published(message.DESCRIPTOR)
-
-
-@cache
-def _published(message: Descriptor) -> PublishedSchema:
-    files: dict[str, FileDescriptorProto] = {}
-    _collect(message.file, files)
+    found, files = message.DESCRIPTOR, dict[str, FileDescriptorProto]()
+    _collect(found.file, files)
     descriptors = FileDescriptorSet(file=files.values()).SerializeToString(deterministic=True)
-    return PublishedSchema(message.full_name, descriptors)
+    return PublishedSchema(found.full_name, descriptors)
 
 
 def _collect(file: FileDescriptor, files: dict[str, FileDescriptorProto]) -> None:
@@ -137,7 +132,6 @@ LOOPS: tuple[tuple[str, int, Rgba], ...] = (
 """Outlines that are drawn: entity, vertices, colour."""
 
 
-@cache
 def transforms(frames: tuple[str, ...]) -> Template:
     """``foxglove.FrameTransforms`` of frames in the world; values: all x y z [m], then all qw qx qy qz."""
     n = len(frames)
@@ -153,7 +147,6 @@ def transforms(frames: tuple[str, ...]) -> Template:
     return Template(FrameTransforms(transforms=[one(i, name) for i, name in enumerate(frames)]), 7 * n)
 
 
-@cache
 def joint_states(names: tuple[str, ...]) -> Template:
     """``foxglove.JointStates``; values: all positions [rad], then all velocities [rad/s], then all torques [N m]."""
     n = len(names)
@@ -164,7 +157,6 @@ def joint_states(names: tuple[str, ...]) -> Template:
     return Template(JointStates(timestamp=stamp(), joints=joints), 3 * n)
 
 
-@cache
 def points() -> Template:
     """``foxglove.SceneUpdate`` of `BALLS`; values: x y z of each [m]."""
     entities = [
@@ -174,7 +166,6 @@ def points() -> Template:
     return Template(scene(*entities), 3 * len(BALLS))
 
 
-@cache
 def forces() -> Template:
     """``foxglove.SceneUpdate`` of `ARROWS`; values of each: x y z [m], qx qy qz qw, length [m]."""
     entities = []
@@ -185,7 +176,6 @@ def forces() -> Template:
     return Template(scene(*entities), 8 * len(ARROWS))
 
 
-@cache
 def outlines() -> Template:
     """``foxglove.SceneUpdate`` of `LOOPS`; values: x y z of each vertex [m]."""
     entities, first = [], 0

@@ -1,7 +1,6 @@
 """What makes the runs of a campaign: processes on this machine, or the machines of a dask.distributed cluster."""
 
 import asyncio
-import atexit
 import shutil
 import signal
 import tempfile
@@ -20,7 +19,6 @@ from typing import Any, NamedTuple, Protocol, TypeVar
 
 from surefoot.errors import PluginError
 from surefoot.guard import said
-from surefoot.lazy import leave
 from surefoot.scenarios.errors import LogError, ScenarioError, SetupError, require
 from surefoot.scenarios.file.schema import Scenario
 from surefoot.scenarios.record.provenance import LOG_NAME, relevant_versions
@@ -164,8 +162,7 @@ def side_by_side(
 
 
 def _set_up() -> None:
-    """Leave Ctrl-C and SIGHUP to the parent, and end with it: one that is killed cannot say so. End at once, too."""
-    atexit.register(leave, [0])
+    """Leave Ctrl-C and SIGHUP to the parent, and end with it: one that is killed cannot say so."""
     for number in (signal.SIGINT, signal.SIGHUP):
         signal.signal(number, signal.SIG_IGN)
     threading.Thread(target=_end_with_parent, daemon=True).start()

@@ -3,6 +3,7 @@
 import math
 from collections.abc import Iterable, Sequence
 from functools import lru_cache
+from typing import cast
 
 import numpy as np
 from foxglove_schemas_protobuf.ArrowPrimitive_pb2 import ArrowPrimitive
@@ -22,7 +23,7 @@ from foxglove_schemas_protobuf.SceneUpdate_pb2 import SceneUpdate
 from foxglove_schemas_protobuf.SpherePrimitive_pb2 import SpherePrimitive
 from foxglove_schemas_protobuf.TriangleListPrimitive_pb2 import TriangleListPrimitive
 from foxglove_schemas_protobuf.Vector3_pb2 import Vector3
-from google.protobuf.descriptor import FileDescriptor
+from google.protobuf.descriptor import Descriptor, FileDescriptor
 from google.protobuf.descriptor_pb2 import FileDescriptorProto, FileDescriptorSet
 from google.protobuf.message import Message
 from google.protobuf.timestamp_pb2 import Timestamp
@@ -40,7 +41,7 @@ from surefoot.sim.shapes import Shape, drawn_shapes
 
 def published(message: type[Message]) -> PublishedSchema:
     """The schema of a message class, with every file that it imports."""
-    found, files = message.DESCRIPTOR, dict[str, FileDescriptorProto]()
+    found, files = cast("Descriptor", message.DESCRIPTOR), dict[str, FileDescriptorProto]()
     _collect(found.file, files)
     descriptors = FileDescriptorSet(file=files.values()).SerializeToString(deterministic=True)
     return PublishedSchema(found.full_name, descriptors)

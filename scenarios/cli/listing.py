@@ -1,6 +1,5 @@
 """What a scenario can name, and which package brings it; nothing of it is imported to be listed."""
 
-import json
 from collections.abc import Iterator, Mapping
 from dataclasses import dataclass
 from typing import Any
@@ -9,6 +8,7 @@ from surefoot.models.names import ROBOTS
 from surefoot.planner.laws.names import PROFILES
 from surefoot.plugins import OWN_PACKAGE, Declared, Registry
 from surefoot.scenarios import catalogue
+from surefoot.scenarios.cli import texts
 from surefoot.scenarios.cli.files import brought, first_line
 from surefoot.scenarios.file.registries import PLANT_NAMES, SOURCES, TERRAIN_KINDS
 from surefoot.scenarios.judge.names import METRICS
@@ -66,13 +66,8 @@ def entries(metrics: bool = True) -> Iterator[Entry]:
 
 
 def _said(registry: Declared[Any]) -> Mapping[str, str]:
-    """What is said of each of a registry's own; of metrics, whose modules take long to import, what was said once."""
-    if registry is not METRICS:
-        return registry.said
-    from surefoot.kept import from_sources
-
-    told: dict[str, str] = json.loads(from_sources("metrics", lambda: json.dumps(dict(METRICS.said))))
-    return told
+    """What is said of each of a registry's own; of metrics, whose modules take long to import, as it is written out."""
+    return texts.told("metrics") if registry is METRICS else registry.said
 
 
 def refusals() -> tuple[str, ...]:

@@ -17,7 +17,7 @@ from typing import TYPE_CHECKING, Annotated
 import typer
 
 from surefoot.errors import PluginError
-from surefoot.lazy import ending_at_once, importing
+from surefoot.lazy import importing
 from surefoot.scenarios.check import command as checking
 from surefoot.scenarios.cli.found import AllCommands
 from surefoot.scenarios.errors import LinkError, LogError, ScenarioError, SetupError
@@ -159,13 +159,7 @@ for product in (shown, checking):
     app.add_typer(product.app)
 
 
-def program() -> None:
-    """Be the command line of a process, which ends with it."""
-    with ending_at_once():
-        main()
-
-
-def main(arguments: Sequence[str] | None = None) -> None:
+def program(arguments: Sequence[str] | None = None) -> None:
     """Run the command line.
 
     An error that the user can mend is one message; a defect of the program is a traceback and an exit code of its own.

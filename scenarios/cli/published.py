@@ -2,19 +2,20 @@
 
 import json
 
-from surefoot.kept import from_sources
+from surefoot.scenarios.cli import texts
 from surefoot.scenarios.file.registries import REGISTRIES
 from surefoot.scenarios.judge.names import METRICS
 
 
 def schema_text() -> str:
-    """The schema; made anew where another package brings names or keys into it, whose code nobody can see through."""
+    """The schema; made anew where another package brings names or keys into it."""
     if any(registry.others() for registry in (*REGISTRIES.values(), METRICS)):
-        return _made()
-    return from_sources("schema", _made)
+        return made()
+    return texts.text("schema").removesuffix("\n")
 
 
-def _made() -> str:
+def made() -> str:
+    """The schema as it follows from the sources and from all packages."""
     from surefoot.scenarios.setup.criteria import published
 
     return json.dumps(published(), indent=2)

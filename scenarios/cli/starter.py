@@ -1,14 +1,13 @@
 """The text to start a scenario of one's own from."""
 
-import json
 import re
 from collections.abc import Iterator, Sequence
 from typing import Any
 
 import yaml
 
-from surefoot.kept import from_sources
 from surefoot.scenarios import catalogue
+from surefoot.scenarios.cli import texts
 from surefoot.scenarios.cli.files import brought, content
 
 _EDITOR = """\
@@ -41,7 +40,7 @@ def starter(name: str) -> str:
 
 def _explained(lines: Sequence[str]) -> Iterator[str]:
     """Lines of a scenario, with a comment after each key of whose meaning something is known."""
-    meanings: dict[str, str] = json.loads(from_sources("meanings", _meanings))
+    said = texts.told("meanings")
     path: list[tuple[int, str]] = []
     for line in lines:
         key = _KEY.fullmatch(line.rstrip())
@@ -49,17 +48,17 @@ def _explained(lines: Sequence[str]) -> Iterator[str]:
             yield line
             continue
         path = [*((indent, name) for indent, name in path if indent < len(key[1])), (len(key[1]), key[2])]
-        meaning = meanings.get(".".join(name for _, name in path), "")
+        meaning = said.get(".".join(name for _, name in path), "")
         yield f"{key[0]:<{_COLUMN}}  # {meaning}\n" if meaning not in ("", key[2]) else line
 
 
-def _meanings() -> str:
-    """What each key of a scenario is, by its dotted name, as JSON."""
+def meanings() -> dict[str, str]:
+    """Meaning of each key of a scenario, by its dotted name, as it follows from the sources."""
     from surefoot.scenarios.file.schema import Scenario
     from surefoot.scenarios.judge.metrics import OWN
     from surefoot.scenarios.show.options import keys
 
-    return json.dumps({**dict(keys(Scenario)), **{f"criteria.{name}": metric.meaning for name, metric in OWN.items()}})
+    return {**dict(keys(Scenario)), **{f"criteria.{name}": metric.meaning for name, metric in OWN.items()}}
 
 
 def _content(text: str) -> Any:

@@ -60,7 +60,7 @@ TickTiming = tuple[float, float, float, float, float, float, float, float]
 """Wall-clock time of the parts of one control tick, and the controller's processor time, as the log has them [s]."""
 
 
-@dataclass(frozen=True, slots=True)
+@dataclass(frozen=True)
 class PlannerState:
     """What the planner measured, and what it was given; world frame.
 

@@ -203,7 +203,7 @@ class WholeBody:
             command = mind.step(self._readings)
         else:
             theirs = somebody.command(now)
-            command = mind.step(self._readings, driven_joints=theirs if self._told else None)
+            command = mind.step(self._readings, None, theirs if self._told else None)
             command = command.with_joints(somebody.joints, theirs)
         self._truth = self._own_truth or mind.terms
         lost = self._faults is not None and self._faults.active("torque_loss", tick)

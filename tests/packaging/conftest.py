@@ -150,7 +150,7 @@ def at_hand(
         for made in sites:
             monkeypatch.syspath_prepend(str(made.folder))
         with pytest.raises(SystemExit) as ended:
-            cli.main([*arguments])
+            cli.program([*arguments])
         said = capsys.readouterr()
         return Answer(int(ended.value.code or 0), said.out, said.err)
 

@@ -63,7 +63,10 @@ def test_commands_of_the_floors_are_found_behind_those_of_the_core(at_hand):
 
 
 def test_a_command_of_the_core_imports_no_other(at_hand, tools):
-    code = "import sys, surefoot.scenarios.cli.program as cli\ntry: cli.main(['schema'])\nfinally: print(*sys.modules)"
+    code = (
+        "import sys\nfrom surefoot.scenarios.cli.program import program\n"
+        "try: program(['schema'])\nfinally: print(*sys.modules)"
+    )
     words = [sys.executable, "-c", code]
     loaded = subprocess.run(words, capture_output=True, text=True, check=True).stdout.splitlines()[-1].split()
     assert "surefoot.scenarios.cli.found" in loaded

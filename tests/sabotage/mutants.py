@@ -23,7 +23,7 @@ from pathlib import Path
 ROOT = Path(__file__).parents[2]
 CODE = ("planner", "wbc", "sim", "models", "scenarios", "studies", "apps", "surefoot")
 FOLDERS = (*CODE, "tests", "docs", "examples", "benchmarks")
-FILES = ("pyproject.toml", "README.md", "CHANGELOG.md", "CONTRIBUTING.md", "constraints.txt")
+FILES = ("pyproject.toml", "Makefile", "README.md", "CHANGELOG.md", "CONTRIBUTING.md", "constraints.txt")
 LONGEST = 600.0
 """Of the tests of one mutant [s]; a mutant that takes longer runs without end and counts as found."""
 

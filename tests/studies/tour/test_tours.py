@@ -34,13 +34,17 @@ def test_wrenches_that_follow_from_torques_push_nobody(monkeypatch):
 def test_a_controller_that_gives_up_falls(monkeypatch):
     from surefoot.scenarios.run.controller import Controller
     from surefoot.scenarios.run.planning import RunFault
+    from surefoot.studies.tour import rows
     from surefoot.studies.tour.ride import Ride
 
-    def give_up(self, *_):
-        raise RunFault("given up")
+    class Weary(Controller):
+        def step(self, *given):
+            if self.time > 0.0:
+                raise RunFault("given up")
+            return super().step(*given)
 
+    monkeypatch.setattr(rows, "Controller", Weary)
     ride = Ride(ROWS["torque"], 0)
     ride.step()
-    monkeypatch.setattr(Controller, "step", give_up)
     result = ride.run(5.0)
     assert not result.completed and result.fault == "given up" and result.survival < 3.0

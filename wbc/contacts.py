@@ -3,7 +3,8 @@
 from dataclasses import dataclass
 
 from surefoot.wbc.parameters import ContactParameters
-from surefoot.wbc.types import NONE_TOUCHES, FootSensing, WbcReference
+from surefoot.wbc.reference import WbcReference
+from surefoot.wbc.types import NONE_TOUCHES, FootSensing
 
 
 @dataclass(frozen=True, slots=True)

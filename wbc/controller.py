@@ -22,8 +22,8 @@ from surefoot.wbc.limits import JointLimits
 from surefoot.wbc.model import BodyFrames, RobotTerms
 from surefoot.wbc.parameters import WbcParameters
 from surefoot.wbc.qp import UNBOUNDED, WRENCH_UNIT, QpData, QpLayout, allocate
+from surefoot.wbc.reference import WbcReference
 from surefoot.wbc.separation import Separation
-from surefoot.wbc.setpoint import Setpoint
 from surefoot.wbc.solvers import QpSolution, QpSolver, equalities_only, in_turn
 from surefoot.wbc.tasks.default import default_tasks
 from surefoot.wbc.tasks.diagonal import ForceDistribution, Posture, Regularisation
@@ -39,7 +39,6 @@ from surefoot.wbc.types import (
     RobotState,
     SolveStatus,
     WbcAnswer,
-    WbcReference,
     WbcReport,
 )
 
@@ -125,7 +124,6 @@ class WholeBodyController:
         if leaning:
             sole = replace(sole, half_width=TOE_DEPTH * size.length)
         cones, ankles = sole.cones(TOE_DEPTH * size.length), stops[0].columns
-        self._setpoint = Setpoint()
         self._hard = HardConstraints(
             self.qp, self.layout, cones, limits, parameters.contact, ankles, stops[0].rolling, leaning
         )
@@ -203,10 +201,8 @@ class WholeBodyController:
             self._shift(terms, reference, contacts)
         if contacts is not self._contacts or terms.leaning is not None:
             self._hold(terms, contacts)
-        setpoint = self._setpoint
-        setpoint.take(reference)
-        self.tasks.write(terms, setpoint)
-        self._hard.write(terms, setpoint, contacts)
+        self.tasks.write(terms, reference)
+        self._hard.write(terms, reference, contacts)
         self._separation.write(terms.data, terms.v, self._gap_rows, self._gap_lower, UNBOUNDED)
         if self.driven is not None:
             self.driven.write(self.qp, terms.bias, terms.v)

@@ -23,7 +23,8 @@ from surefoot.wbc.estimation.estimator import SensedState
 from surefoot.wbc.estimation.footing import Footing, ImuMount
 from surefoot.wbc.estimation.parameters import ContactDetection, EstimatorParameters, GroundNoise, SensorNoise
 from surefoot.wbc.estimation.torques import TorqueWrench
-from surefoot.wbc.types import NONE_TOUCHES, Array, FootSensing, WbcReference, WbcReport
+from surefoot.wbc.reference import WbcReference
+from surefoot.wbc.types import NONE_TOUCHES, Array, FootSensing, WbcReport
 
 _OPTIONS = ("sensing", "options")
 

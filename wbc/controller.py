@@ -70,6 +70,8 @@ class WholeBodyController:
         schedule: which contacts the QP holds, from plan and feeling.
         tasks: the weighted tasks.
         driven: rows of joints that somebody else drives; None without such joints.
+        region: where the commanded ZMP may lie.
+        solvers: in the order in which they are asked.
     """
 
     def __init__(
@@ -127,7 +129,7 @@ class WholeBodyController:
         self._hard = HardConstraints(
             self.qp, self.layout, cones, limits, parameters.contact, ankles, stops[0].rolling, leaning
         )
-        self._region = SupportRegion(sole.half_length, sole.half_width, parameters.balance.polygon_share)
+        self.region = SupportRegion(sole.half_length, sole.half_width, parameters.balance.polygon_share)
         self._region_contacts: tuple[tuple[bool, bool], int] | None = None
         self._contacts: ContactState | None = None
         swings = arm_joints and parameters.arm_swing and not (driven is not None and driven[list(arm_joints)].any())
@@ -135,7 +137,7 @@ class WholeBodyController:
         weights, gains, edges = parameters.weights, parameters.gains, (sole.half_length, sole.half_width)
         balance, waist = parameters.balance, self.terms.waist
         default = default_tasks(
-            weights, gains, balance, self._region, edges, size.length, *stops, waist=waist, leaning=leaning
+            weights, gains, balance, self.region, edges, size.length, *stops, waist=waist, leaning=leaning
         )
         diagonal = (
             Regularisation(weights, size.length),
@@ -147,10 +149,10 @@ class WholeBodyController:
         self._observer = LoadObserver(self.terms.mass, control_period, size)
         self.driven = None if driven is None or not driven.any() else DrivenRows(self.layout, driven, control_period)
         fixed = None if self.driven is None else self.driven.fixed
-        self._limits, self._toe = limits, sole.half_length
+        self._toe = sole.half_length
         self._seen: list[tuple[int, Array]] = []
         self._reader = AnswerReader(self.qp, self.layout, self.tasks, limits.torque, control_period, size)
-        self._solvers: tuple[QpSolver, ...] = in_turn(
+        self.solvers: tuple[QpSolver, ...] = in_turn(
             parameters.solver, parameters.second_solver, self.layout.soft, fixed
         )
 
@@ -215,7 +217,7 @@ class WholeBodyController:
         if terms.leaning is not None or holding != self._region_contacts:
             if not np.isfinite(terms.sole_position).all():
                 return
-            self._region.rebuild(terms.contact_position, terms.contact_rotation, contacts.active, contacts.rolling)
+            self.region.rebuild(terms.contact_position, terms.contact_rotation, contacts.active, contacts.rolling)
             self._region_contacts = holding
         self._contacts = contacts
 
@@ -225,7 +227,7 @@ class WholeBodyController:
         What holds no limits at all throws the robot. So before that some of the soft ones are broken, and where that
         does not do soles slide, lift or turn: one that is torn off the ground by what it carries cannot be held.
         """
-        for status, solver in zip(_IN_TURN, () if fail_solvers else self._solvers, strict=False):
+        for status, solver in zip(_IN_TURN, () if fail_solvers else self.solvers, strict=False):
             solution = solver.solve(qp)
             if solution is not None and solution.violation <= ACCEPTED_VIOLATION:
                 # What may break limits has broken none where it answers for a solver that failed.

@@ -1,6 +1,7 @@
 cimport cython
 from surefoot cimport algebra, linear
 from surefoot.algebra cimport vector3
+from surefoot.wbc.contacts cimport ContactState
 from surefoot.wbc.limits cimport AccelerationBounds
 from surefoot.wbc.model cimport RobotTerms
 from surefoot.wbc.reference cimport WbcReference
@@ -17,10 +18,9 @@ cdef class HardConstraints:
     cdef double[:, ::1] _A
 
     @cython.locals(
-        rolling=Py_ssize_t, left=cython.bint, right=cython.bint, lands_left=cython.bint, lands_right=cython.bint,
-        cap_left=double, cap_right=double
+        rolling=Py_ssize_t, left=cython.bint, right=cython.bint
     )
-    cpdef write(self, RobotTerms terms, WbcReference reference, contacts)
+    cpdef write(self, RobotTerms terms, WbcReference reference, ContactState contacts)
     @cython.locals(i=Py_ssize_t, nv=Py_ssize_t)
     cdef void _motion(self, RobotTerms terms) noexcept
     @cython.locals(i=Py_ssize_t, row=Py_ssize_t, nv=Py_ssize_t, first=Py_ssize_t, sinking=double)

@@ -85,14 +85,12 @@ class HardConstraints:
         rolling = contacts.rolling
         if rolling != self._rolling:
             self._roll(rolling)
-        left, right = contacts.active
-        lands_left, lands_right = contacts.landing
+        left, right = contacts.active[0], contacts.active[1]
         self._motion(terms)
-        self._contact(terms, reference, 0, left, lands_left)
-        self._contact(terms, reference, 1, right, lands_right)
-        cap_left, cap_right = contacts.force_cap
-        self._upper[terms.nv + 2] = cap_left / terms.wrench_unit
-        self._upper[terms.nv + 8] = cap_right / terms.wrench_unit
+        self._contact(terms, reference, 0, left, contacts.landing[0])
+        self._contact(terms, reference, 1, right, contacts.landing[1])
+        self._upper[terms.nv + 2] = contacts.force_cap[0] / terms.wrench_unit
+        self._upper[terms.nv + 8] = contacts.force_cap[1] / terms.wrench_unit
         self._bound_joints(terms, left and rolling != 0, right and rolling != 1)
 
     def _motion(self, terms: RobotTerms) -> None:

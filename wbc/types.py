@@ -34,7 +34,7 @@ class SolveStatus(IntEnum):
     Where that does not do, soles that are to rest move as well."""
 
 
-@dataclass(frozen=True, slots=True)
+@dataclass(frozen=True)
 class RobotState:
     """State of the floating-base robot.
 
@@ -50,7 +50,7 @@ class RobotState:
 NONE_TOUCHES = (False, False)
 
 
-@dataclass(frozen=True, slots=True)
+@dataclass(frozen=True)
 class FootSensing:
     """What the feet feel.
 
@@ -72,7 +72,7 @@ class FootSensing:
     touching: tuple[bool, bool] = NONE_TOUCHES
 
 
-@dataclass(frozen=True, slots=True)
+@dataclass(frozen=True)
 class WbcReport:
     """What the controller did in one tick. Arrays are overwritten by the next tick.
 
@@ -108,7 +108,7 @@ class WbcReport:
     load: ExternalLoad = NO_LOAD
 
 
-@dataclass(frozen=True, slots=True)
+@dataclass(frozen=True)
 class WbcAnswer:
     """What a solution means for the robot. Arrays are overwritten by the next one.
 

@@ -11,15 +11,18 @@ from surefoot.wbc.reference import WbcReference
 
 pytestmark = pytest.mark.unit
 
-SHAPES = {"zmp": (2,), "zmp_offset": (2,), "swing_rotation": (3, 3), "ground_normal": (2, 3)}
-"""Of its arrays, those that are no vectors."""
+SHAPES = {
+    **{f"com{what}": (3,) for what in ("", "_velocity", "_acceleration")},
+    **{f"swing_{what}": (3,) for what in ("position", "velocity", "acceleration")},
+    **{f"swing_angular_{what}": (3,) for what in ("velocity", "acceleration")},
+    **{"zmp": (2,), "zmp_offset": (2,), "swing_rotation": (3, 3), "ground_normal": (2, 3)},
+}
 
 
 @pytest.fixture
 def given(rng):
     """Arguments that differ from each other in each number."""
-    names = [name for name in WbcReference.__match_args__ if isinstance(vars(WbcReference)[name], property)]
-    arrays = {name: rng.normal(size=SHAPES.get(name, 3)) for name in names}
+    arrays = {name: rng.normal(size=shape) for name, shape in SHAPES.items()}
     numbers = {"omega": 3.1, "stiffness": 9.7, "heading": 0.3, "heading_rate": -0.2, "swing_progress": 0.25}
     contacts = {"planned_contact": (True, False), "load_share": (0.75, 0.25), "time_to_switch": 0.5}
     feet = {"lifting_foot": -1, "swing_foot": 1, "rolling_foot": 0, "roll": (0.1, 0.2, 0.3), "catching": True}

@@ -53,9 +53,9 @@ class WbcReference:
         "swing_progress", "swing_position", "swing_velocity", "swing_acceleration", "swing_rotation",
         "swing_angular_velocity", "swing_angular_acceleration", "ground_normal", "rolling_foot", "roll", "catching",
     )  # fmt: skip
-    __dataclass_fields__: ClassVar[dict[str, Field[Any]]] = make_dataclass(
-        "WbcReference", __match_args__, init=False, repr=False, eq=False
-    ).__dataclass_fields__
+    __dataclass_fields__: ClassVar[dict[str, Field[Any]]] = vars(
+        make_dataclass("WbcReference", __match_args__, init=False, repr=False, eq=False)
+    )["__dataclass_fields__"]
 
     def __init__(
         self,

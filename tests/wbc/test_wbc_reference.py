@@ -15,7 +15,10 @@ SHAPES = {
     **{f"com{what}": (3,) for what in ("", "_velocity", "_acceleration")},
     **{f"swing_{what}": (3,) for what in ("position", "velocity", "acceleration")},
     **{f"swing_angular_{what}": (3,) for what in ("velocity", "acceleration")},
-    **{"zmp": (2,), "zmp_offset": (2,), "swing_rotation": (3, 3), "ground_normal": (2, 3)},
+    "zmp": (2,),
+    "zmp_offset": (2,),
+    "swing_rotation": (3, 3),
+    "ground_normal": (2, 3),
 }
 
 

@@ -6,7 +6,7 @@ import numpy as np
 from numpy.typing import NDArray
 
 from surefoot import algebra
-from surefoot.planner.plan import PlanSample
+from surefoot.planner.sample import PlanSample
 from surefoot.scenarios.log import LogWriter
 from surefoot.scenarios.log.layout import RowLayout, Table
 from surefoot.scenarios.record import channels

@@ -11,7 +11,8 @@ from surefoot.forces import Push
 from surefoot.guard import Guard
 from surefoot.joints import JointCommand
 from surefoot.models.pinocchio import pinocchio_model
-from surefoot.planner.plan import PlanSample, WalkPlan
+from surefoot.planner.plan import WalkPlan
+from surefoot.planner.sample import PlanSample
 from surefoot.plugins import Registry
 from surefoot.readings import Readings
 from surefoot.scenarios.file.control import PlantSettings

@@ -13,7 +13,8 @@ from surefoot.readings import Readings
 from surefoot.scenarios.setup.parts import ESTIMATE, guarded
 from surefoot.sim.measurement import Measurement
 from surefoot.wbc.estimation.estimate import Deviation, Estimate, Planned
-from surefoot.wbc.types import NONE_TOUCHES, Array, FootSensing, WbcReference, WbcReport
+from surefoot.wbc.reference import WbcReference
+from surefoot.wbc.types import NONE_TOUCHES, Array, FootSensing, WbcReport
 
 if TYPE_CHECKING:
     from surefoot.wbc.estimation.torques import TorqueWrench

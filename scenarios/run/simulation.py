@@ -15,7 +15,8 @@ from pydantic import ValidationError
 from surefoot.errors import ParameterError
 from surefoot.forces import Push
 from surefoot.planner.laws.profiles import Profile
-from surefoot.planner.plan import Planner, PlanSample
+from surefoot.planner.plan import Planner
+from surefoot.planner.sample import PlanSample
 from surefoot.planner.steps.commands import Command
 from surefoot.scenarios.errors import LogError, nearest
 from surefoot.scenarios.file.schema import CommandSettings, Scenario

@@ -9,7 +9,8 @@ from typing import Literal, Protocol
 
 from surefoot.errors import PartError
 from surefoot.forces import Push
-from surefoot.planner.plan import PlanSample, WalkPlan
+from surefoot.planner.plan import WalkPlan
+from surefoot.planner.sample import PlanSample
 from surefoot.planner.types import PhaseInfo, PhaseKind
 from surefoot.scenarios.errors import SetupError
 from surefoot.scenarios.record.provenance import AFTER_FALL

@@ -36,7 +36,7 @@ NOTICED = {
     "model.leg_chain._LEFT": "tests/planner/model/test_leg_chain.py",
     "model.leg_chain._MIDDLE": "tests/planner/model/test_leg_chain.py",
     "model.leg_chain._RIGHT": "tests/planner/model/test_leg_chain.py",
-    "plan.POINT": "tests/planner/test_sampling.py",
+    "sample.POINT": "tests/planner/test_sampling.py",
     "recovery.step_adjustment.NO_GAIN": "tests/planner/recovery/test_step_adjustment.py",
     "references.nominal_feet._SUNK": "tests/planner/references/test_nominal_feet.py",
     "sampling.BENDS": "tests/planner/test_sampling.py",

@@ -82,6 +82,11 @@ def sources() -> Mapping[str, Path]:
     return dict(sorted(found.items()))
 
 
+def has_arrays(path: Path) -> bool:
+    """Whether a source, relative to `ROOT`, has arrays of C, so that its indices are not looked at."""
+    return "[:" in (ROOT / path).with_suffix(".pxd").read_text(encoding="utf-8")
+
+
 def target(path: Path) -> Path:
     """Where the extension module of a source is, relative to `ROOT`."""
     return path.with_name(path.stem + SUFFIX)
@@ -305,8 +310,7 @@ def _compile_shared(compiler: list[str], folder: Path) -> None:
 
 def _compile(compiler: list[str], name: str, path: Path, folder: Path) -> None:
     c_file = folder / f"{name}.c"
-    has_arrays = "[:" in (ROOT / path).with_suffix(".pxd").read_text(encoding="utf-8")
-    chosen = {**DIRECTIVES, **(UNCHECKED if has_arrays else {})}
+    chosen = {**DIRECTIVES, **(UNCHECKED if has_arrays(path) else {})}
     directives = [part for key, value in chosen.items() for part in ("-X", f"{key}={value}")]
     command = [sys.executable, "-m", "cython", f"--shared={SHARED}", "--module-name", name, *directives]
     _run([*command, str(path), "-o", str(c_file)])

@@ -37,7 +37,7 @@ def flatness(points: Array, count: int) -> float:
         x, y = points[k, 0], points[k, 1]
         left, right, below, above = min(left, x), max(right, x), min(below, y), max(above, y)
     extent: float = max(right - left, above - below)
-    most = max(max(abs(right), abs(left)), max(abs(above), abs(below)))
+    most: float = max(max(abs(right), abs(left)), max(abs(above), abs(below)))
     return extent * (FLAT * extent + ROUNDING * most)
 
 

@@ -151,8 +151,9 @@ class Step:
         elif roll is not None:
             single = max(single, (roll.end - lift_off) / LEVEL_AGAIN)
         swing = unit_swing(single, self.climb, self.course, parameters)
-        times = {"lift_off": lift_off, "single_support": single, "double_support": double}
-        return replace(self, stop=stop, roll=roll, swing=swing, **times)
+        return replace(
+            self, stop=stop, lift_off=lift_off, single_support=single, double_support=double, roll=roll, swing=swing
+        )
 
 
 def durations(gait: GaitParameters, sample_time: float) -> tuple[float, float]:

@@ -20,7 +20,7 @@ from surefoot.planner.types import (
 )
 
 
-@dataclass(frozen=True, slots=True)
+@dataclass(frozen=True)
 class WalkPlan:
     """A plan from the measured state at `time` over N samples; world frame.
 

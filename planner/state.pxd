@@ -8,7 +8,7 @@ cdef class HeightMemory:
     cdef readonly double lower
 
 cdef class Memory:
-    cdef readonly object offsets, transition, height
+    cdef readonly object support, offsets, transition, height
 
 cdef class Orders:
     cdef readonly object source, new

@@ -30,7 +30,7 @@ Course = tuple[float, tuple[float, ...]]
 """What the clock showed when it began to follow a quintic [samples], and the coefficients of that."""
 
 
-@dataclass(frozen=True, slots=True)
+@dataclass(frozen=True)
 class TimeScaling:
     """The clock, and the quintic that it follows or has followed last.
 

@@ -47,7 +47,7 @@ class RollSpan(NamedTuple):
     angle: float
 
 
-@dataclass(frozen=True, slots=True)
+@dataclass(frozen=True)
 class FootRoll:
     """Pitch of one foot about its toe edge over time; the heel is up where it is positive.
 

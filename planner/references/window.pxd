@@ -1,0 +1,2 @@
+cdef class Window:
+    cdef readonly object reference, driving, offset, height, stiffness, omega, load_left, contacts

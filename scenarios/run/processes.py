@@ -1,6 +1,5 @@
 """Processes beside this one: they leave Ctrl-C to their parent and do not outlive it."""
 
-import atexit
 import os
 import signal
 import threading
@@ -10,8 +9,6 @@ from concurrent.futures.process import BrokenProcessPool
 from contextlib import contextmanager
 from multiprocessing import get_context, parent_process
 from typing import Any, TypeVar
-
-from surefoot.lazy import leave
 
 T = TypeVar("T")
 
@@ -46,8 +43,7 @@ def side_by_side(
 
 
 def _set_up() -> None:
-    """Leave Ctrl-C and SIGHUP to the parent, and end with it: one that is killed cannot say so. End at once, too."""
-    atexit.register(leave, [0])
+    """Leave Ctrl-C and SIGHUP to the parent, and end with it: one that is killed cannot say so."""
     for number in (signal.SIGINT, signal.SIGHUP):
         signal.signal(number, signal.SIG_IGN)
     threading.Thread(target=_end_with_parent, daemon=True).start()

@@ -148,7 +148,7 @@ def field_orders(source: str, types: str) -> list[str]:
         )
         if not declared or not any("dataclass" in ast.unparse(one) for one in node.decorator_list):
             continue
-        lines = re.findall(r"(?m)^    cdef (?:readonly |public )?[\w.]+ ((?:\w+, )*\w+)$", declared[1])
+        lines = re.findall(r"(?m)^    cdef (?:readonly |public )?(?:[\w.]+|\([\w, ]+\)) ((?:\w+, )*\w+)$", declared[1])
         there = [name for line in lines for name in line.split(", ")]
         own = [one.target.id for one in node.body if isinstance(one, ast.AnnAssign)]
         if there[: len(own)] != own:

@@ -25,7 +25,7 @@ def printed(capsys: pytest.CaptureFixture[str], monkeypatch: pytest.MonkeyPatch)
 
     def command(*arguments: str) -> str:
         with pytest.raises(SystemExit):
-            cli.main([*arguments])
+            cli.program([*arguments])
         return capsys.readouterr().out
 
     return command

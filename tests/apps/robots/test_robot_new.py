@@ -38,7 +38,7 @@ def surefoot(capsys: pytest.CaptureFixture[str]):
 
     def command(*arguments: str) -> tuple[int, str, str]:
         with pytest.raises(SystemExit) as ended:
-            cli.main([*arguments])
+            cli.program([*arguments])
         captured = capsys.readouterr()
         return ended.value.code or 0, captured.out, captured.err
 

@@ -43,7 +43,7 @@ def surefoot(monkeypatch, capsys, robot, robots, motion):
         monkeypatch.setattr(Robots, "names", lambda self: robots.names())
         monkeypatch.setattr(Robots, "facts", lambda self, *robot: robots.facts(*robot))
         with pytest.raises(SystemExit) as ended:
-            cli.main([*map(str, arguments)])
+            cli.program([*map(str, arguments)])
         captured = capsys.readouterr()
         return ended.value.code or 0, captured.out, captured.err
 

@@ -42,7 +42,7 @@ def logs(tmp_path_factory):
 def command(capsys):
     def run(*arguments):
         with pytest.raises(SystemExit) as ended:
-            cli.main([*map(str, arguments)])
+            cli.program([*map(str, arguments)])
         captured = capsys.readouterr()
         return ended.value.code or 0, captured.out, captured.err
 

@@ -56,7 +56,7 @@ def surefoot(monkeypatch, capsys, tmp_path):
 
     def run(*arguments):
         with pytest.raises(SystemExit) as ended:
-            cli.main(["sweep", *map(str, arguments)])
+            cli.program(["sweep", *map(str, arguments)])
         captured = capsys.readouterr()
         return ended.value.code or 0, captured.out, captured.err
 
@@ -122,7 +122,7 @@ def test_the_command_of_a_run_makes_it_again(surefoot, tmp_path):
     surefoot("short.yaml", "--seeds", 1, "--set", "gait.step_length=0.1")
     row = rows(tmp_path / "runs" / "short")[1]
     with pytest.raises(SystemExit) as ended:
-        cli.main([*shlex.split(row["command"])[1:], "--json", "--out", str(tmp_path / "again")])
+        cli.program([*shlex.split(row["command"])[1:], "--json", "--out", str(tmp_path / "again")])
     assert ended.value.code == 1
     (verdict,) = (tmp_path / "again").rglob("verdict.json")
     assert json.loads(verdict.read_text())["com_error_rms"][0] == float(row["com_error_rms.0 [m]"])

@@ -131,7 +131,7 @@ def surefoot(monkeypatch, capsys, tmp_path, worker):
         few = partial(page_of, every=every, workers=lambda folder, jobs, keep_all: [worker(folder)], plates={})
         monkeypatch.setattr(page, "paper", paper or few)
         with pytest.raises(SystemExit) as ended:
-            cli.main(["paper", *map(str, arguments)])
+            cli.program(["paper", *map(str, arguments)])
         captured = capsys.readouterr()
         return ended.value.code or 0, captured.out, captured.err
 

@@ -34,7 +34,7 @@ def surefoot(capsys):
 
     def command(*arguments):
         with pytest.raises(SystemExit) as ended:
-            cli.main([*map(str, arguments)])
+            cli.program([*map(str, arguments)])
         captured = capsys.readouterr()
         return ended.value.code or 0, captured.out, captured.err
 

@@ -232,7 +232,7 @@ def next_step(state: WalkState, measured: Measured, support: Support) -> StepPro
     place, face, shortest, crosses = landing_place(step, stance, schedule.ground, model.hardest)
     return StepProblem(
         place=place,
-        swing=np.stack((_turned(measured.feet.position[foot, :2] - origin, rotation), _turned(velocity, rotation))),
+        swing=np.array((_turned(measured.feet.position[foot, :2] - origin, rotation), _turned(velocity, rotation))),
         double=0.0 if swings else phase.left,
         single=phase.left if swings else step.single_support * clock.sample_time,
         cycle=schedule.gait.period,

@@ -26,6 +26,7 @@ from surefoot.scenarios.setup.gait import commanded, step_region, twist_of, unco
 from surefoot.scenarios.setup.hardware import hardware_problems
 from surefoot.scenarios.setup.keys import scenario_problem
 from surefoot.scenarios.setup.robot import Robots, is_known
+from surefoot.scenarios.setup.seat import seat_problems
 from surefoot.scenarios.setup.terrain.ground import uneven_problems
 from surefoot.scenarios.setup.walk import Walk
 
@@ -55,6 +56,7 @@ def check(walk: Walk, robots: Robots) -> list[Problem]:
         *_beliefs(walk),
         *_controller(walk),
         *_walk_problems(walk),
+        *seat_problems(walk),
         *_robot(walk, robots),
         *hardware_problems(walk.sensing, walk.keys.motors, walk.rates.physics),
         *(() if walk.walker.has_body else _without_body(walk)),

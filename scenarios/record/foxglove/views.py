@@ -199,8 +199,8 @@ SCENE_RATE = 20_000
 _FALLBACK, _HELD = SolveStatus.EQUALITIES_ONLY, SolverStatus.HELD
 
 
-class BodyView:
-    """Everything that is drawn of a run in full physics.
+class RobotView:
+    """What is drawn of every robot: its bodies, its joints, and the forces on it.
 
     Attributes:
         every: control ticks from picture to picture.
@@ -222,35 +222,23 @@ class BodyView:
         period = max(SCENE_PERIOD, round(len(self._scene_data) / SCENE_RATE))
         # A flight recorder has it in all that it keeps.
         self._scene_every = round(control_rate * (period if writer.keep is None else min(period, writer.keep)))
-        self._walk = WalkView(writer, 0.5 * robot.sole_length, 0.5 * robot.sole_width)
-        self._events = EventLog(writer)
         self._levers = np.zeros((2, 3, 2))
 
-    def events(self, time_ns: int, measurement: Measurement, report: WbcReport, plan: WalkPlan, fallen: bool) -> None:
-        """Say what has changed since the last control tick."""
-        x, y, z = measurement.external_force.tolist()
-        pushed, status = x * x + y * y + z * z > 0.0, plan.status  # which NaN, of a plant that does not tell, is not
-        fallback = report.status >= _FALLBACK or status.solver is _HELD
-        self._events.update(time_ns, report.active, pushed, fallback, status.falling, fallen)
-
-    def picture(
-        self, tick: int, time_ns: int, measurement: Measurement, terms: RobotTerms, plan: WalkPlan, sample: PlanSample
-    ) -> None:
-        """Draw a control tick, if it is one that is drawn; ``terms`` are those of the true state.
+    def bodies(self, tick: int, time_ns: int, measurement: Measurement, terms: RobotTerms) -> bool:
+        """Draw a control tick, if it is one that is drawn, which it says; ``terms`` are those of the true state.
 
         The first is the one after that of the first plan, so that hardly a tick makes both a plan and a picture.
         """
         if tick % self._scene_every == 0:
             self._scene.append(time_ns, self._scene_data)
         if (tick - 1) % self.every:
-            return
+            return False
         m, poses = measurement, self._poses
         poses.update(m.q)
         self._tf.append(time_ns, np.concatenate((poses.position.ravel(), poses.quaternion.ravel())))
         self._joints.append(time_ns, np.concatenate((m.joint_position, m.joint_velocity, m.joint_torque)))
         self._forces.append(time_ns, self._arrows(m, terms))
-        zmp = measured_zmp(m.wrench, terms.sole_position, terms.sole_rotation)
-        self._walk.update(time_ns, terms.com, terms.com_velocity, zmp, plan, sample)
+        return True
 
     def _arrows(self, m: Measurement, terms: RobotTerms) -> tuple[float, ...]:
         """Contact forces and push as arrows."""
@@ -263,3 +251,45 @@ class BodyView:
         left, right = turned[:, :, 1] + terms.sole_position
         push = force_arrow(self._poses.position[self._torso], m.external_force)
         return (*force_arrow(left, turned[0, :, 0]), *force_arrow(right, turned[1, :, 0]), *push)
+
+
+class SeatView(RobotView):
+    """Everything that is drawn of a robot whose controller has no plan."""
+
+    def __init__(self, writer: LogWriter, world: World, robot: RobotDescription, control_rate: int) -> None:
+        super().__init__(writer, world, robot, control_rate)
+        self._events = EventLog(writer)
+
+    def events(self, time_ns: int, measurement: Measurement, contact: tuple[bool, bool], fallen: bool) -> None:
+        """Say what has changed since the last control tick; feet that stand are (left, right)."""
+        self._events.update(time_ns, contact, _is_pushed(measurement), fallback=False, falling=False, fallen=fallen)
+
+
+class BodyView(RobotView):
+    """Everything that is drawn of a run in full physics."""
+
+    def __init__(self, writer: LogWriter, world: World, robot: RobotDescription, control_rate: int) -> None:
+        super().__init__(writer, world, robot, control_rate)
+        self._walk = WalkView(writer, 0.5 * robot.sole_length, 0.5 * robot.sole_width)
+        self._events = EventLog(writer)
+
+    def events(self, time_ns: int, measurement: Measurement, report: WbcReport, plan: WalkPlan, fallen: bool) -> None:
+        """Say what has changed since the last control tick."""
+        pushed, status = _is_pushed(measurement), plan.status
+        fallback = report.status >= _FALLBACK or status.solver is _HELD
+        self._events.update(time_ns, report.active, pushed, fallback, status.falling, fallen)
+
+    def picture(
+        self, tick: int, time_ns: int, measurement: Measurement, terms: RobotTerms, plan: WalkPlan, sample: PlanSample
+    ) -> None:
+        """Draw a control tick, if it is one that is drawn; ``terms`` are those of the true state."""
+        if not self.bodies(tick, time_ns, measurement, terms):
+            return
+        zmp = measured_zmp(measurement.wrench, terms.sole_position, terms.sole_rotation)
+        self._walk.update(time_ns, terms.com, terms.com_velocity, zmp, plan, sample)
+
+
+def _is_pushed(measurement: Measurement) -> bool:
+    """Whether a push acts, which is not so of a plant that does not tell."""
+    x, y, z = measurement.external_force.tolist()
+    return bool(x * x + y * y + z * z > 0.0)

@@ -60,7 +60,8 @@ def angular_velocity(seen: Seen, body: str = "base") -> Array:
 
 def gravity(seen: Seen, body: str = "base") -> Array:
     """Direction of gravity in the frame of the base, or the torso, (0, 0, -1) upright, 3 [-]."""
-    return -(seen.rotation if body == "base" else seen.torso_rotation)[2]
+    R = seen.rotation if body == "base" else seen.torso_rotation
+    return np.array(-R[2])
 
 
 def orientation(seen: Seen, order: str = "wxyz", body: str = "base") -> Array:
@@ -107,7 +108,7 @@ def last_action(seen: Seen) -> Array:
 
 
 def phase(seen: Seen, period: float = 0.8, offsets: tuple[float, ...] = (0.0,), grouped: bool = False) -> Array:
-    """Sine and cosine of a clock at each offset, a share of its period [s]; grouped: all sines first, 2 for each [-]."""
+    """Sine and cosine of a clock at each offset, a share of its period [s], or all sines first, 2 for each [-]."""
     turns = [math.tau * ((seen.time / period + offset) % 1.0) for offset in offsets]
     waves = [[math.sin(turn), math.cos(turn)] for turn in turns]
     return np.array(waves).T.ravel() if grouped else np.array(waves).ravel()

@@ -32,7 +32,7 @@ def contract(values: Mapping[str, Any], file: Path, joint_names: Sequence[str]) 
     """The contract of such a file.
 
     Its joints are numbered as the motors of the robot are, which are taken to be in the order of the robot's joints.
-    Stiffness and damping are told by motor, all else by joint of the policy. Histories go from old to new, term by term.
+    Stiffness and damping are told by motor, all else by joint of the policy. Histories go from old to new by terms.
 
     Raises:
         ParameterError: it says what no contract can, or the robot has fewer joints.

@@ -52,9 +52,9 @@ class SeatedController(Protocol):
     It is made of a `Walk` and of ``controller.options``, and then reset once. It is asked at every control tick, and
     gives the same command until its own next one is due.
 
-    It may have more: ``reads``, whether it is given what sensors say, which else ``sensing.source`` tells; ``followed``,
-    the velocity that it makes of the one commanded, a `surefoot.Twist`; ``told``, arrays for the log by name, another
-    mapping whenever it has decided.
+    It may have more: ``reads``, whether it is given what sensors say, which else ``sensing.source`` tells; ``told``,
+    arrays for the log by name, another mapping whenever it has decided; ``followed``, the velocity that it makes of the
+    one commanded, a `surefoot.Twist`.
 
     Attributes:
         parameters: for the log, by name; JSON.

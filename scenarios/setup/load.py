@@ -71,6 +71,7 @@ def attached_scenario(path: str) -> tuple[str, str]:
         log = read(path)
         text = decoded(BytesIO(log.attachments[provenance.SCENARIO_FILE]), f"{path}/{provenance.SCENARIO_FILE}")
         text = _as_run(text if "\n  preset:" in text else _UNSAID.sub("", text), log.metadata)
+        text = _seated_as_run(text, log.metadata)
     except LogError as error:
         raise ScenarioError([str(error)]) from None
     except (AttributeError, KeyError, TypeError, ValueError, RecursionError):
@@ -110,6 +111,16 @@ def _as_run(text: str, metadata: Mapping[str, Mapping[str, str]]) -> str:
             for name in ("pushes", "commands"):
                 keys[name] = [{**entry, "live": True} for entry in keys[name]]
             keys["faults"] = [_until(keys["duration"], entry) for entry in keys["faults"]]
+    return yaml.safe_dump(keys, sort_keys=False)
+
+
+def _seated_as_run(text: str, metadata: Mapping[str, Mapping[str, str]]) -> str:
+    """The text of a scenario whose controller must be the one that it had then, where the log tells its digest."""
+    digest = metadata.get(provenance.SEAT_RECORD, {}).get("digest")
+    if digest is None:
+        return text
+    keys = parse(text, provenance.SCENARIO_FILE).value
+    keys["controller"]["digest"] = json.loads(digest)
     return yaml.safe_dump(keys, sort_keys=False)
 
 

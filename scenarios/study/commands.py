@@ -14,7 +14,9 @@ from surefoot.scenarios.show.options import (
     AsJson,
     Jobs,
     Replace,
+    SeatOf,
     Settings,
+    overrides,
     settings,
     with_options,
 )
@@ -41,6 +43,7 @@ def sweep(
         str,
         typer.Argument(help="A campaign's name, or its specification, a YAML file.", autocompletion=_campaigns_from),
     ],
+    policy: SeatOf = None,
     set_: Annotated[list[str] | None, settings("Fix a key, even one that varies")] = None,
     seeds: Annotated[int | None, typer.Option(min=1, help="Runs of each, over those of the campaign.")] = None,
     jobs: Jobs = None,
@@ -69,7 +72,7 @@ def sweep(
 
     if jobs is not None and cluster is not None:
         raise typer.BadParameter("--jobs is of this machine; give it without --cluster")
-    campaign = read_campaign(spec, set_ or (), seeds)
+    campaign = read_campaign(spec, overrides(set_, policy=policy), seeds)
     before = None if against is None else holding.table(campaign, against)
     folder = out or Path("runs") / campaign.spec.name
     for text in overlooked(campaign):
@@ -103,6 +106,7 @@ class CheckOptions:
     baselines: Annotated[
         Path | None, typer.Option(help="Directory of the baselines; beside the scenario files by default.")
     ] = None
+    policy: SeatOf = None
     set_: Settings = None
     jobs: Jobs = None
     out: Annotated[Path, typer.Option(help="Directory of the logs.")] = Path("runs/check")
@@ -124,7 +128,7 @@ def check(told: CheckOptions) -> None:
     for report_file in (told.junit, told.markdown):
         if report_file is not None:
             refuse_existing(report_file, told.force)
-    chosen = checking.cases(told.scenarios or (), told.baselines, told.set_ or ())
+    chosen = checking.cases(told.scenarios or (), told.baselines, overrides(told.set_, policy=told.policy))
     try:
         found = checking.check(chosen, told.out, told.jobs or cores(), report.print_checked, told.update)
     except KeyboardInterrupt:

@@ -52,6 +52,7 @@ class Policy:
         posture: of all joints at the start, shape (nj,) [rad].
         followed: the velocity that it follows, within those that it was trained for.
         told: observation and action of the last decision, for the log.
+        target: of the joints that it moves, as last decided, shape (m,) [rad, N·m].
 
     Raises:
         ParameterError: contract, network, robot and rates do not fit together.
@@ -144,7 +145,7 @@ class Policy:
         if q is not None:
             self._senses = senses_of(placed(self.walk, q), Parts())
         self._begin, self._next = math.nan, -math.inf
-        self._action = np.zeros(len(self._moved))
+        self._action, self.target = np.zeros(len(self._moved)), self._offset.copy()
         self._command = JointCommand(np.zeros(len(self.posture)))
         self._states = {
             state.input: self.network.shaped(state.input, np.zeros(max(self.network.inputs[state.input], 1)))
@@ -205,6 +206,7 @@ class Policy:
         target = self._offset + self._scale * used
         if self._limits is not None:
             target = np.clip(target, self._limits[:, 0], self._limits[:, 1])
+        self.target = target
         torque, position = np.zeros_like(joints.posture), joints.posture.copy()
         stiffness = joints.stiffness
         if action.kind == "torque":

@@ -205,6 +205,9 @@ class Seated(Moved):
         view: of what MCAP viewers show.
         sensed: records what sensors say; None where nobody reads them.
         coupled: records how joints follow others; None of a robot that has no such joints, and of another plant.
+
+    Attributes:
+        mind: the controller.
     """
 
     planning = None
@@ -222,7 +225,7 @@ class Seated(Moved):
         coupled: CouplingRecorder | None,
     ) -> None:
         super().__init__(walk, plant, sensors, known=False)
-        self._mind, self._recorder, self._view = controller, recorder, view
+        self.mind, self._recorder, self._view = controller, recorder, view
         self._sensed, self._coupled = sensed, coupled
         self._felt = FeltGait(walk.true_mass, walk.size)
         self._waiting, self._rate = deque(velocities(walk)), walk.rates.control
@@ -238,7 +241,7 @@ class Seated(Moved):
     @property
     def orders(self) -> Command:
         """See `Walker`."""
-        followed = getattr(self._mind, "followed", self._twist)
+        followed = getattr(self.mind, "followed", self._twist)
         return Command(self._twist, followed=followed)
 
     def command(self, command: Command, now: float) -> None:
@@ -259,7 +262,7 @@ class Seated(Moved):
         if not np.isfinite(measurement.q).all() or self.lost(tick, "state_nan"):
             raise RunFault(f"the measured state is not finite at {now:.3f} s")
         self._felt.update(now, measurement.wrench[:, 2])
-        command = self._mind.step(self._readings, self._due(now))
+        command = self.mind.step(self._readings, self._due(now))
         assert self._own_truth is not None
         self._truth = self._own_truth
         self._command = self._no_torque if self.lost(tick, "torque_loss") else command
@@ -292,7 +295,7 @@ class Seated(Moved):
         if self._heard:
             recorder.command(now_ns, self.orders)
             self._heard = False
-        told = getattr(self._mind, "told", None)
+        told = getattr(self.mind, "told", None)
         if told is not None and told is not self._told:
             recorder.told(now_ns, told)
             self._told = told

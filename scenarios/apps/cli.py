@@ -21,6 +21,7 @@ from surefoot.errors import PluginError
 from surefoot.lazy import ending_at_once, importing
 from surefoot.scenarios.apps.bridge import command as bridge
 from surefoot.scenarios.apps.drive import command as drive
+from surefoot.scenarios.apps.policies import command as policies
 from surefoot.scenarios.apps.robots import command as robots
 from surefoot.scenarios.apps.words import Commands
 from surefoot.scenarios.errors import LinkError, LogError, ScenarioError, SetupError
@@ -174,6 +175,7 @@ def run(told: RunOptions) -> None:
 for product in (drive, bridge, shown, studies):
     app.add_typer(product.app)
 app.add_typer(robots.app, name="robot", cls=Commands)
+app.add_typer(policies.app, name="policy", cls=Commands)
 
 
 def program() -> None:

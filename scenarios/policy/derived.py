@@ -1,6 +1,7 @@
 """From a network to the beginning of its contract: what its file says, and comments where it says nothing."""
 
 import json
+import os
 from collections.abc import Iterator, Mapping
 from dataclasses import dataclass
 from pathlib import Path
@@ -56,12 +57,13 @@ class Line:
         return f"{self.key}: {json.dumps(self.value)}{comment}"
 
 
-def begun(network: Network, robot: RobotDescription | None = None) -> str:
+def begun(network: Network, robot: RobotDescription | None = None, place: str | None = None) -> str:
     """The text of a contract to be completed: lines that say ``to do`` are guessed.
 
     Args:
         network: that is told of.
         robot: that it is for; None where nobody says.
+        place: path of the network seen from the contract; its name if None.
 
     Raises:
         ParameterError: it has no output of joints.
@@ -77,7 +79,8 @@ def begun(network: Network, robot: RobotDescription | None = None) -> str:
     lines = [f"{head} all keys."]
     if network.metadata:
         lines.append(f"# The network itself tells: {', '.join(sorted(network.metadata))}.")
-    lines += [line.text for line in _lines(network, told, robot, actions)]
+    lines.append(Line("network", place or network.path.name).text)
+    lines += [line.text for line in _lines(told, robot, actions)]
     lines += _observed(network, told, len(told.get("joints") or ()) or actions, actions)
     return "\n".join(lines) + "\n"
 
@@ -109,10 +112,7 @@ def _number(value: Any) -> Any:
         return value
 
 
-def _lines(
-    network: Network, told: Mapping[str, list[Any]], robot: RobotDescription | None, actions: int
-) -> Iterator[Line]:
-    yield Line("network", network.path.name)
+def _lines(told: Mapping[str, list[Any]], robot: RobotDescription | None, actions: int) -> Iterator[Line]:
     if robot is not None:
         yield Line("robot", robot.name)
     rate = told.get("rate")
@@ -197,6 +197,6 @@ def write(model: Path, out: Path, robot: RobotDescription | None, replace: bool)
     from surefoot.scenarios.output import refuse_existing, write_whole
 
     refuse_existing(out, replace)
-    text = begun(Network(model), robot)
+    text = begun(Network(model), robot, Path(os.path.relpath(model, out.parent)).as_posix())
     with write_whole(out, replace) as temporary:
         temporary.write_text(text, encoding="utf-8")

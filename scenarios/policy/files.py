@@ -64,6 +64,17 @@ def read(path: Path, joint_names: Sequence[str]) -> Files:
     return Files(file, contract, network if network.is_absolute() else file.parent / network)
 
 
+def named_robot(path: Path) -> str | None:
+    """The robot that a contract of ours names; None where it names none.
+
+    Raises:
+        ParameterError: it cannot be found or read.
+    """
+    values = _parsed(_contract_in(path) if path.is_dir() else path)
+    robot = values.get("robot") if isinstance(values, dict) else None
+    return robot if isinstance(robot, str) else None
+
+
 def _reader(values: Any) -> Callable[[Any, Path, Sequence[str]], Any]:
     """What makes a contract of values, by what they are."""
     if isinstance(values, dict):

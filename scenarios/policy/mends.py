@@ -148,7 +148,18 @@ def _orders(contract: Contract, robot: RobotDescription) -> Iterator[tuple[str, 
     sides = tuple(other_side(name) if other_side(name) in names else name for name in names)
     for what, order in (("that of the robot", kept), ("breadth first", broad), ("left and right changed", sides)):
         if order != names:
-            yield f"joints in another order, {what}", _changed(contract, joints=order)
+            yield f"joints in another order, {what}", reordered(contract, order)
+
+
+def reordered(contract: Contract, names: Sequence[str]) -> Contract:
+    """The contract with other names for its joints, in the order of the network, wherever it names them."""
+    of = dict(zip(contract.joints, names, strict=True))
+
+    def renamed(term: Term) -> Term:
+        return term.model_copy(update={"joints": tuple(of[name] for name in term.joints)})
+
+    action = contract.action.model_copy(update={"joints": tuple(of[name] for name in contract.action.joints)})
+    return _changed(_each(contract, renamed), joints=tuple(names), action=action)
 
 
 def depths(robot: RobotDescription) -> dict[str, int]:
@@ -177,7 +188,7 @@ def swapped(contract: Contract, pairs: Sequence[tuple[int, int]]) -> Iterator[tu
     for i, j in pairs:
         names = list(contract.joints)
         names[i], names[j] = names[j], names[i]
-        yield f"joints {contract.joints[i]} and {contract.joints[j]} changed", _changed(contract, joints=tuple(names))
+        yield f"joints {contract.joints[i]} and {contract.joints[j]} changed", reordered(contract, names)
 
 
 FAULTS: tuple[Fault, ...] = (

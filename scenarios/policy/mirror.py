@@ -10,7 +10,7 @@ from itertools import combinations
 import numpy as np
 from numpy.typing import NDArray
 
-from surefoot.scenarios.policy.contract import Contract, Term
+from surefoot.scenarios.policy.contract import Contract
 from surefoot.scenarios.policy.history import Stack
 from surefoot.scenarios.policy.mends import other_side
 from surefoot.scenarios.policy.network import Network
@@ -27,6 +27,8 @@ _SIGNS = {"angular_velocity": (-1, 1, -1), "gravity": (1, -1, 1), "command": (1,
 """What a mirror makes of vectors."""
 
 _JOINTS = ("joint_position", "joint_velocity", "last_action")
+_UNTURNED = ("constant", "moving")
+"""Terms that a mirror leaves as they are."""
 
 
 class Mirror:
@@ -43,26 +45,38 @@ class Mirror:
     def __init__(self, contract: Contract, network: Network) -> None:
         terms, states = contract.observations, {state.input for state in contract.recurrent}
         free = [name for name in network.inputs if name not in states]
-        if len(free) != 1 or contract.action.joints or not all(t.term in (*_SIGNS, *_JOINTS) for t in terms):
+        known = (*_SIGNS, *_JOINTS, *_UNTURNED)
+        told = all(term.term in known and not (term.options and term.term in _SIGNS) for term in terms)
+        if len(free) != 1 or not told:
             raise ValueError("its mirror image is not known")
         self._contract, self._network, self._input = contract, network, free[0]
+        moved = contract.action.joints or contract.joints
+        self._moved = [contract.joints.index(name) for name in moved]
+        self._told = [[contract.joints.index(name) for name in term.joints or contract.joints] for term in terms]
         self._states = {name: network.shaped(name, np.zeros(max(network.inputs[name], 1))) for name in states}
         outputs = [name for name in network.outputs if name not in {state.output for state in contract.recurrent}]
         self._output = contract.action.output or outputs[0]
         self._lengths = [term.history or contract.history.length for term in terms]
         rng = np.random.default_rng(0)
-        self._drawn = [[self._frames(term, rng) for term in terms] for _ in range(SAMPLES)]
+        self._drawn = [[self._frames(number, rng) for number in range(len(terms))] for _ in range(SAMPLES)]
         self._plain = [self._asked(frames) for frames in self._drawn]
 
-    def _frames(self, term: Term, rng: np.random.Generator) -> Array:
+    def _frames(self, number: int, rng: np.random.Generator) -> Array:
         """Values of a term over time, a row each, the newest one last."""
-        joints, length = len(self._contract.joints), max(self._lengths)
-        size = joints if term.term in _JOINTS else len(_SIGNS[term.term])
+        term, length = self._contract.observations[number], max(self._lengths)
+        if term.term in _UNTURNED:
+            rest = (term.options or {}).get("values", [0.0])
+            return np.asarray(np.tile(np.asarray(rest, dtype=np.float64) * np.asarray(term.scale), (length, 1)))
+        size = len(self._joints(number)) if term.term in _JOINTS else len(_SIGNS[term.term])
         values = _SIZES.get(term.term, 0.3) * rng.standard_normal((1, size))
         values = values + 0.2 * _SIZES.get(term.term, 0.3) * rng.standard_normal((length, size))
         if term.term == "gravity":
             values[:, 2] -= 1.0
         return np.asarray(values * np.asarray(term.scale))
+
+    def _joints(self, number: int) -> list[int]:
+        """Places, among the joints of the contract, of those that a term tells."""
+        return self._moved if self._contract.observations[number].term == "last_action" else self._told[number]
 
     def _asked(self, frames: Sequence[Array]) -> Array:
         history = self._contract.history
@@ -74,17 +88,22 @@ class Mirror:
 
     def error(self, names: Sequence[str]) -> float:
         """How far actions of mirrored observations are from mirrored actions, over the size of both [-]."""
-        partner, sign = _image(names)
+        partner, sign = _image([names[index] for index in self._moved])
         off = size = 0.0
         for frames, plain in zip(self._drawn, self._plain, strict=True):
-            images = [
-                values[:, partner] * sign if term.term in _JOINTS else values * np.array(_SIGNS[term.term])
-                for term, values in zip(self._contract.observations, frames, strict=True)
-            ]
+            images = [self._mirrored(number, values, names) for number, values in enumerate(frames)]
             found, wanted = self._asked(images), plain[partner] * sign
             off += float(np.sum((found - wanted) ** 2))
             size += float(np.sum(found**2) + np.sum(wanted**2))
         return off / max(size, 1e-12)
+
+    def _mirrored(self, number: int, values: Array, names: Sequence[str]) -> Array:
+        """The mirror image of a term's values under names of the joints."""
+        term = self._contract.observations[number].term
+        if term in _JOINTS:
+            partner, sign = _image([names[index] for index in self._joints(number)])
+            return np.asarray(values[:, partner] * sign)
+        return values if term in _UNTURNED else np.asarray(values * np.array(_SIGNS[term]))
 
     def better(self, most: int = 8, share: float = 0.9) -> list[tuple[int, int]]:
         """Pairs of joints under whose change left and right are treated more alike, the best first."""

@@ -1,7 +1,7 @@
 """Observation terms: functions of what is known of the robot, each with its frame and unit."""
 
 import math
-from collections.abc import Callable, Mapping
+from collections.abc import Callable, Mapping, Sequence
 from dataclasses import dataclass
 from typing import Any
 
@@ -82,9 +82,9 @@ def linear_velocity(seen: Seen) -> Array:
     return seen.linear_velocity
 
 
-def command(seen: Seen) -> Array:
-    """Velocity to be followed: forward, left, of the heading, 3 [m/s, m/s, rad/s]."""
-    return np.array(seen.command[:3])
+def command(seen: Seen, axes: Sequence[int] = (0, 1, 2)) -> Array:
+    """Velocity to be followed: forward, left, of the heading, or some of these axes, 3 [m/s, m/s, rad/s]."""
+    return np.array([seen.command[axis] for axis in axes])
 
 
 def moving(seen: Seen) -> Array:
@@ -107,11 +107,35 @@ def last_action(seen: Seen) -> Array:
     return seen.action
 
 
-def phase(seen: Seen, period: float = 0.8, offsets: tuple[float, ...] = (0.0,), grouped: bool = False) -> Array:
-    """Sine and cosine of a clock at each offset, a share of its period [s], or all sines first, 2 for each [-]."""
-    turns = [math.tau * ((seen.time / period + offset) % 1.0) for offset in offsets]
-    waves = [[math.sin(turn), math.cos(turn)] for turn in turns]
-    return np.array(waves).T.ravel() if grouped else np.array(waves).ravel()
+def phase(
+    seen: Seen,
+    period: float = 0.8,
+    offsets: Sequence[float] = (0.0,),
+    waves: Sequence[str] = ("sin", "cos"),
+    grouped: bool = False,
+    begin: float = 0.0,
+    stance: float = 0.5,
+    rest: float | None = None,
+) -> Array:
+    """Sine and cosine of a clock at each offset, or all sines first, 2 for each [-].
+
+    Args:
+        seen: what is known.
+        period: of the clock [s].
+        offsets: shares of it, one for each foot [-].
+        waves: which of sin and cos are told.
+        grouped: wave by wave, else offset by offset.
+        begin: share at the reset [-].
+        stance: share that is taken for the first half turn [-].
+        rest: share at which the clock stands while the robot is to stand; None where it goes on [-].
+    """
+    stands = rest is not None and seen.command.is_zero
+    shares = [rest if stands and rest is not None else (begin + seen.time / period + one) % 1.0 for one in offsets]
+    turns = [
+        math.pi * (share / stance if share < stance else 1.0 + (share - stance) / (1.0 - stance)) for share in shares
+    ]
+    found = np.array([[math.sin(turn) if wave == "sin" else math.cos(turn) for wave in waves] for turn in turns])
+    return found.T.ravel() if grouped else found.ravel()
 
 
 def height(seen: Seen) -> Array:
@@ -119,7 +143,7 @@ def height(seen: Seen) -> Array:
     return np.array([seen.height])
 
 
-def constant(seen: Seen, values: tuple[float, ...] = (0.0,)) -> Array:
+def constant(seen: Seen, values: Sequence[float] = (0.0,)) -> Array:
     """Numbers that never change, such as a height that is asked for."""
     return np.array(values, dtype=np.float64)
 

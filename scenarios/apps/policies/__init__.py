@@ -1,0 +1,1 @@
+"""``surefoot policy``: contracts of learned controllers."""

@@ -155,11 +155,12 @@ def reordered(contract: Contract, names: Sequence[str]) -> Contract:
     """The contract with other names for its joints, in the order of the network, wherever it names them."""
     of = dict(zip(contract.joints, names, strict=True))
 
-    def renamed(term: Term) -> Term:
-        return term.model_copy(update={"joints": tuple(of[name] for name in term.joints)})
+    def other(told: tuple[str, ...] | None) -> tuple[str, ...] | None:
+        return None if told is None else tuple(of[name] for name in told)
 
-    action = contract.action.model_copy(update={"joints": tuple(of[name] for name in contract.action.joints)})
-    return _changed(_each(contract, renamed), joints=tuple(names), action=action)
+    changed = _each(contract, lambda term: term.model_copy(update={"joints": other(term.joints)}))
+    action = contract.action.model_copy(update={"joints": other(contract.action.joints)})
+    return _changed(changed, joints=tuple(names), action=action)
 
 
 def depths(robot: RobotDescription) -> dict[str, int]:

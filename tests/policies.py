@@ -110,7 +110,7 @@ def posture(robot: RobotDescription, joints: Sequence[str]) -> list[float]:
     return np.asarray(robot.nominal_joint_positions)[at].tolist()
 
 
-def contract(robot: RobotDescription, joints: Sequence[str], **more: Any) -> dict[str, Any]:
+def contract(robot: RobotDescription, joints: Sequence[str], /, **more: Any) -> dict[str, Any]:
     """A contract of these terms."""
     scales = {"angular_velocity": RATES[0], "joint_velocity": RATES[1]}
     found = {

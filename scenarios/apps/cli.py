@@ -19,9 +19,9 @@ import typer
 
 from surefoot.errors import PluginError
 from surefoot.lazy import ending_at_once, importing
+from surefoot.scenarios.apps import policies
 from surefoot.scenarios.apps.bridge import command as bridge
 from surefoot.scenarios.apps.drive import command as drive
-from surefoot.scenarios.apps.policies import command as policies
 from surefoot.scenarios.apps.robots import command as robots
 from surefoot.scenarios.apps.words import Commands
 from surefoot.scenarios.errors import LinkError, LogError, ScenarioError, SetupError

@@ -9,7 +9,7 @@ from surefoot.models.names import ROBOTS
 from surefoot.planner.laws.names import PROFILES
 from surefoot.plugins import OWN_PACKAGE, Declared, Registry
 from surefoot.scenarios import catalogue
-from surefoot.scenarios.file.registries import PLANT_NAMES, SOURCES, TERRAIN_KINDS
+from surefoot.scenarios.file.registries import CONTROLLERS, PLANT_NAMES, SOURCES, TERRAIN_KINDS
 from surefoot.scenarios.judge.names import METRICS
 from surefoot.scenarios.study.campaigns.shipped import shipped
 from surefoot.wbc.tasks.registry import TASKS
@@ -19,6 +19,7 @@ _REGISTRIES: Mapping[str, Registry[Any]] = {
     "profile": PROFILES,
     "terrain": TERRAIN_KINDS,
     "estimator": SOURCES,
+    "controller": CONTROLLERS,
     "plant": PLANT_NAMES,
     "task": TASKS,
     "metric": METRICS,
@@ -31,7 +32,7 @@ class Entry:
     """Something that can be run, or that a scenario can name.
 
     Attributes:
-        kind: scenario, control, campaign, robot, profile, terrain, estimator, plant, task or metric.
+        kind: scenario, control, campaign, robot, profile, terrain, estimator, controller, plant, task or metric.
         name: its name.
         package: what brings it.
         doc: what it is, in one line; empty where nothing says so.
@@ -88,7 +89,7 @@ def lines() -> Iterator[str]:
     for entry in shown:
         origin = "" if entry.own else f"[{entry.package}]"
         words = " ".join(word for word in (entry.doc, origin) if word)
-        yield f"{entry.kind:<10}{entry.name:<{width}} {words}".rstrip()
+        yield f"{entry.kind:<11}{entry.name:<{width}} {words}".rstrip()
 
 
 def to_json() -> dict[str, list[dict[str, str]]]:

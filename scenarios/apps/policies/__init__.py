@@ -1,1 +1,0 @@
-"""``surefoot policy``: contracts of learned controllers."""

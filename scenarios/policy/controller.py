@@ -138,7 +138,7 @@ class Policy:
 
     def _at_rest(self) -> Seen:
         upright, zero = np.eye(3), np.zeros(3)
-        return Seen(0.0, upright, upright, zero, zero, zero, 0.0, zero, zero, zero, self._action, STANDING)
+        return Seen(0.0, upright, upright, zero, zero, zero, 0.0, zero, zero, zero, self._action, STANDING, stands=True)
 
     def reset(self, q: Array | None) -> None:
         """See `surefoot.scenarios.run.seat.SeatedController`."""
@@ -153,7 +153,7 @@ class Policy:
         }
         for feed in self.feeds.values():
             feed.reset()
-        self.followed = STANDING
+        self.followed, self._marches = STANDING, False
         self.told: Mapping[str, Array] | None = None
 
     def step(self, readings: Readings | Measurement, command: Command | None = None) -> JointCommand:
@@ -162,7 +162,7 @@ class Policy:
             self._begin = readings.time
         now = readings.time - self._begin
         if command is not None:
-            self.followed = self._within(command.twist or STANDING)
+            self.followed, self._marches = self._within(command.twist or STANDING), command.march
         estimate = self._senses(readings)
         state = estimate.state
         if now >= self._next:
@@ -233,6 +233,7 @@ class Policy:
             velocity=state.v[6:],
             action=self._action,
             command=self.followed,
+            stands=self.followed.is_zero and not self._marches,
         )
 
     def _joint_state(self, position: Array, velocity: Array) -> tuple[Array, Array, Array]:

@@ -1,6 +1,7 @@
 """Inputs of a network: terms of an observation, scaled, clipped, and side by side with what they were before."""
 
 from collections.abc import Sequence
+from dataclasses import replace
 from typing import Any
 
 import numpy as np
@@ -49,10 +50,7 @@ class Feed:
 
     def _value(self, number: int, seen: Seen, position: Array, default: Array, velocity: Array) -> Array:
         term, at = self.terms[number], self._joints[number]
-        told = Seen(
-            seen.time, seen.rotation, seen.torso_rotation, seen.angular_velocity, seen.torso_angular_velocity,
-            seen.linear_velocity, seen.height, position[at], default[at], velocity[at], seen.action, seen.command,
-        )  # fmt: skip
+        told = replace(seen, position=position[at], default=default[at], velocity=velocity[at])
         try:
             found = np.asarray(self._functions[number](told, **(term.options or {})), dtype=np.float64).ravel()
         except TypeError as error:

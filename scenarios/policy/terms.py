@@ -33,6 +33,7 @@ class Seen:
         velocity: of these joints, shape (k,) [rad/s].
         action: last output of the network as it was, zero at first, shape (m,).
         command: velocity to be followed.
+        stands: whether the robot is to stand, rather than to follow a velocity or to march in place.
     """
 
     time: float
@@ -47,6 +48,7 @@ class Seen:
     velocity: Array
     action: Array
     command: Twist
+    stands: bool
 
 
 Observation = Callable[..., Any]
@@ -88,8 +90,8 @@ def command(seen: Seen, axes: Sequence[int] = (0, 1, 2)) -> Array:
 
 
 def moving(seen: Seen) -> Array:
-    """1 where a velocity is to be followed, 0 where the robot is to stand, 1 [-]."""
-    return np.array([0.0 if seen.command.is_zero else 1.0])
+    """1 where a velocity is to be followed or the robot marches, 0 where it is to stand, 1 [-]."""
+    return np.array([0.0 if seen.stands else 1.0])
 
 
 def joint_position(seen: Seen, relative: bool = True) -> Array:
@@ -129,8 +131,7 @@ def phase(
         stance: share that is taken for the first half turn [-].
         rest: share at which the clock stands while the robot is to stand; None where it goes on [-].
     """
-    stands = rest is not None and seen.command.is_zero
-    shares = [rest if stands and rest is not None else (begin + seen.time / period + one) % 1.0 for one in offsets]
+    shares = [rest if seen.stands and rest is not None else (begin + seen.time / period + one) % 1.0 for one in offsets]
     turns = [
         math.pi * (share / stance if share < stance else 1.0 + (share - stance) / (1.0 - stance)) for share in shares
     ]

@@ -77,7 +77,7 @@ class SeatedController(Protocol):
 
         Args:
             readings: what sensors say, or the truth.
-            command: a velocity to follow from now on; None goes on.
+            command: a velocity to follow from now on, and whether it marches where that is zero; None goes on.
         """
         ...
 
@@ -250,9 +250,6 @@ class Seated(Moved):
             if getattr(command, name) is not None:
                 what = f"a command of {name} to a controller that hears velocities alone"
                 raise ParameterError(("command", name), what, "give it a velocity")
-        if command.march:
-            what = "a command to march, to a controller that hears velocities alone"
-            raise ParameterError(("command", "march"), what, "give it a velocity")
         self._waiting.appendleft(replace(command, time=now))
 
     def control(self, tick: int, now: float) -> tuple[None, Spent]:
@@ -279,7 +276,7 @@ class Seated(Moved):
         if found is None:
             return None
         self._twist, self._heard = found.twist or STANDING, True
-        return Command(self._twist, time=now)
+        return Command(self._twist, time=now, march=found.march)
 
     def _torque(self) -> Array:
         """What the joints are given at this instant, shape (nj,) [N·m]."""

@@ -12,7 +12,7 @@ from surefoot.scenarios.setup.walk import Walk
 STANDING = Twist()
 """The velocity of standing."""
 
-_UNHEARD = ("place", "march", "single_support", "double_support", "swing_height")
+_UNHEARD = ("place", "single_support", "double_support", "swing_height")
 """Keys of a command that are for a planner; a controller in its seat hears velocities."""
 
 _PLANNERS_FAULTS = ("planner_freeze", "qp_failure")

@@ -20,7 +20,7 @@ def seen(rotation=None, time=0.0, command=STILL, **more):
         "time": time, "rotation": upright, "torso_rotation": np.eye(3), "angular_velocity": np.array([1.0, 2.0, 3.0]),
         "torso_angular_velocity": np.array([4.0, 5.0, 6.0]), "linear_velocity": np.zeros(3), "height": 0.7,
         "position": np.array([0.5, 1.0]), "default": np.array([0.1, 0.2]), "velocity": np.array([3.0, 4.0]),
-        "action": np.array([7.0]), "command": command,
+        "action": np.array([7.0]), "command": command, "stands": command.is_zero,
     }  # fmt: skip
     return Seen(**{**values, **more})
 
@@ -47,6 +47,7 @@ def test_joints_are_told_from_the_default_posture():
     np.testing.assert_allclose(terms.joint_position(seen(), relative=False), (0.5, 1.0))
     np.testing.assert_allclose(terms.command(seen(command=Twist(1.0, 2.0, 3.0)), axes=[2, 0]), (3.0, 1.0))
     assert [terms.moving(seen(command=twist)).item() for twist in (Twist(), Twist(0.1))] == [0.0, 1.0]
+    assert terms.moving(seen(stands=False)).item() == 1.0  # it marches
 
 
 def test_a_clock_goes_round_in_its_period_and_rests():

@@ -5,6 +5,7 @@ from collections.abc import Mapping
 from pathlib import Path
 
 import numpy as np
+import pinocchio as pin
 from numpy.typing import NDArray
 
 from surefoot.errors import ParameterError, PartError
@@ -27,10 +28,12 @@ from surefoot.scenarios.setup.stance import body_of
 from surefoot.scenarios.setup.walk import Walk
 from surefoot.sim.measurement import Measurement
 from surefoot.wbc.estimation.estimate import Planned
-from surefoot.wbc.model import RobotTerms
 from surefoot.wbc.types import RobotState
 
 Array = NDArray[np.float64]
+
+_UPRIGHT = (0.0, 0.0, 0.0, 0.0, 0.0, 0.0, 1.0)
+"""A base at the origin, its quaternion x y z w."""
 
 _ROUNDING = 1e-6
 """Times of decisions are compared with this tolerance, a share of their period [-]."""
@@ -76,7 +79,9 @@ class Policy:
             raise ParameterError(KEY, what, "raise rates.control")
         self.joints, self._body = Joints(contract, robot), body_of(robot)
         self.posture = self.joints.posture
-        self._terms = RobotTerms(self._body.model, self._body.frames)
+        model, frames = self._body.model, self._body.frames
+        self._data, self._torso = model.createData(), model.getFrameId(frames.torso)
+        self._soles = [model.getFrameId(name) for name in frames.soles]
         self._connect()
         self._senses = senses_of(walk, Parts())
         self.reads = self._senses.reads
@@ -101,6 +106,7 @@ class Policy:
             what = f"the network has inputs {', '.join(free)}, and the contract tells {', '.join(feeds) or 'one'}"
             raise ParameterError(KEY, what, "give inputs, each by its name, or recurrent")
         self.feeds = {name: Feed(feeds[name], contract) for name in free}
+        self._looks = any(feed.looks for feed in self.feeds.values())
         carried = [state.output for state in contract.recurrent]
         outputs = [name for name in network.outputs if name not in carried]
         action = contract.action
@@ -122,7 +128,7 @@ class Policy:
     def _check_sizes(self) -> None:
         """Hold the sizes of the network against those of the contract, term by term."""
         for name, feed in self.feeds.items():
-            values = feed.values(self._at_rest(), *self._joint_state(self.posture, np.zeros_like(self.posture)))
+            values = feed.values(self._at_rest())
             size, wanted = len(feed.observe(values)), self.network.inputs[name]
             feed.reset()
             if wanted and size != wanted:
@@ -137,8 +143,9 @@ class Policy:
             raise ParameterError(KEY, what, "mend joints or action.joints of the contract")
 
     def _at_rest(self) -> Seen:
-        upright, zero = np.eye(3), np.zeros(3)
-        return Seen(0.0, upright, upright, zero, zero, zero, 0.0, zero, zero, zero, self._action, STANDING, stands=True)
+        """What is seen of a robot that stands still in its default posture."""
+        still = RobotState(np.concatenate((_UPRIGHT, self.posture)), np.zeros(6 + len(self.posture)))
+        return self._seen(0.0, still)
 
     def reset(self, q: Array | None) -> None:
         """See `surefoot.scenarios.run.seat.SeatedController`."""
@@ -182,11 +189,10 @@ class Policy:
     def _decided(self, now: float, state: RobotState) -> JointCommand:
         """What the network makes of the state."""
         seen = self._seen(now, state)
-        joints = self._joint_state(state.q[7:], state.v[6:])
         told: dict[str, Array] = {}
         given = dict(self._states)
         for name, feed in self.feeds.items():
-            observed = feed.observe(feed.values(seen, *joints))
+            observed = feed.observe(feed.values(seen))
             told["observation" if len(self.feeds) == 1 else f"observation_{name}"] = observed
             given[name] = self.network.shaped(name, observed)
         found = self.network.run(given)
@@ -218,28 +224,22 @@ class Policy:
         return JointCommand(torque, Servo(position, np.zeros_like(position), stiffness, joints.damping))
 
     def _seen(self, now: float, state: RobotState) -> Seen:
-        terms = self._terms
-        terms.update(state.q, state.v)
-        return Seen(
-            time=now,
-            rotation=np.array(terms.base_rotation),
-            torso_rotation=np.array(terms.torso_rotation),
-            angular_velocity=state.v[3:6].copy(),
-            torso_angular_velocity=np.array(terms.torso_velocity),
-            linear_velocity=state.v[:3].copy(),
-            height=float(state.q[2] - terms.sole_position[:, 2].min()),
-            position=state.q[7:],
-            default=state.q[7:],
-            velocity=state.v[6:],
-            action=self._action,
-            command=self.followed,
-            stands=self.followed.is_zero and not self._marches,
-        )
+        q, v, named = state.q, state.v, self.joints.named
+        x, y, z, w = q[3:7].tolist()
+        R, spin = pin.Quaternion(w, x, y, z).matrix(), v[3:6]
+        torso, torso_spin, height = self._looked_at(state) if self._looks else (R, spin, math.nan)
+        stands = self.followed.is_zero and not self._marches
+        joints = q[7:][named], self.joints.default, v[6:][named]
+        return Seen(now, R, torso, spin, torso_spin, v[:3], height, *joints, self._action, self.followed, stands)
 
-    def _joint_state(self, position: Array, velocity: Array) -> tuple[Array, Array, Array]:
-        """Angles, those of the default posture, and speeds of the contract's joints, shape (k,) each."""
-        named = self.joints.named
-        return position[named], self.joints.default, velocity[named]
+    def _looked_at(self, state: RobotState) -> tuple[Array, Array, float]:
+        """Orientation and angular velocity of the torso, in its frame, and height of the base over the lower sole."""
+        model, data = self._body.model, self._data
+        pin.forwardKinematics(model, data, state.q, state.v)
+        R = pin.updateFramePlacement(model, data, self._torso).rotation
+        spin = pin.getFrameVelocity(model, data, self._torso, pin.ReferenceFrame.LOCAL).angular
+        soles = [pin.updateFramePlacement(model, data, sole).translation.item(2) for sole in self._soles]
+        return R, spin, state.q.item(2) - min(soles)
 
     def _tell(self, state: RobotState, contact: tuple[bool, bool] | None) -> None:
         """Tell an estimator what was decided; of a policy no acceleration is known."""

@@ -1,5 +1,6 @@
 """Inputs of a network: terms of an observation, scaled, clipped, and side by side with what they were before."""
 
+import inspect
 from collections.abc import Sequence
 from dataclasses import replace
 from typing import Any
@@ -12,7 +13,7 @@ from surefoot.scenarios.errors import nearest
 from surefoot.scenarios.policy.contract import KEY, Contract, Term
 from surefoot.scenarios.policy.history import Stack
 from surefoot.scenarios.policy.joints import indices
-from surefoot.scenarios.policy.terms import TERMS, Seen
+from surefoot.scenarios.policy.terms import OF_BASE, TERMS, Seen
 
 Array = NDArray[np.float64]
 
@@ -24,6 +25,10 @@ class Feed:
         terms: in order.
         contract: that they are of.
 
+    Attributes:
+        terms: likewise.
+        looks: whether a term may want to know more than base and joints: where torso and soles are.
+
     Raises:
         ParameterError: a term is not known, or its joints or history do not fit.
     """
@@ -31,8 +36,12 @@ class Feed:
     def __init__(self, terms: Sequence[Term], contract: Contract) -> None:
         history = contract.history
         self.terms = tuple(terms)
+        self.looks = any(term.term not in OF_BASE or (term.options or {}).get("body") == "torso" for term in terms)
         self._functions = [_function(term) for term in terms]
-        self._joints = [indices(term.joints or contract.joints, contract.joints, f"term {term.term}") for term in terms]
+        self._joints = [
+            None if term.joints is None else indices(term.joints, contract.joints, f"term {term.term}")
+            for term in terms
+        ]
         self._scales = [np.asarray(term.scale, dtype=np.float64) for term in terms]
         lengths = [term.history or history.length for term in terms]
         try:
@@ -44,23 +53,22 @@ class Feed:
         """Forget what was observed."""
         self._kept.reset()
 
-    def values(self, seen: Seen, position: Array, default: Array, velocity: Array) -> list[Array]:
-        """The newest values of each term; joints in the order of the contract, shape (k,)."""
-        return [self._value(number, seen, position, default, velocity) for number in range(len(self.terms))]
+    def values(self, seen: Seen) -> list[Array]:
+        """The newest values of each term; joints of what is seen are those of the contract."""
+        return [self._value(number, seen) for number in range(len(self.terms))]
 
-    def _value(self, number: int, seen: Seen, position: Array, default: Array, velocity: Array) -> Array:
-        term, at = self.terms[number], self._joints[number]
-        told = replace(seen, position=position[at], default=default[at], velocity=velocity[at])
-        try:
-            found = np.asarray(self._functions[number](told, **(term.options or {})), dtype=np.float64).ravel()
-        except TypeError as error:
-            raise ParameterError(KEY, f"term {term.term}: {error}", "give it the options that it has") from None
+    def _value(self, number: int, seen: Seen) -> Array:
+        term, at, scale = self.terms[number], self._joints[number], self._scales[number]
+        if at is not None:
+            seen = replace(seen, position=seen.position[at], default=seen.default[at], velocity=seen.velocity[at])
+        found = np.asarray(self._functions[number](seen, **(term.options or {})), dtype=np.float64).ravel()
         if term.clip is not None:
             found = np.clip(found, *term.clip)
-        if self._scales[number].size not in (1, len(found)):
-            what = f"term {term.term} has {len(found)} numbers, and {self._scales[number].size} scales"
+        if scale.size not in (1, len(found)):
+            what = f"term {term.term} has {len(found)} numbers, and {scale.size} scales"
             raise ParameterError(KEY, what, "give one for all, or one for each")
-        return np.array(self._scales[number] * found)
+        scaled: Array = found * scale
+        return scaled
 
     def observe(self, values: Sequence[Array]) -> Array:
         """The input, with what was observed before."""
@@ -69,6 +77,11 @@ class Feed:
 
 def _function(term: Term) -> Any:
     try:
-        return TERMS.guard(term.term).function(TERMS[term.term])
+        function = TERMS[term.term]
     except KeyError:
         raise ParameterError(KEY, f"no observation is called '{term.term}'", nearest(term.term, list(TERMS))) from None
+    try:
+        inspect.signature(function).bind(None, **(term.options or {}))
+    except TypeError as error:
+        raise ParameterError(KEY, f"term {term.term}: {error}", "give it the options that it has") from None
+    return TERMS.guard(term.term).function(function)

@@ -47,8 +47,8 @@ class Network:
         except Exception as error:  # classes of its own, which are exceptions and nothing else
             reason = str(error).splitlines()[0][:200]
             raise ParameterError(KEY, f"{path}: no network that can be run, {reason}", "give an ONNX file") from None
-        self._types = {one.name: one.type for one in self._session.get_inputs()}
-        self._shapes = {one.name: tuple(one.shape) for one in self._session.get_inputs()}
+        self._types = {one.name: _TYPES.get(one.type, np.float32) for one in self._session.get_inputs()}
+        self._shapes = {one.name: _shape(one.shape) for one in self._session.get_inputs()}
         self.inputs = {one.name: _count(one.shape) for one in self._session.get_inputs()}
         self.outputs = {one.name: _count(one.shape) for one in self._session.get_outputs()}
         self.metadata: Mapping[str, str] = dict(self._session.get_modelmeta().custom_metadata_map)
@@ -56,11 +56,7 @@ class Network:
 
     def shaped(self, name: str, values: NDArray[np.float64]) -> NDArray[Any]:
         """Values of an input in its shape and type; of sizes that the file leaves open all are 1 but the last."""
-        kind = _TYPES.get(self._types[name], np.float32)
-        shape = self._shapes[name]
-        if _count(shape):
-            return values.astype(kind).reshape([size if isinstance(size, int) else 1 for size in shape])
-        return values.astype(kind).reshape([1] * max(len(shape) - 1, 0) + [-1])
+        return values.astype(self._types[name]).reshape(self._shapes[name])
 
     def run(self, values: Mapping[str, NDArray[Any]]) -> dict[str, NDArray[Any]]:
         """The outputs, by name, of inputs in their shapes."""
@@ -84,3 +80,11 @@ def _count(shape: Any) -> int:
     if sizes and not isinstance(sizes[0], int):
         sizes[0] = 1
     return int(np.prod(sizes)) if all(isinstance(size, int) for size in sizes) else 0
+
+
+def _shape(shape: Any) -> tuple[int, ...]:
+    """The shape of an input with one for each size that is not told, but for the last one of several."""
+    sizes = [size if isinstance(size, int) else 1 for size in shape]
+    if not _count(shape):
+        sizes = [1] * max(len(sizes) - 1, 0) + [-1]
+    return tuple(sizes)

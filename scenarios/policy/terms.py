@@ -156,6 +156,9 @@ OWN: Mapping[str, Observation] = {
         joint_velocity, last_action, phase, height, constant,
     )
 }  # fmt: skip
+OF_BASE = frozenset(OWN) - {"height"}
+"""Those that need no more than base and joints, but for options."""
+
 TERMS: Registry[Observation] = Registry("surefoot.observations", None, OWN)
 """All terms by name: ours, then those of other packages."""
 

@@ -71,7 +71,9 @@ def check(
         one = Tried(fault, change, trial_or_refusal(mended, network, robot.name))
         tried.append(one)
         on_trial(one)
-    return Checked(given, tuple(tried), _cause(given, tried), asymmetry)
+    suspected = [one for one in tried if one.fault.suspects(contract, robot)]
+    cause = _cause(given, suspected) or _cause(given, tried)
+    return Checked(given, tuple(tried), cause, asymmetry)
 
 
 def _mirror(contract: Contract, network: Path) -> Mirror | None:

@@ -4,8 +4,11 @@ import re
 from collections.abc import Callable, Iterator, Sequence
 from dataclasses import dataclass
 
+import numpy as np
+
 from surefoot.models.types import RobotDescription
 from surefoot.scenarios.policy.contract import Contract, PerJoint, Term
+from surefoot.scenarios.policy.joints import spread
 
 
 @dataclass(frozen=True, slots=True)
@@ -16,11 +19,13 @@ class Fault:
         name: it, in a word or two.
         sign: by which it is known, in words.
         mends: from a contract and its robot to contracts with this mended, each with what was changed.
+        suspects: tells from the contract alone that it is wrong, which no other mend can then make right.
     """
 
     name: str
     sign: str
     mends: Callable[[Contract, RobotDescription], Iterator[tuple[str, Contract]]]
+    suspects: Callable[[Contract, RobotDescription], bool] = lambda *_: False
 
 
 def _changed(contract: Contract, **keys: object) -> Contract:
@@ -141,6 +146,17 @@ def _postures(contract: Contract, robot: RobotDescription) -> Iterator[tuple[str
         yield "action.offset that of default", _changed(contract, action=action)
 
 
+STRAIGHT = 0.02
+"""Knees that are bent by less in the default posture are straight [rad]."""
+
+
+def _straight(contract: Contract, robot: RobotDescription) -> bool:
+    """Whether the default posture stands on straight knees, as no robot does that is to walk."""
+    angles = spread(contract.default, contract.joints, "default")
+    knees = [contract.joints.index(name) for name in robot.roles.knees if name in contract.joints]
+    return bool(knees) and bool((np.abs(angles[knees]) < STRAIGHT).all())
+
+
 def _orders(contract: Contract, robot: RobotDescription) -> Iterator[tuple[str, Contract]]:
     names = contract.joints
     kept = tuple(name for name in robot.joint_names if name in names)
@@ -200,7 +216,7 @@ FAULTS: tuple[Fault, ...] = (
     Fault("sign or scale of actions", "with actions scaled by a factor it walks", _scales),
     Fault("gains", "with other gains it walks", _gains),
     Fault("rate", "with another rate it walks", _rates),
-    Fault("default posture", "with another default posture it walks", _postures),
+    Fault("default posture", "with another default posture it walks", _postures, _straight),
     Fault("unit of the command", "with the command scaled by a factor it goes as fast as told", _commands),
 )
 """What is looked for; of mends that do as well, the first counts."""

@@ -58,8 +58,7 @@ class Policy:
         target: of the joints that it moves, as last decided, shape (m,) [rad, N·m].
 
     Raises:
-        ParameterError: contract, network, robot and rates do not fit together.
-        MissingExtraError: onnxruntime is not installed.
+        ParameterError: contract, network, robot and rates do not fit together, or onnxruntime is not installed.
     """
 
     def __init__(self, walk: Walk, file: str, digest: str | None = None) -> None:
@@ -150,7 +149,7 @@ class Policy:
     def reset(self, q: Array | None) -> None:
         """See `surefoot.scenarios.run.seat.SeatedController`."""
         if q is not None:
-            self._senses = senses_of(placed(self.walk, q), Parts())
+            self._senses = senses_of(placed(self.walk, q) if self.reads else self.walk, Parts())
         self._begin, self._next = math.nan, -math.inf
         self._action, self.target = np.zeros(len(self._moved)), self._offset.copy()
         self._command = JointCommand(np.zeros(len(self.posture)))

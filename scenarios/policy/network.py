@@ -2,14 +2,16 @@
 
 import hashlib
 from collections.abc import Mapping
+from importlib import import_module
 from pathlib import Path
+from types import ModuleType
 from typing import Any
 
 import numpy as np
 from numpy.typing import NDArray
 
 from surefoot.errors import ParameterError
-from surefoot.scenarios.errors import require
+from surefoot.scenarios.errors import install_command
 from surefoot.scenarios.policy.contract import KEY
 
 MOST_BYTES = 1 << 30
@@ -29,12 +31,11 @@ class Network:
         metadata: that the trainer has attached, by name.
 
     Raises:
-        ParameterError: it cannot be read.
-        MissingExtraError: onnxruntime is not installed.
+        ParameterError: it cannot be read, or onnxruntime is not installed.
     """
 
     def __init__(self, path: Path) -> None:
-        onnxruntime = require("onnxruntime", "policy", "a policy")
+        onnxruntime = _engine()
         options = onnxruntime.SessionOptions()
         options.intra_op_num_threads = options.inter_op_num_threads = 1
         options.execution_mode = onnxruntime.ExecutionMode.ORT_SEQUENTIAL
@@ -69,6 +70,15 @@ class Network:
         if beside.is_file():
             found.update(beside.read_bytes())
         return found.hexdigest()
+
+
+def _engine() -> ModuleType:
+    """What runs networks."""
+    try:
+        return import_module("onnxruntime")
+    except ImportError:
+        right = f"install it with: {install_command('policy')}"
+        raise ParameterError(KEY, "a policy needs the package onnxruntime", right) from None
 
 
 _TYPES = {"tensor(float)": np.float32, "tensor(double)": np.float64, "tensor(int64)": np.int64}

@@ -1,5 +1,6 @@
 """A policy that stands, and a scenario that it stands in for a while."""
 
+import os
 import subprocess
 import sys
 from pathlib import Path
@@ -52,9 +53,9 @@ def command(tmp_path):
     """Runs a command in a process of its own; its exit code and what it says."""
 
     def run(*words: str) -> tuple[int, str]:
-        done = subprocess.run(
-            [sys.executable, "-m", "surefoot", *words], cwd=tmp_path, capture_output=True, text=True, check=False
-        )
+        environment = {**os.environ, "PYTHONPATH": str(tmp_path)}
+        asked = [sys.executable, "-m", "surefoot", *words]
+        done = subprocess.run(asked, cwd=tmp_path, env=environment, capture_output=True, text=True, check=False)
         return done.returncode, done.stdout + done.stderr
 
     return run

@@ -7,7 +7,6 @@ import pytest
 
 import surefoot
 from surefoot.errors import ParameterError
-from surefoot.scenarios.errors import MissingExtraError
 from surefoot.scenarios.policy.contract import contract_of, schema
 from surefoot.scenarios.policy.controller import Policy
 from surefoot.scenarios.policy.files import read
@@ -82,7 +81,7 @@ def test_a_file_that_is_none_is_said(tmp_path, name):
 def test_without_onnxruntime_the_extra_is_named(monkeypatch, scenario, stander):
     walk = resolve(load(str(scenario(stander))))
     monkeypatch.setitem(sys.modules, "onnxruntime", None)
-    with pytest.raises(MissingExtraError, match=r"onnxruntime; install it with: .*policy"):
+    with pytest.raises(ParameterError, match=r"onnxruntime; install it with: .*policy"):
         Policy(walk, str(stander))
 
 

@@ -136,3 +136,19 @@ def test_its_log_is_replayed(scenario, stander, tmp_path):
     assert len(replay.time) > 20
     shown = {track.layer for track in replay.tracks if track.shown(10)}
     assert {"CoM", "ZMP", "Contact forces"} <= shown and "DCM" not in shown
+
+
+def test_a_log_does_not_run_again_with_another_network(scenario, stander, policies, command, tmp_path):
+    result = surefoot.run(scenario(stander, duration=0.2), out=tmp_path / "runs")
+    weights = np.zeros((9 + 3 * 29, 29))
+    policies.network(stander.with_name("policy.onnx"), weights, [("obs", len(weights))])
+    code, said = command("run", str(result.log))
+    assert code == 2 and "is not the policy that made the log" in said and "Traceback" not in said
+    assert said.count("\n") == 1
+
+
+def test_without_the_extra_a_run_is_refused_in_one_sentence(scenario, stander, command, tmp_path):
+    (tmp_path / "onnxruntime.py").write_text("raise ImportError('not here')")
+    code, said = command("run", str(scenario(stander)), "--out", "nothing")
+    assert code == 2 and "needs the package onnxruntime" in said and said.count("\n") == 1
+    assert not list((tmp_path / "nothing").iterdir())

@@ -32,7 +32,8 @@ def _changed(contract: Contract, **keys: object) -> Contract:
     return contract.model_copy(update=keys)
 
 
-def _times(value: PerJoint, factor: float) -> PerJoint:
+def times(value: PerJoint, factor: float) -> PerJoint:
+    """Numbers of joints, each so many times as large."""
     if isinstance(value, dict):
         return {name: factor * number for name, number in value.items()}
     if isinstance(value, tuple):
@@ -42,16 +43,16 @@ def _times(value: PerJoint, factor: float) -> PerJoint:
 
 def _scales(contract: Contract, _: RobotDescription) -> Iterator[tuple[str, Contract]]:
     for factor in (-1.0, 0.5, 2.0, 0.25, 4.0, 0.1, 10.0):
-        action = contract.action.model_copy(update={"scale": _times(contract.action.scale, factor)})
+        action = contract.action.model_copy(update={"scale": times(contract.action.scale, factor)})
         yield f"action.scale times {factor:g}", _changed(contract, action=action)
 
 
 def _gains(contract: Contract, _: RobotDescription) -> Iterator[tuple[str, Contract]]:
     for factor in (0.1, 0.2, 0.4, 2.5, 5.0, 10.0):
-        stiffness, damping = _times(contract.stiffness, factor), _times(contract.damping, factor)
+        stiffness, damping = times(contract.stiffness, factor), times(contract.damping, factor)
         yield f"stiffness and damping times {factor:g}", _changed(contract, stiffness=stiffness, damping=damping)
     for factor in (0.1, 10.0):
-        yield f"damping times {factor:g}", _changed(contract, damping=_times(contract.damping, factor))
+        yield f"damping times {factor:g}", _changed(contract, damping=times(contract.damping, factor))
 
 
 def _rates(contract: Contract, _: RobotDescription) -> Iterator[tuple[str, Contract]]:
@@ -60,7 +61,7 @@ def _rates(contract: Contract, _: RobotDescription) -> Iterator[tuple[str, Contr
             yield f"rate {rate:g} Hz", _changed(contract, rate=rate)
 
 
-def _each(contract: Contract, change: Callable[[Term], Term]) -> Contract:
+def changed_terms(contract: Contract, change: Callable[[Term], Term]) -> Contract:
     """The contract with its terms changed."""
     inputs = {name: tuple(map(change, terms)) for name, terms in contract.inputs.items()}
     return _changed(contract, observations=tuple(map(change, contract.observations)), inputs=inputs)
@@ -70,8 +71,8 @@ def _terms(contract: Contract) -> list[Term]:
     return [*contract.observations, *(term for terms in contract.inputs.values() for term in terms)]
 
 
-def _scaled(name: str, factor: float | tuple[float, ...]) -> Callable[[Term], Term]:
-    """Changes the scale of a term."""
+def scaled(name: str, factor: float | tuple[float, ...]) -> Callable[[Term], Term]:
+    """What changes the scale of a term, by one factor or by one for each number."""
 
     def change(term: Term) -> Term:
         if term.term != name:
@@ -109,7 +110,7 @@ def _quaternions(contract: Contract, _: RobotDescription) -> Iterator[tuple[str,
     for term in _terms(contract):
         if term.term == "orientation":
             order = "wxyz" if (term.options or {}).get("order") == "xyzw" else "xyzw"
-            yield f"orientation.order {order}", _each(contract, _optioned("orientation", order=order))
+            yield f"orientation.order {order}", changed_terms(contract, _optioned("orientation", order=order))
 
 
 def _frames(contract: Contract, _: RobotDescription) -> Iterator[tuple[str, Contract]]:
@@ -117,20 +118,20 @@ def _frames(contract: Contract, _: RobotDescription) -> Iterator[tuple[str, Cont
         terms = [term for term in _terms(contract) if term.term == name]
         if not terms:
             continue
-        yield f"{name} with the other sign", _each(contract, _scaled(name, -1.0))
+        yield f"{name} with the other sign", changed_terms(contract, scaled(name, -1.0))
         body = "torso" if (terms[0].options or {}).get("body", "base") == "base" else "base"
-        yield f"{name} of the {body}", _each(contract, _optioned(name, body=body))
+        yield f"{name} of the {body}", changed_terms(contract, _optioned(name, body=body))
         for axis, factors in (("x", (-1.0, 1.0, 1.0)), ("y", (1.0, -1.0, 1.0)), ("z", (1.0, 1.0, -1.0))):
-            yield f"{name} with {axis} turned", _each(contract, _scaled(name, factors))
+            yield f"{name} with {axis} turned", changed_terms(contract, scaled(name, factors))
     for name in ("angular_velocity", "joint_velocity"):
         if any(term.term == name for term in _terms(contract)):
             for factor in (0.05, 0.2, 0.25, 4.0, 5.0, 20.0):
-                yield f"{name} scaled by {factor:g}", _each(contract, _scaled(name, factor))
+                yield f"{name} scaled by {factor:g}", changed_terms(contract, scaled(name, factor))
 
 
 def _commands(contract: Contract, _: RobotDescription) -> Iterator[tuple[str, Contract]]:
     for factor in (0.0174533, 57.2958, 0.5, 2.0, -1.0, 0.1, 10.0):
-        yield f"command scaled by {factor:g}", _each(contract, _scaled("command", factor))
+        yield f"command scaled by {factor:g}", changed_terms(contract, scaled("command", factor))
 
 
 def _postures(contract: Contract, robot: RobotDescription) -> Iterator[tuple[str, Contract]]:
@@ -174,7 +175,7 @@ def reordered(contract: Contract, names: Sequence[str]) -> Contract:
     def other(told: tuple[str, ...] | None) -> tuple[str, ...] | None:
         return None if told is None else tuple(of[name] for name in told)
 
-    changed = _each(contract, lambda term: term.model_copy(update={"joints": other(term.joints)}))
+    changed = changed_terms(contract, lambda term: term.model_copy(update={"joints": other(term.joints)}))
     action = contract.action.model_copy(update={"joints": other(contract.action.joints)})
     return _changed(changed, joints=tuple(names), action=action)
 

@@ -2,10 +2,9 @@
 
 import hashlib
 from collections.abc import Mapping
-from importlib import import_module
 from pathlib import Path
 from types import ModuleType
-from typing import Any
+from typing import Any, cast
 
 import numpy as np
 from numpy.typing import NDArray
@@ -75,10 +74,11 @@ class Network:
 def _engine() -> ModuleType:
     """What runs networks."""
     try:
-        return import_module("onnxruntime")
+        import onnxruntime
     except ImportError:
         right = f"install it with: {install_command('policy')}"
         raise ParameterError(KEY, "a policy needs the package onnxruntime", right) from None
+    return cast("ModuleType", onnxruntime)
 
 
 _TYPES = {"tensor(float)": np.float32, "tensor(double)": np.float64, "tensor(int64)": np.int64}

@@ -108,7 +108,7 @@ def seat_loop(walk: Walk, writer: LogWriter, parts: Parts | None = None) -> Clos
     nj = len(walk.robot.joint_names)
     sizes = Sizes(nj=nj, nq=7 + nj, nv=6 + nj, horizon=1, nf=len(walk.robot.couplings))
     writer.attach(AttachedFile(WORLD_FILE, "application/xml", world.mjcf().encode()))
-    parameters = {name: json.dumps(value) for name, value in controller.parameters.items()}
+    parameters = {str(name): json.dumps(value) for name, value in controller.parameters.items()}
     writer.add_metadata(SEAT_RECORD, {"name": name_of(walk), **parameters})
     recorder, view = (
         SeatRecorder(writer, sizes, walk.robot.torque_limit),
@@ -225,6 +225,7 @@ class Seated(Moved):
         coupled: CouplingRecorder | None,
     ) -> None:
         super().__init__(walk, plant, sensors, known=False)
+        self._guard = CONTROLLERS.guard(name_of(walk))
         self.mind, self._recorder, self._view = controller, recorder, view
         self._sensed, self._coupled = sensed, coupled
         self._felt = FeltGait(walk.true_mass, walk.size)
@@ -294,7 +295,8 @@ class Seated(Moved):
             self._heard = False
         told = getattr(self.mind, "told", None)
         if told is not None and told is not self._told:
-            recorder.told(now_ns, told)
+            with self._guard:
+                recorder.told(now_ns, told)
             self._told = told
         if self._coupled is not None:
             self._coupled.tick(now_ns)

@@ -152,3 +152,12 @@ def test_without_the_extra_a_run_is_refused_in_one_sentence(scenario, stander, c
     code, said = command("run", str(scenario(stander)), "--out", "nothing")
     assert code == 2 and "needs the package onnxruntime" in said and said.count("\n") == 1
     assert not list((tmp_path / "nothing").iterdir())
+
+
+def test_a_command_that_was_never_heard_is_said(scenario, stander, tmp_path):
+    push, commands = [{"time": 0.1, "impulse": 2.0}], [{"time": time, "v_x": 0.0} for time in (0.05, 1.9)]
+    result = surefoot.run(scenario(stander, commands=commands, pushes=push, duration=2.0), out=tmp_path / "runs")
+    assert result.verdict["fell"]
+    assert [reason for reason in result.verdict.reasons if "did not hear it" in reason] == [
+        "commands.1 came at 1.9 s and never acted: the controller did not hear it"
+    ]

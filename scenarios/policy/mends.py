@@ -10,6 +10,15 @@ from surefoot.models.types import RobotDescription
 from surefoot.scenarios.policy.contract import Contract, PerJoint, Term
 from surefoot.scenarios.policy.joints import spread
 
+ACTION_FACTORS = (-1.0, 0.5, 2.0, 0.25, 4.0, 0.1, 10.0)
+"""Of the scale of actions that are tried [-]."""
+
+GAIN_FACTORS = (0.1, 0.2, 0.4, 2.5, 5.0, 10.0)
+"""Of stiffness and damping that are tried [-]."""
+
+RATES = (25.0, 50.0, 100.0, 200.0)
+"""Decisions in a second that are tried [Hz]."""
+
 
 @dataclass(frozen=True, slots=True)
 class Fault:
@@ -42,13 +51,13 @@ def times(value: PerJoint, factor: float) -> PerJoint:
 
 
 def _scales(contract: Contract, _: RobotDescription) -> Iterator[tuple[str, Contract]]:
-    for factor in (-1.0, 0.5, 2.0, 0.25, 4.0, 0.1, 10.0):
+    for factor in ACTION_FACTORS:
         action = contract.action.model_copy(update={"scale": times(contract.action.scale, factor)})
         yield f"action.scale times {factor:g}", _changed(contract, action=action)
 
 
 def _gains(contract: Contract, _: RobotDescription) -> Iterator[tuple[str, Contract]]:
-    for factor in (0.1, 0.2, 0.4, 2.5, 5.0, 10.0):
+    for factor in GAIN_FACTORS:
         stiffness, damping = times(contract.stiffness, factor), times(contract.damping, factor)
         yield f"stiffness and damping times {factor:g}", _changed(contract, stiffness=stiffness, damping=damping)
     for factor in (0.1, 10.0):
@@ -56,7 +65,7 @@ def _gains(contract: Contract, _: RobotDescription) -> Iterator[tuple[str, Contr
 
 
 def _rates(contract: Contract, _: RobotDescription) -> Iterator[tuple[str, Contract]]:
-    for rate in (25.0, 50.0, 100.0, 200.0):
+    for rate in RATES:
         if abs(rate - contract.rate) > 0.1 * rate:
             yield f"rate {rate:g} Hz", _changed(contract, rate=rate)
 

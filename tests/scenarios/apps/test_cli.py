@@ -61,8 +61,8 @@ def test_list(surefoot):
     code, out, _ = surefoot("list")
     assert code == 0
     assert "diagonal-walk" in out
-    assert "robot     humanoid100" in out
-    assert "profile   repaired" in out
+    assert "robot      humanoid100" in out
+    assert "profile    repaired" in out
     assert "metric " not in out, "every verdict shows ours"
     summaries = [line for line in out.splitlines() if line.startswith(("scenario ", "control "))]
     assert len(summaries) == len(catalogue.OWN) + len(catalogue.CONTROLS)

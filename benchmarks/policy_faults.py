@@ -16,9 +16,10 @@ from surefoot.scenarios.policy.check import check
 from surefoot.scenarios.policy.contract import Contract
 from surefoot.scenarios.policy.files import read
 from surefoot.scenarios.policy.mends import changed_terms, depths, reordered, scaled, times
+from surefoot.scenarios.record.provenance import versions
 from surefoot.scenarios.setup.robot import describe
 
-HEADS = ("policy", "planted", "fault", "named", "mend", "stood", "lasted")
+HEADS = ("policy", "planted", "up [s]", "wanted", "named", "by")
 OUT = Path(__file__).parents[1] / "docs" / "results" / "policy-faults.csv"
 
 
@@ -66,8 +67,8 @@ def rows_of(name: str, path: Path, robot: RobotDescription) -> Iterator[dict[str
         found = check(contract, files.network, robot)
         named = "" if found.cause is None else found.cause.fault.name
         mend = "" if found.cause is None else found.cause.change
-        stood, lasted = f"{found.given.stood:.2f}", f"{found.given.lasted:.2f}"
-        yield dict(zip(HEADS, (name, what, fault, named, mend, stood, lasted), strict=True))
+        up = f"{found.given.stood:.2f} of {found.given.lasted:.2f}"
+        yield dict(zip(HEADS, (name, what, up, fault, named, mend), strict=True))
 
 
 def main() -> None:
@@ -81,7 +82,7 @@ def main() -> None:
     kept = []
     if told.out.is_file():
         with told.out.open(encoding="utf-8") as file:
-            kept = list(csv.DictReader(file))
+            kept = list(csv.DictReader(line for line in file if not line.startswith("# ")))
     for given in told.policies:
         name, _, path = given.partition("=")
         kept = [row for row in kept if row["policy"] != name]
@@ -89,6 +90,9 @@ def main() -> None:
             kept.append(row)
             print(*row.values(), sep=" | ", flush=True)
             with told.out.open("w", encoding="utf-8", newline="") as file:
+                code = versions()
+                file.write("# python -m benchmarks.policy_faults NAME=CONTRACT\n")
+                file.write(f"# surefoot {code['surefoot']}, source_digest {code['source_digest']}\n")
                 writer = csv.DictWriter(file, HEADS, lineterminator="\n")
                 writer.writeheader()
                 writer.writerows(kept)

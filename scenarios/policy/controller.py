@@ -65,7 +65,7 @@ class Policy:
         files: Files = read(Path(file), walk.robot.joint_names)
         self.walk, self.contract = walk, files.contract
         self.network = Network(files.network)
-        found = files.digest(self.network)
+        found = files.digest()
         if digest is not None and digest != found:
             what = f"{file} is not the policy that made the log: its digest is {found[:12]}, not {digest[:12]}"
             raise ParameterError(KEY, what, "give the files of then, or leave out controller.digest")

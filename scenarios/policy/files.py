@@ -11,10 +11,13 @@ import yaml
 from surefoot.errors import ParameterError
 from surefoot.scenarios.policy import leapp, unitree
 from surefoot.scenarios.policy.contract import KEY, Contract, contract_of
-from surefoot.scenarios.policy.network import Network
+from surefoot.scenarios.policy.network import file_digest
 
 _NAMES = ("contract.yaml", "walker.yaml", "policy.yaml", "deploy.yaml", "params/deploy.yaml")
 """Files that a folder is looked through for, in this order; then the only YAML file in it."""
+
+_MOST_JOINTS = 1000
+"""No robot has more."""
 
 MOST_BYTES = 1 << 20
 """A longer file is no contract."""
@@ -34,9 +37,9 @@ class Files:
     contract: Contract
     network: Path
 
-    def digest(self, network: Network) -> str:
+    def digest(self) -> str:
         """SHA-256 of contract and network."""
-        return hashlib.sha256(self.path.read_bytes() + network.digest().encode()).hexdigest()
+        return hashlib.sha256(self.path.read_bytes() + file_digest(self.network).encode()).hexdigest()
 
 
 class _Loader(yaml.SafeLoader):
@@ -62,6 +65,14 @@ def read(path: Path, joint_names: Sequence[str]) -> Files:
     contract = contract_of(made, str(file))
     network = Path(contract.network)
     return Files(file, contract, network if network.is_absolute() else file.parent / network)
+
+
+def digest_of(path: str) -> str:
+    """Digest of a policy as it is on the disk now, of what is wrong with it if it cannot be read."""
+    try:
+        return read(Path(path), [f"joint {number}" for number in range(_MOST_JOINTS)]).digest()
+    except (ParameterError, OSError) as error:
+        return f"{type(error).__name__}: {error}"
 
 
 def named_robot(path: Path) -> str | None:

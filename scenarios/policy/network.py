@@ -62,13 +62,14 @@ class Network:
         """The outputs, by name, of inputs in their shapes."""
         return dict(zip(self._names, self._session.run(self._names, dict(values)), strict=True))
 
-    def digest(self) -> str:
-        """SHA-256 of the file, and of the weights beside it."""
-        found = hashlib.sha256(self.path.read_bytes())
-        beside = self.path.with_name(f"{self.path.name}.data")
-        if beside.is_file():
-            found.update(beside.read_bytes())
-        return found.hexdigest()
+
+def file_digest(path: Path) -> str:
+    """SHA-256 of a network's file, and of the weights beside it."""
+    found = hashlib.sha256(path.read_bytes())
+    beside = path.with_name(f"{path.name}.data")
+    if beside.is_file():
+        found.update(beside.read_bytes())
+    return found.hexdigest()
 
 
 def _engine() -> ModuleType:

@@ -161,3 +161,18 @@ def test_a_command_that_was_never_heard_is_said(scenario, stander, tmp_path):
     assert [reason for reason in result.verdict.reasons if "did not hear it" in reason] == [
         "commands.1 came at 1.9 s and never acted: the controller did not hear it"
     ]
+
+
+def test_a_campaign_goes_on_with_another_policy_anew(scenario, policies, command, tmp_path):
+    walk, folder = scenario(None, duration=0.6), tmp_path / "policy"
+    spec = {"name": "yaws", "scenario": str(walk), "grid": {"start.yaw": [0.0, 0.1]}}
+    (tmp_path / "yaws.yaml").write_text(yaml.safe_dump(spec))
+    asked = ("sweep", "yaws.yaml", "--policy", str(folder), "--jobs", "1", "--out", "swept", "--json")
+    policies.stander(folder)
+    code, first = command(*asked)
+    assert code == 0, first
+    code, again = command(*asked)
+    assert (code, again) == (0, first)
+    policies.stander(folder, stiffness=1.0)
+    code, limp = command(*asked)
+    assert limp != first and '"fail"' in limp, limp

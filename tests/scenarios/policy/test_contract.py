@@ -1,6 +1,7 @@
 """A contract is held against its network and its robot before anything walks; what does not fit is one sentence."""
 
 import sys
+from pathlib import Path
 
 import numpy as np
 import pytest
@@ -10,6 +11,8 @@ from surefoot.errors import ParameterError
 from surefoot.scenarios.policy.contract import contract_of, schema
 from surefoot.scenarios.policy.controller import Policy
 from surefoot.scenarios.policy.files import read
+from surefoot.scenarios.policy.joints import Joints
+from surefoot.scenarios.policy.terms import TERMS
 from surefoot.scenarios.setup.load import load
 from surefoot.scenarios.setup.walk import resolve
 
@@ -140,3 +143,15 @@ def test_unitree_numbers_joints_by_motor(policies, tmp_path):
     np.testing.assert_allclose(contract.stiffness, [policies.STIFF * limit[name] for name in contract.joints])
     assert [term.history for term in contract.observations] == [5] * 6
     assert contract.rate == 50.0
+
+
+@pytest.mark.parametrize("name", ["falcon", "openwbt"])
+def test_the_contracts_of_the_documentation_are_of_the_g1(name):
+    from surefoot.models import RobotOptions, describe
+
+    file = Path(__file__).parents[3] / "docs" / "policies" / f"{name}.yaml"
+    robot = describe("g1", RobotOptions())
+    contract = read(file, robot.joint_names).contract
+    joints = Joints(contract, robot)
+    assert joints.posture.shape == (29,) and (joints.stiffness > 0.0).all()
+    assert {term.term for term in contract.observations} <= set(TERMS)

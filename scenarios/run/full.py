@@ -159,7 +159,8 @@ class WholeBody(Moved, Planned):
             command = mind.step(self._readings, driven_joints=theirs if self._told else None)
             command = command.with_joints(somebody.joints, theirs)
         self._truth = self._own_truth or mind.terms
-        self._command = self._no_torque if self.lost(tick, "torque_loss") else command
+        lost = self._faults is not None and self._faults.active("torque_loss", tick)
+        self._command = self._no_torque if lost else command
         if self.foreign:
             self.measurement = completed(self.measurement, mind.wrench, self._command.torque)
         return mind.sample, mind.spent
@@ -173,10 +174,6 @@ class WholeBody(Moved, Planned):
         if self._sensed is not None and isinstance(self._readings, Readings):
             forces = self.measurement.wrench[:, 2]
             self._sensed.tick(now_ns, self._readings, mind.estimate, mind.wrench, terms, truth, forces)
-
-    def fallen(self, sample: PlanSample) -> bool:
-        """See `Walker`."""
-        return self.lies()
 
     def draw(self, tick: int, now_ns: int, plan: WalkPlan, sample: PlanSample, fallen: bool) -> None:
         """See `Walker`."""

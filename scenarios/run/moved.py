@@ -87,8 +87,8 @@ class Moved:
         """Whether a fault of a kind acts at a control tick."""
         return self._faults is not None and self._faults.active(kind, tick)
 
-    def lies(self) -> bool:
-        """Whether the robot has fallen."""
+    def fallen(self, sample: object) -> bool:
+        """See `surefoot.scenarios.run.skeleton.Walker`."""
         terms = self._truth
         soles = terms.sole_position
         height = terms.com.item(2) - min(soles.item(2), soles.item(5))

@@ -303,14 +303,10 @@ class Seated(Moved):
         if self._sensed is not None and isinstance(self._readings, Readings):
             self._sensed.tick(now_ns, self._readings)
 
-    def fallen(self, sample: None) -> bool:
-        """See `Walker`."""
-        return self.lies()
-
     def draw(self, tick: int, now_ns: int, plan: WalkPlan | None, sample: None, fallen: bool) -> None:
         """See `Walker`."""
         self._view.events(now_ns, self.measurement, self._felt.contact, fallen)
-        self._view.bodies(tick, now_ns, self.measurement, self._truth)
+        self._view.picture(tick, now_ns, self.measurement, self._truth)
 
     def look(self) -> Look:
         """See `Walker`."""

@@ -9,7 +9,6 @@ from typing import Any, Literal, Protocol, TypeVar
 
 from surefoot.errors import PartError
 from surefoot.forces import Push
-from surefoot.planner.plan import WalkPlan
 from surefoot.planner.steps.commands import Command
 from surefoot.planner.types import PhaseInfo, PhaseKind
 from surefoot.scenarios.errors import SetupError
@@ -283,7 +282,10 @@ class ClosedLoop:
         if self._pushes:
             self._push(now, *walker.gait)
         walker.record(now_ns, sample)
-        plan = self._referred(now_ns, sample)
+        planning = self.planning
+        plan = None if planning is None else planning.plan
+        if planning is not None and planning.recorder is not None:
+            planning.recorder.reference(now_ns, planning.plan, sample)
         fallen = walker.fallen(sample)
         walker.draw(tick, now_ns, plan, sample, fallen)
         logged = clock()
@@ -294,15 +296,6 @@ class ClosedLoop:
         log = logged - decided
         recorder.timing(now_ns, (state, build, solve, plan_time, end - logged, log, end - begin, 1e-9 * busy))
         return fallen
-
-    def _referred(self, now_ns: int, sample: Any) -> WalkPlan | None:
-        """The plan that is followed, its reference recorded; None without one."""
-        planning = self.planning
-        if planning is None:
-            return None
-        if planning.recorder is not None:
-            planning.recorder.reference(now_ns, planning.plan, sample)
-        return planning.plan
 
     def _push(self, now: float, since: float, phase: PhaseInfo) -> None:
         """Give the pushes whose point of the gait is reached before the next tick."""

@@ -100,9 +100,7 @@ class PointView:
 
     def events(self, time_ns: int, contact: tuple[bool, bool], force: Array, plan: WalkPlan, lost: bool) -> None:
         """Say what has changed since the last control tick; ``force`` is the push, shape (2,) [N]."""
-        self._events.update(
-            time_ns, contact, bool(np.dot(force, force)), plan.status.solver is _HELD, plan.status.falling, lost
-        )
+        self._events.update(time_ns, contact, force, plan.status.solver is _HELD, plan.status.falling, lost)
 
     def picture(
         self, tick: int, time_ns: int, com: Array, com_velocity: Array, zmp: Array, plan: WalkPlan, sample: PlanSample
@@ -126,18 +124,19 @@ class EventLog:
         self._last = ((True, True), False, False, False, False)
 
     def update(
-        self, time_ns: int, contact: tuple[bool, bool], pushed: bool, fallback: bool, falling: bool, fallen: bool
+        self, time_ns: int, contact: tuple[bool, bool], force: Array, fallback: bool, falling: bool, fallen: bool
     ) -> None:
         """Say what has changed since the last call; before the first one the robot stood in peace.
 
         Args:
             time_ns: simulated time [ns].
             contact: feet that stand, (left, right).
-            pushed: whether a push acts.
+            force: sum of pushes, shape (2,) or (3,) [N]; NaN, of a plant that does not tell, is none.
             fallback: whether the controller or the planner goes on without a solution.
             falling: whether the planner knows that a fall is coming.
             fallen: whether the robot has fallen.
         """
+        pushed = bool(force.dot(force) > 0.0)
         now = (contact, pushed, fallback, falling, fallen)
         if now == self._last:
             return
@@ -224,21 +223,35 @@ class RobotView:
         self._scene_every = round(control_rate * (period if writer.keep is None else min(period, writer.keep)))
         self._levers = np.zeros((2, 3, 2))
 
-    def bodies(self, tick: int, time_ns: int, measurement: Measurement, terms: RobotTerms) -> bool:
-        """Draw a control tick, if it is one that is drawn, which it says; ``terms`` are those of the true state.
+    def picture(
+        self,
+        tick: int,
+        time_ns: int,
+        measurement: Measurement,
+        terms: RobotTerms,
+        plan: WalkPlan | None = None,
+        sample: PlanSample | None = None,
+    ) -> None:
+        """Draw a control tick, if it is one that is drawn; ``terms`` are those of the true state.
 
         The first is the one after that of the first plan, so that hardly a tick makes both a plan and a picture.
         """
         if tick % self._scene_every == 0:
             self._scene.append(time_ns, self._scene_data)
         if (tick - 1) % self.every:
-            return False
+            return
         m, poses = measurement, self._poses
         poses.update(m.q)
         self._tf.append(time_ns, np.concatenate((poses.position.ravel(), poses.quaternion.ravel())))
         self._joints.append(time_ns, np.concatenate((m.joint_position, m.joint_velocity, m.joint_torque)))
         self._forces.append(time_ns, self._arrows(m, terms))
-        return True
+        if plan is not None and sample is not None:
+            self._planned(time_ns, measurement, terms, plan, sample)
+
+    def _planned(
+        self, time_ns: int, measurement: Measurement, terms: RobotTerms, plan: WalkPlan, sample: PlanSample
+    ) -> None:
+        """Draw what is planned, where something is."""
 
     def _arrows(self, m: Measurement, terms: RobotTerms) -> tuple[float, ...]:
         """Contact forces and push as arrows."""
@@ -262,7 +275,8 @@ class SeatView(RobotView):
 
     def events(self, time_ns: int, measurement: Measurement, contact: tuple[bool, bool], fallen: bool) -> None:
         """Say what has changed since the last control tick; feet that stand are (left, right)."""
-        self._events.update(time_ns, contact, _is_pushed(measurement), fallback=False, falling=False, fallen=fallen)
+        force = measurement.external_force
+        self._events.update(time_ns, contact, force, fallback=False, falling=False, fallen=fallen)
 
 
 class BodyView(RobotView):
@@ -275,21 +289,12 @@ class BodyView(RobotView):
 
     def events(self, time_ns: int, measurement: Measurement, report: WbcReport, plan: WalkPlan, fallen: bool) -> None:
         """Say what has changed since the last control tick."""
-        pushed, status = _is_pushed(measurement), plan.status
+        force, status = measurement.external_force, plan.status
         fallback = report.status >= _FALLBACK or status.solver is _HELD
-        self._events.update(time_ns, report.active, pushed, fallback, status.falling, fallen)
+        self._events.update(time_ns, report.active, force, fallback, status.falling, fallen)
 
-    def picture(
-        self, tick: int, time_ns: int, measurement: Measurement, terms: RobotTerms, plan: WalkPlan, sample: PlanSample
+    def _planned(
+        self, time_ns: int, measurement: Measurement, terms: RobotTerms, plan: WalkPlan, sample: PlanSample
     ) -> None:
-        """Draw a control tick, if it is one that is drawn; ``terms`` are those of the true state."""
-        if not self.bodies(tick, time_ns, measurement, terms):
-            return
         zmp = measured_zmp(measurement.wrench, terms.sole_position, terms.sole_rotation)
         self._walk.update(time_ns, terms.com, terms.com_velocity, zmp, plan, sample)
-
-
-def _is_pushed(measurement: Measurement) -> bool:
-    """Whether a push acts, which is not so of a plant that does not tell."""
-    x, y, z = measurement.external_force.tolist()
-    return bool(x * x + y * y + z * z > 0.0)

@@ -19,7 +19,7 @@ gate: $(VENV)/.installed-dev
 	$(BIN)/ruff format --check .
 	$(BIN)/mypy
 	$(BIN)/lint-imports
-	$(BIN)/deptry planner wbc sim models scenarios surefoot
+	$(BIN)/deptry planner wbc sim models scenarios studies apps surefoot
 	$(BIN)/deptry tests benchmarks docs $(wildcard examples) --exclude runs --ignore DEP002,DEP004
 
 # All at once is quicker than one tier after the other: each begins with reading all tests.

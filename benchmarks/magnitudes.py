@@ -15,8 +15,8 @@ from pathlib import Path
 from unittest.mock import patch
 
 from benchmarks.robots import MODELS, found
+from surefoot.apps.robots.draft import draft
 from surefoot.models.robot_file import magnitudes
-from surefoot.models.robot_file.draft import draft
 from surefoot.models.robot_file.magnitudes import Law
 from surefoot.models.types import RobotError
 from surefoot.scenarios.record.provenance import relevant_versions

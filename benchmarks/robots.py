@@ -18,16 +18,15 @@ from pathlib import Path
 
 import yaml
 
-from surefoot.models.robot_file.draft import draft
+from surefoot.apps.robots.draft import draft
+from surefoot.apps.robots.examine import examine, known
 from surefoot.models.types import RobotError
-from surefoot.scenarios.apps.robots.examine import examine, known
 from surefoot.scenarios.errors import LogError, ScenarioError, SetupError
 from surefoot.scenarios.output import write_whole
 from surefoot.scenarios.record.provenance import relevant_versions
+from surefoot.scenarios.run.processes import cores, side_by_side
 from surefoot.scenarios.run.run import run_scenario
 from surefoot.scenarios.setup.load import load
-from surefoot.scenarios.study.campaigns.engine import side_by_side
-from surefoot.scenarios.study.campaigns.sweep import cores
 
 IMPULSE = 0.1
 """Of each push, over the robot's mass [N s/kg]."""

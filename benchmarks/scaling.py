@@ -20,9 +20,9 @@ from surefoot.scenarios.run import run as running
 from surefoot.scenarios.run.run import closed_loop, one_thread
 from surefoot.scenarios.setup.load import load, written
 from surefoot.scenarios.setup.walk import resolve
-from surefoot.scenarios.study.campaigns.campaign import Base
-from surefoot.scenarios.study.campaigns.engine import perform
-from surefoot.scenarios.study.campaigns.points import Point
+from surefoot.studies.campaigns.campaign import Base
+from surefoot.studies.campaigns.engine import perform
+from surefoot.studies.campaigns.points import Point
 
 STANCE = FeetState(np.array([[0.0, 0.1, 0.0], [0.0, -0.1, 0.0]]), np.zeros(2), (True, True))
 FRESH, STANDING = 60, 200

@@ -15,7 +15,7 @@ from surefoot.scenarios.log import LogWriter
 from surefoot.scenarios.record.body import Recorder
 from surefoot.scenarios.record.foxglove.views import BodyView
 from surefoot.scenarios.record.walk import WalkRecorder
-from surefoot.scenarios.run import controller
+from surefoot.scenarios.run import controller, full
 from surefoot.scenarios.run.run import closed_loop, one_thread
 from surefoot.scenarios.run.sensed import Senses
 from surefoot.scenarios.run.skeleton import ClosedLoop
@@ -36,7 +36,7 @@ PARTS: dict[str, tuple[tuple[type | ModuleType, str], ...]] = {
     "whole-body QP": ((WholeBodyController, "update"),),
     "logging": ((Recorder, "tick"), (WalkRecorder, "reference")),
     "viewers' channels": ((BodyView, "events"), (BodyView, "picture")),
-    "physics steps": ((World, "advance"),),
+    "physics steps": ((World, "act"),),
 }
 """Methods and functions of the loop by what they do; one that compiled code goes past takes no time here."""
 
@@ -78,6 +78,7 @@ def _time(stack: ExitStack, owner: type | ModuleType, method: str, spent: list[f
         stack.enter_context(patch.object(owner, method, timed))
         return
     below = type(owner.__name__, (owner,), {method: timed})
+    assert full.__name__ in sys.modules  # compiled modules look a class up when they are imported
     for module in list(sys.modules.values()):
         for name in [name for name, value in vars(module).items() if value is owner]:
             stack.enter_context(patch.object(module, name, below))

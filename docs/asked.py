@@ -11,7 +11,7 @@ from typing import Any
 import yaml
 from page_table import table
 
-from surefoot.scenarios.study.campaigns.spec import with_unit
+from surefoot.studies.campaigns.spec import with_unit
 
 ROOT = Path(__file__).parents[1]
 RUNS = ROOT / "tests" / "scenarios" / "run"
@@ -120,7 +120,7 @@ def lasting_table() -> str:
 
 
 def _campaign(name: str) -> Any:
-    path = ROOT / "scenarios" / "study" / "campaigns" / "campaigns" / f"{name}.yaml"
+    path = ROOT / "studies" / "campaigns" / "campaigns" / f"{name}.yaml"
     return yaml.safe_load(path.read_text(encoding="utf-8"))
 
 

@@ -22,12 +22,12 @@ from surefoot.planner.recovery.falling import counted, falling
 from surefoot.planner.types import Balance
 from surefoot.scenarios.log import read
 from surefoot.scenarios.record.provenance import RunConstants, relevant_versions
-from surefoot.scenarios.study.campaigns.campaign import read_campaign
-from surefoot.scenarios.study.campaigns.sweep import sweep
-from surefoot.scenarios.study.tour.ride import Ride
-from surefoot.scenarios.study.tour.rows import ROWS
-from surefoot.scenarios.study.tour.rules import DURATION
 from surefoot.similarity import Similarity
+from surefoot.studies.campaigns.campaign import read_campaign
+from surefoot.studies.campaigns.sweep import sweep
+from surefoot.studies.tour.ride import Ride
+from surefoot.studies.tour.rows import ROWS
+from surefoot.studies.tour.rules import DURATION
 
 FOLDER = Path(__file__).parent
 KEPT = FOLDER / "results" / "given-up.csv"

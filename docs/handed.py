@@ -13,8 +13,9 @@ from surefoot.planner.references.zmp_reference import ZmpReference
 from surefoot.planner.types import CentroidalState, FeetState
 from surefoot.sim.measurement import Measurement
 from surefoot.wbc.model import RobotTerms
+from surefoot.wbc.reference import WbcReference
 from surefoot.wbc.tasks.task import Task
-from surefoot.wbc.types import RobotState, WbcReference
+from surefoot.wbc.types import RobotState
 
 
 @dataclass(frozen=True, slots=True)

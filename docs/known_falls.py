@@ -15,8 +15,8 @@ from typing import NamedTuple
 
 from surefoot.scenarios.judge.inspection import inspect
 from surefoot.scenarios.log import read
-from surefoot.scenarios.study.campaigns.campaign import read_campaign
-from surefoot.scenarios.study.campaigns.sweep import sweep
+from surefoot.studies.campaigns.campaign import read_campaign
+from surefoot.studies.campaigns.sweep import sweep
 
 FOLDER = Path(__file__).parent
 KEPT = FOLDER / "results" / "known-falls.csv"

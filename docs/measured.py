@@ -18,10 +18,10 @@ from typing import Any, NamedTuple
 
 from surefoot.scenarios.judge.metrics import OWN
 from surefoot.scenarios.log import read
-from surefoot.scenarios.study.campaigns.campaign import read_campaign
-from surefoot.scenarios.study.campaigns.capturability import Limits
-from surefoot.scenarios.study.campaigns.spec import Axis
-from surefoot.scenarios.study.campaigns.thresholds import Found, Threshold
+from surefoot.studies.campaigns.campaign import read_campaign
+from surefoot.studies.campaigns.capturability import Limits
+from surefoot.studies.campaigns.spec import Axis
+from surefoot.studies.campaigns.thresholds import Found, Threshold
 
 RESULTS = Path(__file__).parent / "results"
 

@@ -22,6 +22,7 @@ from pydantic.fields import FieldInfo
 from surefoot.models.robot_file.schema import RobotFile
 from surefoot.planner.laws.profiles import PROFILES, Profile
 from surefoot.scenarios import catalogue
+from surefoot.scenarios.check.signs import SIGNS
 from surefoot.scenarios.file.schema import (
     CommandSettings,
     Fault,
@@ -43,9 +44,8 @@ from surefoot.scenarios.policy.terms import OWN as TERMS
 from surefoot.scenarios.policy.terms import meaning
 from surefoot.scenarios.record import channels
 from surefoot.scenarios.record.channels import Sizes
-from surefoot.scenarios.study.checks.signs import SIGNS
-from surefoot.scenarios.study.tour.page import markdown
 from surefoot.sim.sensor_errors import PRESETS, SensorErrors
+from surefoot.studies.tour.page import markdown
 
 sys.path.insert(0, str(Path(__file__).parent))
 import asked

@@ -14,8 +14,8 @@ from page_table import table
 
 from surefoot.models.robot_file import magnitudes
 from surefoot.scenarios.judge.metrics import OWN
-from surefoot.scenarios.study.campaigns.spec import text
-from surefoot.scenarios.study.campaigns.thresholds import Found
+from surefoot.studies.campaigns.spec import text
+from surefoot.studies.campaigns.thresholds import Found
 
 LIMITS = Path(__file__).parents[1] / "benchmarks" / "limits.json"
 

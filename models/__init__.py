@@ -5,8 +5,15 @@ from typing import TYPE_CHECKING
 from surefoot.lazy import face
 
 if TYPE_CHECKING:
-    from surefoot.models.registry import ROBOTS, UnknownRobotError, describe, explain, robot_names
-    from surefoot.models.types import JointRoles, Robot, RobotDescription, RobotError, RobotOptions
+    from surefoot.models.registry import ROBOTS, describe, explain, robot_names
+    from surefoot.models.types import (
+        JointRoles,
+        Robot,
+        RobotDescription,
+        RobotError,
+        RobotOptions,
+        UnknownRobotError,
+    )
 
 __all__ = [
     "ROBOTS",
@@ -25,7 +32,7 @@ if not TYPE_CHECKING:  # a type checker shall still refuse names that are not th
     __getattr__, __dir__ = face(
         __name__,
         {
-            "registry": ("ROBOTS", "UnknownRobotError", "describe", "explain", "robot_names"),
-            "types": ("JointRoles", "Robot", "RobotDescription", "RobotError", "RobotOptions"),
+            "registry": ("ROBOTS", "describe", "explain", "robot_names"),
+            "types": ("JointRoles", "Robot", "RobotDescription", "RobotError", "RobotOptions", "UnknownRobotError"),
         },
     )

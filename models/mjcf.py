@@ -10,7 +10,6 @@ import math
 from collections.abc import Iterable, Iterator, Mapping
 from dataclasses import dataclass
 from enum import Enum
-from functools import lru_cache
 from xml.etree import ElementTree
 
 from surefoot.models.actuator import Actuator
@@ -161,7 +160,6 @@ def add_couplings(root: ElementTree.Element, couplings: Iterable[Coupling]) -> N
         ElementTree.SubElement(section, "joint", {**ends, **law})
 
 
-@lru_cache(maxsize=8)
 def without_looks(mjcf: str) -> str:
     """A robot's text without the meshes that are only drawn; one without such meshes as it is."""
     root = ElementTree.fromstring(mjcf)

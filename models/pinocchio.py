@@ -67,12 +67,11 @@ def limb_shapes(description: RobotDescription) -> pin.GeometryModel:
 
 @lru_cache(maxsize=8)
 def _read(mjcf: str) -> pin.Model:
-    """The model of a text, which has all meshes in it; run after run of a campaign is of the same robot."""
+    """The model of a text, kept since several parts of a run ask for it, and it takes 30 ms."""
     with _file(mjcf) as path:
         return pin.buildModelFromMJCF(path)
 
 
-@lru_cache(maxsize=8)
 def _shapes(mjcf: str) -> pin.GeometryModel:
     """Contact shapes of a text, on the joints of its model."""
     with _file(mjcf) as path:

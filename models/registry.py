@@ -8,32 +8,37 @@ Another package needs one file, with a function from options to a description, a
 
 from functools import partial
 from pathlib import Path
-from typing import TYPE_CHECKING
 
 from surefoot.guard import taken_for
 from surefoot.models import names
 from surefoot.models.humanoid100 import HUMANOID100
 from surefoot.models.names import SHIPPED, is_file
-from surefoot.models.types import Robot, RobotDescription, RobotError, RobotOptions, nearest
+from surefoot.models.types import (
+    Explanation,
+    Robot,
+    RobotDescription,
+    RobotError,
+    RobotOptions,
+    UnknownRobotError,
+    nearest,
+)
 
-if TYPE_CHECKING:
-    from surefoot.models.robot_file.build import Explanation
+
+def _explained(path: Path, options: RobotOptions) -> Explanation:
+    """The robot of a file, which is read by what no other robot needs."""
+    from surefoot.models.robot_file.build import explain
+
+    return explain(path, options, describe)
 
 
 def _of_file(path: Path, options: RobotOptions) -> RobotDescription:
-    from surefoot.models.robot_file.build import describe_file
-
-    return describe_file(path, options)
+    return _explained(path, options).description
 
 
 ROBOTS = names.ROBOTS.filled(
     Robot,
     {HUMANOID100.name: HUMANOID100, **{name: Robot(name, partial(_of_file, file)) for name, file in SHIPPED.items()}},
 )
-
-
-class UnknownRobotError(LookupError):
-    """No robot has that name."""
 
 
 def robot_names() -> tuple[str, ...]:
@@ -63,14 +68,12 @@ def describe(name: str, options: RobotOptions) -> RobotDescription:
     return description
 
 
-def explain(name: str) -> "Explanation":
+def explain(name: str) -> Explanation:
     """A robot by name or robot file, with what of its description was derived and what else is to be known.
 
     Raises:
         UnknownRobotError, PluginError, RobotError: as of `describe`.
     """
-    from surefoot.models.robot_file.build import Explanation, explain
-
     if is_file(name) or name in SHIPPED:
-        return explain(SHIPPED.get(name, Path(name)))
-    return Explanation(describe(name, RobotOptions()), (), ())
+        return _explained(SHIPPED.get(name, Path(name)), RobotOptions())
+    return Explanation(describe(name, RobotOptions()))

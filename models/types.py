@@ -30,6 +30,10 @@ class RobotError(ParameterError):
         super().__init__(key, _one_line(what), _one_line(right))
 
 
+class UnknownRobotError(LookupError):
+    """No robot has that name."""
+
+
 LONGEST = 1000
 """Characters of half a sentence."""
 
@@ -287,3 +291,18 @@ class Robot:
 
     name: str
     build: Callable[[RobotOptions], RobotDescription]
+
+
+@dataclass(frozen=True, slots=True)
+class Explanation:
+    """A robot, and how its description came to be.
+
+    Attributes:
+        description: the robot.
+        derived: what was derived and from what, one line each.
+        notes: what was altered or left out, or is to be known, one line each.
+    """
+
+    description: RobotDescription
+    derived: tuple[str, ...] = ()
+    notes: tuple[str, ...] = ()

@@ -22,10 +22,11 @@ if TYPE_CHECKING:
     from surefoot.planner.laws.qp import Qp, QpSolution, solve
     from surefoot.planner.look import View
     from surefoot.planner.parameters import LegInertia, PlannerParameters, StepAdaptation
-    from surefoot.planner.plan import Planner, PlanSample, WalkPlan
+    from surefoot.planner.plan import Planner, WalkPlan
     from surefoot.planner.planner import WalkingPlanner
     from surefoot.planner.plants import IdealFeet, Pendulum
     from surefoot.planner.rules import RULES, Rule
+    from surefoot.planner.sample import PlanSample
     from surefoot.planner.sampling import PlanSampler
     from surefoot.planner.steps.commands import Command, velocity_bouts, walk_of
     from surefoot.planner.steps.gait import Bout, GaitParameters
@@ -81,7 +82,8 @@ if not TYPE_CHECKING:  # a type checker shall still refuse names that are not th
             "laws.qp": ("Qp", "QpSolution", "solve"),
             "look": ("View",),
             "parameters": ("LegInertia", "PlannerParameters", "StepAdaptation"),
-            "plan": ("PlanSample", "Planner", "WalkPlan"),
+            "plan": ("Planner", "WalkPlan"),
+            "sample": ("PlanSample",),
             "rules": ("RULES", "Rule"),
             "sampling": ("PlanSampler",),
             "planner": ("WalkingPlanner",),

@@ -7,6 +7,7 @@ import math
 
 import numpy as np
 
+from surefoot import linear
 from surefoot.planner.orientation import sole_rotation as sole_rotation
 from surefoot.planner.quintic import between
 from surefoot.planner.types import Array, Footstep
@@ -14,8 +15,16 @@ from surefoot.planner.types import Array, Footstep
 
 def frame_rotation(yaw: float) -> Array:
     """Rotation from a frame of that heading to the world, shape (2, 2)."""
+    R = np.empty((2, 2))
+    turn_plane(yaw, R)
+    return R
+
+
+def turn_plane(yaw: float, R: Array) -> None:
+    """Write what `frame_rotation` gives into an array, shape (2, 2)."""
     c, s = math.cos(yaw), math.sin(yaw)
-    return np.array([[c, -s], [s, c]])
+    R[0, 0], R[0, 1] = c, -s
+    R[1, 0], R[1, 1] = s, c
 
 
 def wrap_angle(angle: float) -> float:
@@ -67,8 +76,17 @@ def sole_corners(footstep: Footstep, half_size: Array) -> Array:
 
 def points_of_sole(footstep: Footstep, points: Array) -> Array:
     """Points of a sole seen from above, which are told in its own frame, shape (n, 2) [m]."""
-    rotation = sole_rotation(footstep.yaw, *sole_angles(footstep.normal, footstep.yaw))
-    return np.asarray(footstep.position[:2] + points @ rotation[:2, :2].T)
+    R, placed = sole_rotation(footstep.yaw, *sole_angles(footstep.normal, footstep.yaw)), np.empty((len(points), 2))
+    place_points(footstep.position, R, points, placed)
+    return placed
+
+
+def place_points(origin: Array, R: Array, points: Array, placed: Array) -> None:
+    """Write where points, shape (n, 2), of a frame at an origin, shape (2 or more,), with a rotation R are, (n, 2)."""
+    for k in range(points.shape[0]):
+        x, y = points[k, 0], points[k, 1]
+        placed[k, 0] = origin[0] + linear.fused_pair(x, R[0, 0], y, R[0, 1])
+        placed[k, 1] = origin[1] + linear.fused_pair(x, R[1, 0], y, R[1, 1])
 
 
 def rotations(quaternions: Array) -> Array:
@@ -115,7 +133,8 @@ def level_corners(places: Array, length: float, width: float) -> Array:
         width: of a sole [m].
     """
     local = 0.5 * CORNERS * (length, width)
-    cosine, sine = np.cos(places[:, -1, None]), np.sin(places[:, -1, None])
+    heading = places[:, places.shape[1] - 1, None]
+    cosine, sine = np.cos(heading), np.sin(heading)
     x = places[:, 0, None] + cosine * local[:, 0] - sine * local[:, 1]
     y = places[:, 1, None] + sine * local[:, 0] + cosine * local[:, 1]
     return np.stack((x, y), axis=2)
@@ -156,7 +175,6 @@ def nearest_point(polygon: Array, point: Array) -> Array:
 
 
 _BINOMIAL = np.array([[math.comb(i, k) for i in range(6)] for k in range(6)], dtype=float)
-_POWER = np.maximum(np.arange(6)[None, :] - np.arange(6)[:, None], 0)
 
 
 def quintic(start: Array, end: Array, duration: float) -> Array:
@@ -181,8 +199,22 @@ greatest = np.maximum.reduce
 
 def shifted(coefficients: Array, time: float) -> Array:
     """The same polynomials with their local time starting at `time`."""
-    powers = np.array((1.0, time, time**2, time**3, time**4, time**5))
-    return np.asarray((_BINOMIAL * powers.take(_POWER)) @ coefficients)
+    return np.asarray(shift(time) @ coefficients)
+
+
+def shift(time: float) -> Array:
+    """The matrix that makes the coefficients of polynomials of fifth degree those of a later begin, shape (6, 6)."""
+    A = np.zeros((6, 6))
+    expand(time, _BINOMIAL, A)
+    return A
+
+
+def expand(time: float, binomial: Array, A: Array) -> None:
+    """Write what `shift` gives into an array of zeros: A_ki = (i over k) t^(i - k)."""
+    for i in range(6):
+        power = math.pow(time, i)
+        for k in range(6 - i):
+            A[k, k + i] = binomial[k, k + i] * power
 
 
 def yaw_rotations(yaw: Array) -> Array:

@@ -94,7 +94,9 @@ def look(state: WalkState, measured: Measured) -> View:
     model = state.model
     margin, room = model.parameters.foot_margin, model.parameters.cop_room
     key = SupportKey(state.schedule, state.landed, state.phase.start, state.free)
-    support = present_support(key, state.phase.kind, margin, room)
+    last = state.memory.support
+    kept = last is not None and last.key == key
+    support = last if last is not None and kept else present_support(key, state.phase.kind, margin, room)
     # Position and velocity as measured, acceleration as the last plan had it for now.
     bend = _STILL if state.plan is None else state.plan.com_acceleration[1]
     local = model.world.local(measured.body.com, measured.body.com_velocity, bend, support.frame)
@@ -127,7 +129,7 @@ def references(
     course, transition, seen_height = _transferred(state, law)
     high = preview_height(model.heights, course, whole.height, model.parameters.size.length)
     offset, table = _offsets(state, support, (samples, whole.point, high), position, time, lasting)
-    memory = Memory(table, transition, seen_height)
+    memory = Memory(support, table, transition, seen_height)
     reference, height, window = whole.part(slice(count)), high.part(count), slice(1, count + 1)
     stiffness = model.softening * height.stiffness
     if lasting is not None:
@@ -230,11 +232,11 @@ def next_step(state: WalkState, measured: Measured, support: Support) -> StepPro
     place, face, shortest, crosses = landing_place(step, stance, schedule.ground, model.hardest)
     return StepProblem(
         place=place,
-        swing=np.stack((_turned(measured.feet.position[foot, :2] - origin, rotation), _turned(velocity, rotation))),
+        swing=np.array((_turned(measured.feet.position[foot, :2] - origin, rotation), _turned(velocity, rotation))),
         double=0.0 if swings else phase.left,
-        single=phase.left if swings else step.single * clock.sample_time,
+        single=phase.left if swings else step.single_support * clock.sample_time,
         cycle=schedule.gait.period,
-        shortest=min(1.0, (step.touchdown - clock.now) / step.single) * shortest,
+        shortest=min(1.0, (step.touchdown - clock.now) / step.single_support) * shortest,
         face=face,
         crosses=crosses,
         last=state.stops,

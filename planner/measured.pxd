@@ -1,2 +1,5 @@
+from surefoot.planner.types cimport CentroidalState, FeetState
+
 cdef class Measured:
-    cdef readonly object body, feet
+    cdef readonly CentroidalState body
+    cdef readonly FeetState feet

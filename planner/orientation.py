@@ -22,11 +22,21 @@ def sole_rotation(yaw: float, pitch: float, roll: float) -> Array:
 
 def turn_sole(angles: algebra.Vector, R: Array) -> None:
     """Write what `sole_rotation` gives into an array, shape (3, 3)."""
+    x, y, z = rows(angles)
+    algebra.put_row(R, 0, x)
+    algebra.put_row(R, 1, y)
+    algebra.put_row(R, 2, z)
+
+
+def rows(angles: algebra.Vector) -> tuple[algebra.Vector, algebra.Vector, algebra.Vector]:
+    """Rows of what `sole_rotation` gives."""
     cy, cp, cr = math.cos(angles[0]), math.cos(angles[1]), math.cos(angles[2])
     sy, sp, sr = math.sin(angles[0]), math.sin(angles[1]), math.sin(angles[2])
-    R[0, 0], R[0, 1], R[0, 2] = cy * cp, cy * sp * sr - sy * cr, cy * sp * cr + sy * sr
-    R[1, 0], R[1, 1], R[1, 2] = sy * cp, sy * sp * sr + cy * cr, sy * sp * cr - cy * sr
-    R[2, 0], R[2, 1], R[2, 2] = -sp, cp * sr, cp * cr
+    return (
+        (cy * cp, cy * sp * sr - sy * cr, cy * sp * cr + sy * sr),
+        (sy * cp, sy * sp * sr + cy * cr, sy * sp * cr - cy * sr),
+        (-sp, cp * sr, cp * cr),
+    )
 
 
 def sole_rates(angles: Array, rates: Array, accelerations: Array) -> tuple[Array, Array]:

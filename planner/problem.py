@@ -21,20 +21,11 @@ def _steps(view: View) -> StepContext:
     """The next two footsteps as the law may shift them."""
     state, here, left, transfer = view.state, None, 0.0, 0.0
     if view.step is not None and state.phase.kind is PhaseKind.SINGLE:
-        double = state.schedule.step(state.phase.step).double
+        double = state.schedule.step(state.phase.step).double_support
         here, left, transfer = view.step.swing[0], state.time_left, double * state.clock.sample_time
-    increment, free, side = _increments(view), state.free, state.schedule.step(state.landed).place.foot.other.side
+    increment, free, side = view.support.increment, state.free, -state.schedule.step(state.landed).place.foot.side
     bounds = _bounds(view, increment, here, left)
     return StepContext(increment, (side, -side), free, here, left, transfer, *bounds)
-
-
-def _increments(view: View) -> Array:
-    """Displacements of the next two footsteps, shape (2, 2) [m]."""
-    schedule, increment = view.state.schedule, np.zeros((2, 2))
-    places = schedule.positions[schedule.index(view.state.landed) :][:3, :2]
-    ahead = (places[1:] - places[:-1]) @ view.support.rotation
-    increment[: len(ahead)] = ahead
-    return increment
 
 
 def _bounds(view: View, increment: Array, here: Array | None, left: float) -> Shifts:

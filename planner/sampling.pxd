@@ -1,5 +1,6 @@
 cimport cython
 from surefoot cimport algebra, linear
+from surefoot.planner.sample cimport PlanSample
 
 cdef Py_ssize_t OMEGA, STIFFNESS, LOAD, LINEAR, HEIGHT, SWING, MOTIONS, RATES, BENDS, COLUMNS
 cdef double ROUNDING
@@ -12,10 +13,10 @@ cdef class PlanSampler:
     cdef bint _landed
     cdef double[:, ::1] _table
 
-    cpdef sample(self, double time)
-    @cython.locals(numbers=double[:, ::1])
+    cpdef PlanSample sample(self, double time)
+    @cython.locals(numbers=double[:, ::1], now=PlanSample, until=PlanSample)
     cpdef tick(self, double time, double middle)
-    cdef _sampled(self, double time, point, double[::1] numbers)
+    cdef PlanSample _sampled(self, double time, point, double[::1] numbers)
     @cython.locals(interval=Py_ssize_t, landed=cython.bint)
     cdef _go_to(self, double time)
     cdef _enter(self, Py_ssize_t i, bint landed)

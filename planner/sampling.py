@@ -6,7 +6,8 @@ import numpy as np
 
 from surefoot import algebra, linear
 from surefoot.planner.geometry import shifted
-from surefoot.planner.plan import POINT, PlanSample, WalkPlan
+from surefoot.planner.plan import WalkPlan
+from surefoot.planner.sample import POINT, PlanSample
 from surefoot.planner.swing.trajectory import TOUCHING, SwingTrajectory
 from surefoot.planner.types import Array, PhaseKind
 

@@ -9,6 +9,7 @@ from surefoot.planner.model.time_scaling import TimeScaling
 from surefoot.planner.plan import WalkPlan
 from surefoot.planner.references.height_transition import HeightTransition
 from surefoot.planner.references.offset_table import OffsetTable
+from surefoot.planner.references.zmp_reference import Support
 from surefoot.planner.steps import adaptation
 from surefoot.planner.steps.beginning import begun, in_sight
 from surefoot.planner.steps.gait import GaitParameters
@@ -76,11 +77,14 @@ class Memory:
     """What one look leaves to the next.
 
     Attributes:
+        support: what carried the robot, which goes on while its key stays: to make it takes longer than ZMP reference,
+            height and ω of a window together.
         offsets: what the legs add to the ZMP, for some ticks.
         transition: of the CoM height to its law; None where it is on it.
         height: as it was seen; None before the first look.
     """
 
+    support: Support | None = None
     offsets: OffsetTable | None = None
     transition: HeightTransition | None = None
     height: HeightMemory | None = None

@@ -135,4 +135,4 @@ def going_again(state: WalkState) -> WalkState:
     schedule = adaptation.with_foot_again(state.schedule, state.landed)
     gone = 1.0 if phase.kind is PhaseKind.SINGLE else (clock.now - phase.start) / phase.samples
     step = schedule.step(state.landed)
-    return state.on(schedule, clock.showing(step.touchdown + (1.0 - gone) * step.double))
+    return state.on(schedule, clock.showing(step.touchdown + (1.0 - gone) * step.double_support))

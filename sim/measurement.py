@@ -13,7 +13,7 @@ def is_rotation(quaternion: Array) -> bool:
     return bool(0.81 < float(np.vdot(quaternion, quaternion)) < 1.21)
 
 
-@dataclass(frozen=True, slots=True)
+@dataclass(frozen=True)
 class Measurement:
     """Sensors and truth at one instant; the joint order is that of the robot description.
 

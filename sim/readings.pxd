@@ -1,6 +1,7 @@
 cimport cython
 from surefoot cimport algebra, linear
 from surefoot.algebra cimport vector3
+from surefoot.readings cimport Reading, Readings
 from surefoot.sim cimport imu_motion
 from surefoot.sim.imu_motion cimport ImuChain, ImuMotion
 
@@ -83,6 +84,6 @@ cdef class SensorSuite:
     cdef list _lines
 
     @cython.locals(line=Line)
-    cpdef read(self, measurement, Py_ssize_t tick)
+    cpdef Readings read(self, measurement, Py_ssize_t tick)
 
 cdef vector3 _within(double most, vector3 values) noexcept nogil

@@ -1,6 +1,5 @@
 """The world as MJCF text: a robot's own text with ground, terrain, light and solver options around it."""
 
-from functools import lru_cache
 from xml.etree import ElementTree
 
 from surefoot.models.types import RobotDescription
@@ -34,9 +33,8 @@ def world_mjcf(
     )
 
 
-@lru_cache(maxsize=4)
 def _around(name: str, robot: str, base: str, ground: str, timestep: float) -> str:
-    """See `world_mjcf`; the runs of a campaign have few worlds."""
+    """See `world_mjcf`."""
     root = ElementTree.fromstring(robot)
     _add_options(root, timestep)
     _add_look(root)

@@ -2,6 +2,7 @@ cimport cython
 from surefoot cimport algebra
 from surefoot.algebra cimport vector3
 from surefoot.models cimport convert
+from surefoot.sim.measurement cimport Measurement
 
 cdef double ROUND_OFF
 
@@ -25,7 +26,7 @@ cdef class SensorReader:
     cdef double[::1] _q, _v, _torque, _accelerometer, _push
 
     cdef void _allocate(self, Py_ssize_t nq, Py_ssize_t nv, wrench)
-    cpdef read(self, double time)
+    cpdef Measurement read(self, double time)
     @cython.locals(sole=Sole)
     cdef void _read(self, const double[:, ::1] external)
     @cython.locals(force=double[::1])

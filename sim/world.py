@@ -2,7 +2,6 @@
 
 import copy
 import logging
-import threading
 from collections.abc import Sequence
 from functools import lru_cache
 
@@ -105,11 +104,8 @@ class World:
         return self._mjcf
 
     def poses(self) -> BodyPoses:
-        """Of its bodies as it was made, whatever its model has become; all worlds of a text and a thread have the same.
-
-        So they are to be read before anybody else updates them.
-        """
-        return _poses(self._mjcf, threading.get_ident())
+        """Of its bodies as it was made, whatever its model has become."""
+        return BodyPoses(_compiled(self._mjcf))
 
     def reset(self, q: Array, v: Array | None = None, torque: Array | None = None) -> None:
         """Start at tick 0 from a state in Pinocchio's convention, without the pushes that were added since.
@@ -209,16 +205,13 @@ class World:
 
 @lru_cache(maxsize=4)
 def _compiled(mjcf: str) -> mujoco.MjModel:
-    """The model without its drawn geoms, whose frames would cost 8 % of a physics step; to be copied, not changed."""
+    """The model without its drawn geoms, whose frames would cost 8 % of a physics step; to be copied, not changed.
+
+    It is kept since MuJoCo takes 40 ms to compile it, and the runs of a campaign have few worlds.
+    """
     spec = mujoco.MjSpec.from_string(mjcf)
     spec.compiler.discardvisual = True
     return spec.compile()
-
-
-@lru_cache(maxsize=4)
-def _poses(mjcf: str, _thread: int) -> BodyPoses:
-    """Run after run of a campaign draws the same bodies: to make the engine's state takes longer than all that."""
-    return BodyPoses(_compiled(mjcf))
 
 
 def _log_warnings() -> None:

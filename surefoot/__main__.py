@@ -1,5 +1,5 @@
 """``python -m surefoot`` is the command line."""
 
-from surefoot.scenarios.apps.cli import program
+from surefoot.scenarios.cli.program import program
 
 program()

@@ -25,7 +25,7 @@ class Push:
     body: str = ""
 
 
-@dataclass(frozen=True, slots=True)
+@dataclass(frozen=True)
 class ExternalLoad:
     """What lasts of forces on the robot beside gravity and the ground, and how heavy it is.
 

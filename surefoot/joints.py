@@ -8,7 +8,7 @@ from numpy.typing import NDArray
 Array = NDArray[np.float64]
 
 
-@dataclass(frozen=True, slots=True)
+@dataclass(frozen=True)
 class Servo:
     """Targets that the drives of the joints follow by themselves, with gains that never change.
 
@@ -25,7 +25,7 @@ class Servo:
     damping: Array
 
 
-@dataclass(frozen=True, slots=True)
+@dataclass(frozen=True)
 class JointCommand:
     """What the joints are to do until the next command; the joint order is that of the robot description.
 

@@ -1,11 +1,8 @@
-"""What a program need not do: faces import names when they are first asked for, and a process is not taken apart."""
+"""What a program need not do: faces import names when they are first asked for, and imports look for no garbage."""
 
-import atexit
 import gc
-import os
-import sys
 from collections.abc import Callable, Iterable, Iterator, Mapping
-from contextlib import contextmanager, suppress
+from contextlib import contextmanager
 from importlib import import_module
 from typing import Any
 
@@ -48,30 +45,3 @@ def importing() -> Iterator[None]:
     finally:
         gc.freeze()
         gc.enable()
-
-
-@contextmanager
-def ending_at_once() -> Iterator[None]:
-    """The program of a process: once it has ended by `SystemExit`, nobody takes its modules and engines apart.
-
-    That would take a tenth of a second; the operating system has all of it back at once. Threads are waited for, and
-    what others want done at the end is done, as ever.
-    """
-    codes: list[int] = []
-    atexit.register(leave, codes)  # what is registered first is done last
-    try:
-        yield
-    except SystemExit as end:
-        if end.code is None or isinstance(end.code, int):
-            codes.append(end.code or 0)
-        raise
-
-
-def leave(codes: list[int]) -> None:
-    """End the process, with the exit code that there is, if there is one."""
-    if not codes:
-        return
-    for stream in (sys.stdout, sys.stderr):
-        with suppress(Exception, SystemExit):
-            stream.flush()
-    os._exit(codes[0])

@@ -49,6 +49,7 @@ cpdef double nearest(double value) noexcept nogil
 cpdef vector3 fused_rotate(const double[:, :] A, vector3 x) noexcept nogil
 cpdef vector3 fused_rotate_back(const double[:, :] A, vector3 x) noexcept nogil
 cpdef void fused_compose(const double[:, :] A, const double[:, :] B, double[:, :] out) noexcept nogil
+cpdef void fused_product(const double[:, :] A, const double[:, :] B, double[:, :] out) noexcept nogil
 cpdef void fill(double[:] out, Py_ssize_t start, const double[:] values) noexcept nogil
 cpdef void products(const double[:, :] Y, double[:, :] S) noexcept nogil
 cpdef void add_product(double scale, const double[:, :] A, const double[:] x, double[:] out) noexcept nogil

@@ -304,6 +304,11 @@ def fused_compose(A: Array, B: Array, out: Array) -> None:
     out[:] = A @ B
 
 
+def fused_product(A: Array, B: Array, out: Array) -> None:
+    """A B into `out`, shape (m, k), for A of shape (m, n) and B of shape (n, k), rounded once a term in their order."""
+    out[:] = A @ B
+
+
 def fill(out: Array, start: int, values: Array) -> None:
     """Copy numbers, shape (n,), into an array from a place on."""
     out[start : start + len(values)] = values

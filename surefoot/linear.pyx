@@ -555,6 +555,17 @@ cpdef void fused_compose(const double[:, :] A, const double[:, :] B, double[:, :
             out[i, j] = fused_sum(A[i, 0], B[0, j], A[i, 1], B[1, j], A[i, 2], B[2, j])
 
 
+cpdef void fused_product(const double[:, :] A, const double[:, :] B, double[:, :] out) noexcept nogil:
+    cdef Py_ssize_t i, j, k
+    cdef double total
+    for i in range(A.shape[0]):
+        for j in range(B.shape[1]):
+            total = A[i, 0] * B[0, j]
+            for k in range(1, B.shape[0]):
+                total = fma(A[i, k], B[k, j], total)
+            out[i, j] = total
+
+
 cpdef void fill(double[:] out, Py_ssize_t start, const double[:] values) noexcept nogil:
     cdef Py_ssize_t i
     for i in range(values.shape[0]):

@@ -125,6 +125,8 @@ class Registry(Mapping[str, T]):
         if name in self._names:
             return OWN_GUARD
         package = self.package(name)
+        if package == OWN_PACKAGE:
+            return OWN_GUARD
         kind = self.group.removeprefix(f"{OWN_PACKAGE}.").removesuffix("s")
         return Guard(f"{kind} '{name}' of {f'package {package}' if package else 'this program'}")
 
@@ -137,13 +139,15 @@ class Registry(Mapping[str, T]):
 
         The name goes on meaning surefoot's; the other thing is never looked at.
         """
+        entries = entry_points(group=self.group)
+        brought = {entry.name for entry in entries if package_of(entry) == OWN_PACKAGE}
         return {
             entry.name: PluginError(
                 f"'{entry.name}' of package {package_of(entry)} in {self.group} has the name of one of surefoot's own",
                 "give it another name there, or remove it",
             )
-            for entry in entry_points(group=self.group)
-            if entry.name in self._names
+            for entry in entries
+            if package_of(entry) != OWN_PACKAGE and (entry.name in brought or entry.name in self._names)
         }
 
     def refusal(self, name: str) -> PluginError | None:
@@ -162,7 +166,9 @@ class Registry(Mapping[str, T]):
         return None
 
     def _entries(self, name: str) -> "list[EntryPoint]":
-        return [entry for entry in entry_points(group=self.group) if entry.name == name]
+        """Entry points of a name; of several, the one of this package alone."""
+        found = [entry for entry in entry_points(group=self.group) if entry.name == name]
+        return [entry for entry in found if package_of(entry) == OWN_PACKAGE] or found
 
     def _checked(self, thing: object, who: str) -> T:
         wanted = "a function or a class" if self._kind is None else f"a {self._kind.__name__}"

@@ -19,10 +19,7 @@ def convex_hull(points: Array) -> Array:
     """
     ordered, vertices = np.array(points, dtype=np.float64), np.zeros((2 * len(points) + 2, 2))
     count = hull(ordered, len(ordered), vertices)
-    (left, below), (right, above) = points.min(axis=0).tolist(), points.max(axis=0).tolist()
-    extent = max(right - left, above - below)
-    flat = extent * (FLAT * extent + ROUNDING * max(abs(right), abs(left), abs(above), abs(below)))
-    corner = 0
+    corner, flat = 0, flatness(ordered, len(ordered))
     while corner < count:
         before, after = (corner + count - 1) % count, (corner + 1) % count
         if _left_turn(vertices, before, corner, vertices, after) > flat:
@@ -31,6 +28,17 @@ def convex_hull(points: Array) -> Array:
             vertices[corner : count - 1] = vertices[corner + 1 : count].copy()
             count, corner = count - 1, max(corner - 1, 0)
     return vertices[:count].copy()
+
+
+def flatness(points: Array, count: int) -> float:
+    """Twice the area up to which a vertex of so many points does not stand out, of their extent and coordinates."""
+    left, right, below, above = points[0, 0], points[0, 0], points[0, 1], points[0, 1]
+    for k in range(1, count):
+        x, y = points[k, 0], points[k, 1]
+        left, right, below, above = min(left, x), max(right, x), min(below, y), max(above, y)
+    extent: float = max(right - left, above - below)
+    most: float = max(max(abs(right), abs(left)), max(abs(above), abs(below)))
+    return extent * (FLAT * extent + ROUNDING * most)
 
 
 def hull(points: Array, count: int, vertices: Array) -> int:

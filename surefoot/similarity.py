@@ -11,7 +11,6 @@ import math
 import re
 from collections.abc import Mapping
 from dataclasses import dataclass, field, fields, is_dataclass, replace
-from functools import lru_cache
 from typing import Any, TypeVar
 
 from surefoot.errors import ParameterError
@@ -120,7 +119,6 @@ class Similarity:
         return value if value is None or factor == 1.0 else value * factor
 
 
-@lru_cache(maxsize=256)
 def exponents(unit: str) -> Exponents:
     """Exponents of λ, τ and μ of a unit such as "m/s^2", "1/(N·m)^2", "N·s/kg" or "-".
 

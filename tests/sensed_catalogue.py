@@ -29,7 +29,7 @@ def pytest_configure(config: pytest.Config) -> None:
     read = catalogue.text
     if not config.getoption("--truth"):
         return
-    campaign = files("surefoot.scenarios.study.campaigns.campaigns") / "truth.yaml"
+    campaign = files("surefoot.studies.campaigns.campaigns") / "truth.yaml"
     narrower = yaml.safe_load(campaign.read_text())["grid"]["walk"]
 
     def text(name: str) -> tuple[str, str]:

@@ -10,14 +10,14 @@ import pytest
 
 import surefoot
 from surefoot.planner.laws.profiles import PROFILES
+from surefoot.scenarios.check.check import cases, run_case
 from surefoot.scenarios.errors import LONGEST_SENTENCE, Problem
 from surefoot.scenarios.judge.inspection import inspect as inspect_log
 from surefoot.scenarios.judge.metric import metric
 from surefoot.scenarios.judge.metrics import METRICS
+from surefoot.scenarios.run.processes import processes
 from surefoot.scenarios.setup.terrain import KINDS
 from surefoot.scenarios.setup.walk import resolve
-from surefoot.scenarios.study.campaigns.engine import processes
-from surefoot.scenarios.study.checks.check import cases, run_case
 
 pytestmark = pytest.mark.unit
 

@@ -57,7 +57,7 @@ def test_the_engine_is_the_one_that_others_import():
 
 def test_the_package_imports_it_from_one_place():
     root = Path(surefoot.__file__).parent
-    rooms = (root / room for room in ("planner", "wbc", "sim", "models", "scenarios"))
+    rooms = (root / room for room in ("planner", "wbc", "sim", "models", "scenarios", "studies", "apps"))
     found = [
         file
         for room in rooms

@@ -21,7 +21,8 @@ if TYPE_CHECKING:
     from surefoot.wbc.model import BodyFrames, RobotTerms
     from surefoot.wbc.parameters import WbcParameters
     from surefoot.wbc.qp import QpData, QpLayout
-    from surefoot.wbc.types import FootSensing, RobotState, SolveStatus, WbcAnswer, WbcReference, WbcReport
+    from surefoot.wbc.reference import WbcReference
+    from surefoot.wbc.types import FootSensing, RobotState, SolveStatus, WbcAnswer, WbcReport
 
 __all__ = [
     "BodyFrames",
@@ -55,13 +56,13 @@ if not TYPE_CHECKING:  # a type checker shall still refuse names that are not th
             "model": ("BodyFrames", "RobotTerms"),
             "parameters": ("WbcParameters",),
             "qp": ("QpData", "QpLayout"),
+            "reference": ("WbcReference",),
             "types": (
                 "ExternalLoad",
                 "FootSensing",
                 "RobotState",
                 "SolveStatus",
                 "WbcAnswer",
-                "WbcReference",
                 "WbcReport",
             ),
         },

@@ -54,8 +54,8 @@ class AnswerReader:
             terms: of the state.
             x: a solution, shape (n,).
         """
-        bias, unit = terms.bias, terms.wrench_unit
-        self._torque[:] = bias[6:]
+        unit = terms.wrench_unit
+        self._torque[:] = terms._h[6:]
         linear.add_product(1.0, self._torque_rows, x, self._torque)
         self._clip()
         self._acceleration[:] = x[: self._nv]

@@ -2,7 +2,7 @@ cimport cython
 cimport libc.math as math
 from surefoot cimport algebra, polygon
 from surefoot.algebra cimport vector3
-from surefoot.wbc.setpoint cimport Setpoint
+from surefoot.wbc.reference cimport WbcReference
 
 cdef class SupportRegion:
     cdef double[:, ::1] _corners, _points, _vertices, _edges
@@ -21,5 +21,5 @@ cdef class BalanceLaw:
     cdef SupportRegion _region
     cdef double _k, _beyond, _k_z, _d_z
 
-    @cython.locals(ref=Setpoint)
-    cpdef vector3 acceleration(self, Setpoint reference, const double[:] c, const double[:] c_dot) noexcept
+    @cython.locals(ref=WbcReference)
+    cpdef vector3 acceleration(self, WbcReference reference, const double[:] c, const double[:] c_dot) noexcept

@@ -6,7 +6,7 @@ import numpy as np
 
 from surefoot import algebra, polygon
 from surefoot.wbc.parameters import BalanceGains
-from surefoot.wbc.setpoint import Setpoint
+from surefoot.wbc.reference import WbcReference
 from surefoot.wbc.types import Array
 
 
@@ -98,20 +98,20 @@ class BalanceLaw:
         self._k, self._beyond = gains.dcm, gains.beyond_catching
         self._k_z, self._d_z = gains.height_stiffness, gains.height_damping
 
-    def acceleration(self, reference: Setpoint, c: Array, c_dot: Array) -> algebra.Vector:
+    def acceleration(self, reference: WbcReference, c: Array, c_dot: Array) -> algebra.Vector:
         """x, y, z [m/s^2] at a CoM and its velocity, shape (3,) each [m, m/s]."""
         ref = reference
-        dx, dy, dz = c[0] - ref.com[0], c[1] - ref.com[1], c[2] - ref.com[2]
-        vx, vy = c_dot[0] - ref.com_velocity[0], c_dot[1] - ref.com_velocity[1]
-        vz = c_dot[2] - ref.com_velocity[2]
-        px, py = ref.zmp[0] + ref.zmp_offset[0], ref.zmp[1] + ref.zmp_offset[1]
+        dx, dy, dz = c[0] - ref._c[0], c[1] - ref._c[1], c[2] - ref._c[2]
+        vx, vy = c_dot[0] - ref._c_dot[0], c_dot[1] - ref._c_dot[1]
+        vz = c_dot[2] - ref._c_dot[2]
+        px, py = ref._p[0] + ref._o[0], ref._p[1] + ref._o[1]
         zmp_x, zmp_y = self._region.project(
             px + self._k * (dx + vx / ref.omega),
             py + self._k * (dy + vy / ref.omega),
             self._beyond if ref.catching else 0.0,
         )
         return (
-            ref.com_acceleration[0] + ref.stiffness * (px + dx - zmp_x),
-            ref.com_acceleration[1] + ref.stiffness * (py + dy - zmp_y),
-            ref.com_acceleration[2] - self._k_z * dz - self._d_z * vz,
+            ref._c_ddot[0] + ref.stiffness * (px + dx - zmp_x),
+            ref._c_ddot[1] + ref.stiffness * (py + dy - zmp_y),
+            ref._c_ddot[2] - self._k_z * dz - self._d_z * vz,
         )

@@ -3,10 +3,11 @@
 from dataclasses import dataclass
 
 from surefoot.wbc.parameters import ContactParameters
-from surefoot.wbc.types import NONE_TOUCHES, FootSensing, WbcReference
+from surefoot.wbc.reference import WbcReference
+from surefoot.wbc.types import FootSensing
 
 
-@dataclass(frozen=True, slots=True)
+@dataclass(frozen=True)
 class ContactState:
     """Contacts of one tick, (left, right).
 
@@ -45,72 +46,79 @@ class ContactSchedule:
 
     def __init__(self, parameters: ContactParameters, weight: float, control_period: float) -> None:
         """Start with both feet loaded; ``weight`` [N], ``control_period`` [s]."""
-        self._parameters = parameters
-        self.weight = weight
-        self._period = control_period
-        self._active = True, True
+        self.weight, self._period = weight, control_period
+        self._early_progress, self._early_cap = parameters.early_progress, parameters.early_cap
+        self._loading_time, self._unloading_time = parameters.loading_time, parameters.unloading_time
+        self._share_margin = parameters.share_margin
         self._least, self._ticks = parameters.felt_force, parameters.felt_ticks
-        self._ticks_felt = [self._ticks, self._ticks]
-        self._loading = [1.0, 1.0]
-        self._awaited = NONE_TOUCHES
-        self._last = ContactState(self._active, self._active, (3.0 * weight, 3.0 * weight))
-        self._found: tuple[object, ...] = ()
+        self._ticks_felt = [parameters.felt_ticks, parameters.felt_ticks]
+        self._planned, self._active, self._felt = [True, True], [True, True], [True, True]
+        self._awaited, self._loading = [False, False], [1.0, 1.0]
+        self._last = ContactState((True, True), (True, True), (3.0 * weight, 3.0 * weight))
 
     def update(self, reference: WbcReference, sensing: FootSensing) -> ContactState:
         """Contacts of this tick from the plan, and from what an estimator decided or else the normal forces.
 
         The same object as long as nothing changes.
         """
-        felt, active, planned = sensing.contact, self._active, reference.planned_contact
-        if felt is None:
-            left, right = sensing.normal_force
-            ticks = self._ticks_felt
-            ticks[0] = ticks[0] + 1 if left > self._least else 0
-            ticks[1] = ticks[1] + 1 if right > self._least else 0
-            felt = (ticks[0] >= self._ticks, ticks[1] >= self._ticks)
-        touching, awaited = sensing.touching, self._awaited
-        if touching is not NONE_TOUCHES or awaited is not NONE_TOUCHES:
-            one, other = ((touching[k] or awaited[k]) and not felt[k] for k in (0, 1))
-            self._awaited = (one, other) if one or other else NONE_TOUCHES
-            felt = (felt[0] or touching[0], felt[1] or touching[1])
-        if active != planned or felt[0] > active[0] or felt[1] > active[1]:
-            self._active = active = self._held(reference, felt)
-        rolling, landing = -1, NONE_TOUCHES
-        if active[0] and active[1]:
-            cap, rolling = self._caps(reference), reference.rolling_foot
-            landing = self._awaited
+        self._planned[0], self._planned[1] = reference.planned_contact
+        self._feel(0, sensing.normal_force[0], sensing.contact, sensing.touching[0])
+        self._feel(1, sensing.normal_force[1], sensing.contact, sensing.touching[1])
+        self._hold(0, reference.swing_progress)
+        self._hold(1, reference.swing_progress)
+        most = 3.0 * self.weight
+        if self._active[0] and self._active[1]:
+            caps, awaited = (self._cap(0, reference), self._cap(1, reference)), (self._awaited[0], self._awaited[1])
+            return self._told(caps, reference.rolling_foot, awaited)
+        return self._told((most, 0.0) if self._active[0] else (0.0, most), -1, (False, False))
+
+    def _feel(self, k: int, force: float, contact: tuple[bool, bool] | None, touches: bool) -> None:
+        """Note whether a foot counts as loaded, and whether it does so before anything is felt of it."""
+        if contact is None:
+            self._ticks_felt[k] = self._ticks_felt[k] + 1 if force > self._least else 0
+            self._felt[k] = self._ticks_felt[k] >= self._ticks
         else:
-            cap = (3.0 * self.weight, 0.0) if active[0] else (0.0, 3.0 * self.weight)
-        found = active, felt, cap, rolling, landing
-        if found != self._found:
-            self._found, self._last = found, ContactState(*found)
+            self._felt[k] = contact[k]
+        self._awaited[k] = (touches or self._awaited[k]) and not self._felt[k]
+        self._felt[k] = self._felt[k] or touches
+
+    def _hold(self, k: int, progress: float) -> None:
+        """Hold a foot, or release it, by what plan and feeling tell of it."""
+        early = not self._planned[k] and progress >= self._early_progress
+        if not self._active[k]:
+            if self._felt[k] and (self._planned[k] or early):
+                self._active[k] = True
+                self._loading[k] = 0.0
+        elif not self._planned[k] and not early and self._active[1 - k]:
+            self._active[k] = False
+
+    def _cap(self, k: int, reference: WbcReference) -> float:
+        """Load that a foot may take while both are held [N]."""
+        if self._awaited[k] or not self._planned[k]:
+            return self._early_cap
+        if self._loading[k] < 1.0:
+            self._loading[k] = min(1.0, self._loading[k] + self._period / self._loading_time)
+        cap = self._early_cap + self._loading[k] * (3.0 * self.weight - self._early_cap)
+        if reference.lifting_foot == k and self._loading[1 - k] >= 1.0:
+            remaining = min(1.0, reference.time_to_switch / self._unloading_time)
+            share = reference.load_share[1] if k else reference.load_share[0]
+            cap = min(cap, self.weight * (share + self._share_margin * remaining))
+        return cap
+
+    def _told(self, cap: tuple[float, float], rolling: int, landing: tuple[bool, bool]) -> ContactState:
+        """The contacts, which are the same object where they are those of the tick before."""
+        last = self._last
+        if not (
+            last.active[0] == self._active[0]
+            and last.active[1] == self._active[1]
+            and last.felt[0] == self._felt[0]
+            and last.felt[1] == self._felt[1]
+            and last.force_cap[0] == cap[0]
+            and last.force_cap[1] == cap[1]
+            and last.rolling == rolling
+            and last.landing[0] == landing[0]
+            and last.landing[1] == landing[1]
+        ):
+            active, felt = (self._active[0], self._active[1]), (self._felt[0], self._felt[1])
+            self._last = ContactState(active, felt, cap, rolling, landing)
         return self._last
-
-    def _held(self, reference: WbcReference, felt: tuple[bool, bool]) -> tuple[bool, bool]:
-        """Contacts after what plan and feeling change of them."""
-        held, planned = list(self._active), reference.planned_contact
-        for k in (0, 1):
-            early = not planned[k] and reference.swing_progress >= self._parameters.early_progress
-            if not held[k]:
-                if felt[k] and (planned[k] or early):
-                    held[k] = True
-                    self._loading[k] = 0.0
-            elif not planned[k] and not early and held[1 - k]:
-                held[k] = False
-        return held[0], held[1]
-
-    def _caps(self, reference: WbcReference) -> tuple[float, float]:
-        """Loads that both feet may take while both are held [N]."""
-        parameters, most, caps = self._parameters, 3.0 * self.weight, [0.0, 0.0]
-        for k in (0, 1):
-            if self._awaited[k] or not reference.planned_contact[k]:
-                caps[k] = parameters.early_cap
-                continue
-            if self._loading[k] < 1.0:
-                self._loading[k] = min(1.0, self._loading[k] + self._period / parameters.loading_time)
-            cap = parameters.early_cap + self._loading[k] * (most - parameters.early_cap)
-            if reference.lifting_foot == k and self._loading[1 - k] >= 1.0:
-                remaining = min(1.0, reference.time_to_switch / parameters.unloading_time)
-                cap = min(cap, self.weight * (reference.load_share[k] + parameters.share_margin * remaining))
-            caps[k] = cap
-        return caps[0], caps[1]

@@ -22,8 +22,8 @@ from surefoot.wbc.limits import JointLimits
 from surefoot.wbc.model import BodyFrames, RobotTerms
 from surefoot.wbc.parameters import WbcParameters
 from surefoot.wbc.qp import UNBOUNDED, WRENCH_UNIT, QpData, QpLayout, allocate
+from surefoot.wbc.reference import WbcReference
 from surefoot.wbc.separation import Separation
-from surefoot.wbc.setpoint import Setpoint
 from surefoot.wbc.solvers import QpSolution, QpSolver, equalities_only, in_turn
 from surefoot.wbc.tasks.default import default_tasks
 from surefoot.wbc.tasks.diagonal import ForceDistribution, Posture, Regularisation
@@ -39,7 +39,6 @@ from surefoot.wbc.types import (
     RobotState,
     SolveStatus,
     WbcAnswer,
-    WbcReference,
     WbcReport,
 )
 
@@ -71,6 +70,8 @@ class WholeBodyController:
         schedule: which contacts the QP holds, from plan and feeling.
         tasks: the weighted tasks.
         driven: rows of joints that somebody else drives; None without such joints.
+        region: where the commanded ZMP may lie.
+        solvers: in the order in which they are asked.
     """
 
     def __init__(
@@ -125,11 +126,10 @@ class WholeBodyController:
         if leaning:
             sole = replace(sole, half_width=TOE_DEPTH * size.length)
         cones, ankles = sole.cones(TOE_DEPTH * size.length), stops[0].columns
-        self._setpoint = Setpoint()
         self._hard = HardConstraints(
             self.qp, self.layout, cones, limits, parameters.contact, ankles, stops[0].rolling, leaning
         )
-        self._region = SupportRegion(sole.half_length, sole.half_width, parameters.balance.polygon_share)
+        self.region = SupportRegion(sole.half_length, sole.half_width, parameters.balance.polygon_share)
         self._region_contacts: tuple[tuple[bool, bool], int] | None = None
         self._contacts: ContactState | None = None
         swings = arm_joints and parameters.arm_swing and not (driven is not None and driven[list(arm_joints)].any())
@@ -137,7 +137,7 @@ class WholeBodyController:
         weights, gains, edges = parameters.weights, parameters.gains, (sole.half_length, sole.half_width)
         balance, waist = parameters.balance, self.terms.waist
         default = default_tasks(
-            weights, gains, balance, self._region, edges, size.length, *stops, waist=waist, leaning=leaning
+            weights, gains, balance, self.region, edges, size.length, *stops, waist=waist, leaning=leaning
         )
         diagonal = (
             Regularisation(weights, size.length),
@@ -149,10 +149,10 @@ class WholeBodyController:
         self._observer = LoadObserver(self.terms.mass, control_period, size)
         self.driven = None if driven is None or not driven.any() else DrivenRows(self.layout, driven, control_period)
         fixed = None if self.driven is None else self.driven.fixed
-        self._limits, self._toe = limits, sole.half_length
+        self._toe = sole.half_length
         self._seen: list[tuple[int, Array]] = []
         self._reader = AnswerReader(self.qp, self.layout, self.tasks, limits.torque, control_period, size)
-        self._solvers: tuple[QpSolver, ...] = in_turn(
+        self.solvers: tuple[QpSolver, ...] = in_turn(
             parameters.solver, parameters.second_solver, self.layout.soft, fixed
         )
 
@@ -203,10 +203,8 @@ class WholeBodyController:
             self._shift(terms, reference, contacts)
         if contacts is not self._contacts or terms.leaning is not None:
             self._hold(terms, contacts)
-        setpoint = self._setpoint
-        setpoint.take(reference)
-        self.tasks.write(terms, setpoint)
-        self._hard.write(terms, setpoint, contacts)
+        self.tasks.write(terms, reference)
+        self._hard.write(terms, reference, contacts)
         self._separation.write(terms.data, terms.v, self._gap_rows, self._gap_lower, UNBOUNDED)
         if self.driven is not None:
             self.driven.write(self.qp, terms.bias, terms.v)
@@ -219,7 +217,7 @@ class WholeBodyController:
         if terms.leaning is not None or holding != self._region_contacts:
             if not np.isfinite(terms.sole_position).all():
                 return
-            self._region.rebuild(terms.contact_position, terms.contact_rotation, contacts.active, contacts.rolling)
+            self.region.rebuild(terms.contact_position, terms.contact_rotation, contacts.active, contacts.rolling)
             self._region_contacts = holding
         self._contacts = contacts
 
@@ -229,7 +227,7 @@ class WholeBodyController:
         What holds no limits at all throws the robot. So before that some of the soft ones are broken, and where that
         does not do soles slide, lift or turn: one that is torn off the ground by what it carries cannot be held.
         """
-        for status, solver in zip(_IN_TURN, () if fail_solvers else self._solvers, strict=False):
+        for status, solver in zip(_IN_TURN, () if fail_solvers else self.solvers, strict=False):
             solution = solver.solve(qp)
             if solution is not None and solution.violation <= ACCEPTED_VIOLATION:
                 # What may break limits has broken none where it answers for a solver that failed.

@@ -1,8 +1,10 @@
 cimport cython
 from surefoot cimport algebra, linear
+from surefoot.algebra cimport vector3
+from surefoot.wbc.contacts cimport ContactState
 from surefoot.wbc.limits cimport AccelerationBounds
 from surefoot.wbc.model cimport RobotTerms
-from surefoot.wbc.setpoint cimport Setpoint
+from surefoot.wbc.reference cimport WbcReference
 
 cdef class HardConstraints:
     cdef double _damping, _levelling, _softening, _sinking, _unbounded
@@ -16,17 +18,16 @@ cdef class HardConstraints:
     cdef double[:, ::1] _A
 
     @cython.locals(
-        rolling=Py_ssize_t, left=cython.bint, right=cython.bint, lands_left=cython.bint, lands_right=cython.bint,
-        cap_left=double, cap_right=double
+        rolling=Py_ssize_t, left=cython.bint, right=cython.bint
     )
-    cpdef write(self, RobotTerms terms, Setpoint reference, contacts)
+    cpdef write(self, RobotTerms terms, WbcReference reference, ContactState contacts)
     @cython.locals(i=Py_ssize_t, nv=Py_ssize_t)
     cdef void _motion(self, RobotTerms terms) noexcept
     @cython.locals(i=Py_ssize_t, row=Py_ssize_t, nv=Py_ssize_t, first=Py_ssize_t, sinking=double)
-    cdef void _contact(self, RobotTerms terms, Setpoint reference, Py_ssize_t k, bint active, bint lands) noexcept
+    cdef void _contact(self, RobotTerms terms, WbcReference reference, Py_ssize_t k, bint active, bint lands) noexcept
     cdef double _rest(self, RobotTerms terms, Py_ssize_t k, Py_ssize_t i) noexcept nogil
-    @cython.locals(target=double[::1], first=Py_ssize_t)
-    cdef void _turn(self, RobotTerms terms, Setpoint reference, Py_ssize_t k) noexcept
+    @cython.locals(target=double[::1], first=Py_ssize_t, normal=vector3)
+    cdef void _turn(self, RobotTerms terms, WbcReference reference, Py_ssize_t k) noexcept
     @cython.locals(nv=Py_ssize_t)
     cdef void _bound_joints(self, RobotTerms terms, bint left, bint right) noexcept
     @cython.locals(n=Py_ssize_t, i=Py_ssize_t, column=Py_ssize_t, turning=double)

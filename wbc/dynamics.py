@@ -11,7 +11,7 @@ from surefoot.wbc.limits import AccelerationBounds, JointLimits
 from surefoot.wbc.model import RobotTerms
 from surefoot.wbc.parameters import ContactGains
 from surefoot.wbc.qp import UNBOUNDED, QpData, QpLayout
-from surefoot.wbc.setpoint import Setpoint
+from surefoot.wbc.reference import WbcReference
 from surefoot.wbc.types import Array
 
 
@@ -76,7 +76,7 @@ class HardConstraints:
             self._cone_rows[k][:] = self._cones[1 if k == foot else 0]
         self._rolling = foot
 
-    def write(self, terms: RobotTerms, reference: Setpoint, contacts: ContactState) -> None:
+    def write(self, terms: RobotTerms, reference: WbcReference, contacts: ContactState) -> None:
         """Write the rows and bounds of this state.
 
         A rolling foot is seen from its toe edge (see ``RobotTerms.shift_foot``), which neither slides nor lifts; its
@@ -85,14 +85,12 @@ class HardConstraints:
         rolling = contacts.rolling
         if rolling != self._rolling:
             self._roll(rolling)
-        left, right = contacts.active
-        lands_left, lands_right = contacts.landing
+        left, right = contacts.active[0], contacts.active[1]
         self._motion(terms)
-        self._contact(terms, reference, 0, left, lands_left)
-        self._contact(terms, reference, 1, right, lands_right)
-        cap_left, cap_right = contacts.force_cap
-        self._upper[terms.nv + 2] = cap_left / terms.wrench_unit
-        self._upper[terms.nv + 8] = cap_right / terms.wrench_unit
+        self._contact(terms, reference, 0, left, contacts.landing[0])
+        self._contact(terms, reference, 1, right, contacts.landing[1])
+        self._upper[terms.nv + 2] = contacts.force_cap[0] / terms.wrench_unit
+        self._upper[terms.nv + 8] = contacts.force_cap[1] / terms.wrench_unit
         self._bound_joints(terms, left and rolling != 0, right and rolling != 1)
 
     def _motion(self, terms: RobotTerms) -> None:
@@ -104,7 +102,7 @@ class HardConstraints:
         linear.copy_rows(self._A, 12, terms._M, 0, nv)
         linear.put_transposed(self._A, 12, nv, -terms.wrench_unit, terms._J)
 
-    def _contact(self, terms: RobotTerms, reference: Setpoint, k: int, active: bool, lands: bool) -> None:
+    def _contact(self, terms: RobotTerms, reference: WbcReference, k: int, active: bool, lands: bool) -> None:
         """Six equalities of a foot."""
         first, nv = 6 * k, terms.nv
         if active:
@@ -129,14 +127,14 @@ class HardConstraints:
         wanted: float = terms._v_sole[k, i] * -self._damping - terms._bias_sole[k, i]
         return wanted
 
-    def _turn(self, terms: RobotTerms, reference: Setpoint, k: int) -> None:
+    def _turn(self, terms: RobotTerms, reference: WbcReference, k: int) -> None:
         """Turn the sole's normal to the ground's, which is a rotation vector in its frame, and let it roll."""
         target, first = self._row_lower, 6 * k
-        normal = algebra.rotate_back(terms._R_contact[k], algebra.row(reference.ground_normal, k))
+        normal = algebra.rotate_back(terms._R_contact[k], reference._n[1] if k else reference._n[0])
         target[first + 3] -= self._levelling * normal[1]
         target[first + 4] += self._levelling * normal[0]
         if k == self._rolling:
-            target[first + 4] += self._damping * reference.roll_rate + reference.roll_acceleration
+            target[first + 4] += self._damping * reference.roll[1] + reference.roll[2]
         if self._free >= 0:
             target[first + self._free] = 0.0
 

@@ -1,6 +1,7 @@
 cimport cython
 cimport libc.math as math
 from surefoot cimport algebra
+from surefoot.wbc.model cimport RobotTerms
 
 cdef Py_ssize_t SPANS, LATEST, _PULLS
 cdef double LEAST_PRESS, MOST
@@ -15,18 +16,13 @@ cdef class LoadObserver:
     cdef readonly object found, load
     cdef object _given
 
-    cpdef update(self, terms, wrench, deviation=*, double age=*)
-    @cython.locals(
-        com="const double[:]", velocity="const double[:]", spin="const double[:]", i=Py_ssize_t,
-        turning=algebra.vector3,
-    )
-    cdef void _note(self, terms)
+    cpdef update(self, RobotTerms terms, wrench, (double, double) deviation=*, double age=*)
+    @cython.locals(i=Py_ssize_t, past=double[::1], turning=algebra.vector3)
+    cdef void _note(self, RobotTerms terms)
     @cython.locals(k=Py_ssize_t)
     cdef void _begin(self)
-    @cython.locals(
-        wrench_map="const double[:, ::1]", com="const double[:]", i=Py_ssize_t, j=Py_ssize_t, felt=double
-    )
-    cdef void _feel(self, terms)
+    @cython.locals(i=Py_ssize_t, j=Py_ssize_t, felt=double)
+    cdef void _feel(self, RobotTerms terms)
     @cython.locals(is_found=cython.bint, is_known=cython.bint, i=Py_ssize_t)
     cdef void _end(self, double unsure, double turning)
     @cython.locals(late=double)

@@ -137,13 +137,12 @@ class LoadObserver:
 
     def _note(self, terms: RobotTerms) -> None:
         """Remember momentum and moment of momentum about the origin, by the model's masses [N·s, N·m·s]."""
-        com, velocity, spin = terms.com, terms.com_velocity, terms.angular_momentum
         self._newest = (self._newest + 1) % len(self._past)
         past = self._past[self._newest]
         for i in range(3):
-            past[i] = self._mass * velocity[i]
-        turning = algebra.cross(algebra.vector(com), algebra.vector(past))
-        past[3], past[4], past[5] = spin[0] + turning[0], spin[1] + turning[1], spin[2] + turning[2]
+            past[i] = self._mass * terms._c_dot[i]
+        turning = algebra.cross(algebra.vector(terms._c), algebra.vector(past))
+        algebra.put(past[3:], algebra.add(algebra.vector(terms._L), turning))
 
     def _begin(self) -> None:
         """Let the past be as it is now, where the first span begins."""
@@ -154,14 +153,13 @@ class LoadObserver:
 
     def _feel(self, terms: RobotTerms) -> None:
         """Add force and moment about the origin that the soles feel, and the CoM."""
-        wrench_map, com = terms.sole_wrench_map, terms.com
         for i in range(6):
             felt = 0.0
             for j in range(12):
-                felt += wrench_map[i, j] * self._wrench[j]
+                felt += terms._W[i, j] * self._wrench[j]
             self._felt[i] += felt
         for i in range(3):
-            self._com[i] += com[i]
+            self._com[i] += terms._c[i]
 
     def _end(self, unsure: float, turning: float) -> None:
         """End a span, whose load has that deviation of its force and moment [N, N·m]."""

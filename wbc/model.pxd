@@ -28,6 +28,10 @@ cdef class RobotTerms:
     cdef double[:, :, ::1] _R_sole, _R_contact
     cdef object _to_sole
 
+    cpdef update(self, q, v)
+    cpdef bear(self, load)
+    cpdef shift_foot(self, Py_ssize_t k, double forward, double pitch)
+    cpdef unshift(self, Py_ssize_t k)
     @cython.locals(i=Py_ssize_t, total=double)
     cdef void _update(self)
     @cython.locals(i=Py_ssize_t, h=double[::1], p=vector3, turn=vector3)

@@ -10,6 +10,7 @@ cdef class Separation:
     cdef Py_ssize_t _filled
     cdef readonly bint is_clear
 
+    cpdef write(self, data, v, rows, lower, double unbounded)
     @cython.locals(k=Py_ssize_t, pair=Pair)
     cpdef list due(self)
     @cython.locals(k=Py_ssize_t, pair=Pair, distance=double)

@@ -16,7 +16,7 @@ from surefoot.wbc.range_space import EqualityQp, InequalityQp
 from surefoot.wbc.types import Array
 
 
-@dataclass(frozen=True, slots=True)
+@dataclass(frozen=True)
 class QpSolution:
     """Answer of a solver.
 
@@ -172,10 +172,10 @@ class EqualityFirst:
 
     def solve(self, qp: QpData) -> QpSolution | None:
         """See ``QpSolver.solve``."""
+        if self._equalities is None or self._equalities.qp is not qp:
+            self._equalities = EqualityQp(qp)
+            self._inequalities = InequalityQp(self._equalities, self._accuracy)
         equalities = self._equalities
-        if equalities is None or equalities.qp is not qp:
-            equalities = self._equalities = EqualityQp(qp)
-            self._inequalities = InequalityQp(equalities, self._accuracy)
         violation = equalities.solve()
         if violation <= self._accuracy:
             return QpSolution(equalities.x.copy(), violation, 0)

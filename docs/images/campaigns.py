@@ -12,8 +12,8 @@ from PIL import Image
 from sources import FOLDER, save_png
 
 from surefoot.scenarios.show.kit.figures import PAGE_WIDTH, save
-from surefoot.scenarios.study.campaigns.campaign import read_campaign
-from surefoot.scenarios.study.campaigns.thresholds import bars
+from surefoot.studies.campaigns.campaign import read_campaign
+from surefoot.studies.campaigns.thresholds import bars
 
 sys.path.insert(0, str(FOLDER.parent))
 from measured import MADE, limit_of, searches

@@ -80,8 +80,9 @@ def _balance(log: Path, name: str, start: float | None = None, end: float | None
 
 def run_anew(name: str) -> None:
     """Run the campaign of a picture and keep its result."""
-    from surefoot.scenarios.study.campaigns.campaign import read_campaign
-    from surefoot.scenarios.study.campaigns.sweep import cores, sweep
+    from surefoot.scenarios.run.processes import cores
+    from surefoot.studies.campaigns.campaign import read_campaign
+    from surefoot.studies.campaigns.sweep import sweep
 
     measured = import_module("measured")
     made = measured.MADE[name]

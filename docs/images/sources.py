@@ -17,7 +17,7 @@ _FIGURES = tuple(
 )
 _RESULTS = "docs/results"
 _CAMPAIGNS = (f"{_OWN}/campaigns.py", "scenarios/show/kit/figures.py")
-_MAPS = (PALETTE, *_CAMPAIGNS, "scenarios/study/campaigns/thresholds.py")
+_MAPS = (PALETTE, *_CAMPAIGNS, "studies/campaigns/thresholds.py")
 _MOVING = (PALETTE, f"{_OWN}/animate.py", f"{_OWN}/webp.py")
 
 RECOVERIES = tuple(

@@ -16,11 +16,11 @@ from webp import save_webp
 from surefoot.planner.ground.terrain import flat
 from surefoot.scenarios.palette import PUSH
 from surefoot.scenarios.show.replay.video import QUALITY
-from surefoot.scenarios.study.tour.ride import Ride
-from surefoot.scenarios.study.tour.rows import ROWS
 from surefoot.sim.marks import Mark
 from surefoot.sim.render import Camera, render_frames
 from surefoot.sim.scene import world_mjcf
+from surefoot.studies.tour.ride import Ride
+from surefoot.studies.tour.rows import ROWS
 
 PICTURE = Path(__file__).parent / "tour.webp"
 ROW, SEED = "torque", 0

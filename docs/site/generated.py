@@ -16,7 +16,7 @@ from typing import Any, Literal, get_args, get_origin
 import typer
 from pydantic.fields import FieldInfo
 
-from surefoot.scenarios.apps.cli import app
+from surefoot.scenarios.cli.program import app
 from surefoot.scenarios.file.schema import Scenario
 from surefoot.scenarios.file.units import unit_of
 from surefoot.scenarios.judge.metric import Metric

@@ -1,6 +1,5 @@
 """From a robot file to a description: everything that the file does not say, derived from the model."""
 
-from pathlib import Path
 from typing import NamedTuple
 
 import numpy as np
@@ -10,6 +9,7 @@ from surefoot.mimic import names_of
 from surefoot.models.inertia import LEAST_MASS
 from surefoot.models.robot_file.bindings import rolling, told_rolling
 from surefoot.models.robot_file.engine_mesh import compiled, taken
+from surefoot.models.robot_file.files import Originals
 from surefoot.models.robot_file.imu import find_imu
 from surefoot.models.robot_file.joint_inertia import require_inertia
 from surefoot.models.robot_file.legs import at, find_legs, rest, solved
@@ -58,19 +58,14 @@ class Derived(NamedTuple):
     notes: tuple[str, ...]
 
 
-def derive(file: RobotFile, path: Path) -> Derived:
+def derive(made_of: Originals) -> Derived:
     """Describe the robot of a file.
 
-    Args:
-        file: the robot file.
-        path: of its model.
-
     Raises:
-        RobotError: the model cannot be read or does not walk on two legs.
+        RobotError: no engine takes the model, or it does not walk on two legs.
     """
-    source = read_source(file, path)
-    model = reduced(file, source, path)
-    return _Deriver(file, model).derived()
+    source = read_source(made_of.file, made_of.document)
+    return _Deriver(made_of.file, reduced(made_of, source)).derived()
 
 
 class _Deriver:

@@ -85,20 +85,45 @@ def _meshes(root: Node, path: Path) -> Iterator[tuple[str, Path | None]]:
         yield from ((reference, file if is_file(file) else None) for file in (place, *colours))
 
 
-def srdf_of(file: RobotFile, path: Path) -> Path | None:
+@dataclass(frozen=True, slots=True)
+class Originals:
+    """A robot file with its model, each as it was read, once.
+
+    Attributes:
+        file: the robot file.
+        document: its model.
+        srdf: that is of the model; None where there is none.
+    """
+
+    file: RobotFile
+    document: Document
+    srdf: Path | None
+
+
+def originals(file: RobotFile, folder: Path) -> Originals:
+    """Read the model of a robot file in a folder.
+
+    Raises:
+        RobotError: it cannot be read, is neither URDF nor MJCF, or has what no robot has; or its SRDF is not there.
+    """
+    document = read_document(resolve(file.model, folder))
+    return Originals(file, document, _srdf_of(file, document))
+
+
+def _srdf_of(file: RobotFile, document: Document) -> Path | None:
     """The SRDF that the file names, or the one beside the model that is of a robot of its name.
 
     Raises:
         RobotError: the file names one that is not there.
     """
+    folder = document.path.parent
     if file.srdf is not None:
-        place = resolve(file.srdf, path.parent, "srdf")
+        place = resolve(file.srdf, folder, "srdf")
         if not is_file(place):
             raise RobotError(("srdf",), f"srdf {file.srdf} of {file.name} is not there", f"put it at {place}")
         return place
-    root = root_of(path, MODEL)
-    name = None if root is None or root.tag != "robot" else root.get("name")
-    beside = sorted((*path.parent.glob("*.srdf"), *(path.parent.parent / "srdf").glob("*.srdf")))
+    name = document.root.get("name") if document.mjcf is None else None
+    beside = sorted((*folder.glob("*.srdf"), *(folder.parent / "srdf").glob("*.srdf")))
     roots = {place: root_of(place, SRDF) for place in beside} if name else {}
     named = [place for place, found in roots.items() if found is not None and found.get("name") == name]
     return named[0] if len(named) == 1 else None

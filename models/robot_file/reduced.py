@@ -3,7 +3,6 @@
 import fnmatch
 from collections.abc import Iterator, Sequence
 from dataclasses import dataclass
-from pathlib import Path
 
 import numpy as np
 import pinocchio as pin
@@ -12,7 +11,7 @@ from surefoot.models.inertia import LEAST_MASS, MASSLESS
 from surefoot.models.joints import is_revolute
 from surefoot.models.robot_file.bindings import check_bindings, told_locked
 from surefoot.models.robot_file.couplings import joined, kept, told
-from surefoot.models.robot_file.files import srdf_of
+from surefoot.models.robot_file.files import Originals
 from surefoot.models.robot_file.magnitudes import check_angle, check_joints
 from surefoot.models.robot_file.mjcf_schema import FOLLOWING
 from surefoot.models.robot_file.motors import read_srdf, require_limits, set_armature, set_limits
@@ -84,16 +83,15 @@ def frame_of(model: pin.Model, link: str, key: str) -> int:
     return int(model.getFrameId(link, pin.FrameType.BODY))
 
 
-def reduced(file: RobotFile, source: Source, path: Path) -> Reduced:
+def reduced(made_of: Originals, source: Source) -> Reduced:
     """Lock what does not walk, complete limits, and turn the base.
 
     Raises:
         RobotError: a name or pattern means nothing, or a limit is missing.
     """
-    full, notes = source.model, source.notes
+    file, srdf, full, notes = made_of.file, made_of.srdf, source.model, source.notes
     names = tuple(full.names)[2:]
     set_limits(full, file, names)
-    srdf = srdf_of(file, path)
     rotors, states, passive = read_srdf(srdf, names)
     set_armature(full, matched(file.armature, names, "armature", file.name), rotors, srdf, notes)
     feet = file.soles()
@@ -117,7 +115,7 @@ def reduced(file: RobotFile, source: Source, path: Path) -> Reduced:
             q[model_joint.idx_q] = angle
     free = [name for joint, name in enumerate(full.names) if joint > 1 and joint not in locked]
     limited = matched(file.torque_limit, names, "torque_limit", file.name)
-    source.left_out += check_bindings(source.bindings, free, limited, path)
+    source.left_out += check_bindings(source.bindings, free, limited, made_of.document.path)
     if driven := [name for name in free if name in passive]:
         source.left_out.append(f"left out: passive_joint of the SRDF: {', '.join(driven)}: they have motors here")
     model = _without(full, list(locked), q)

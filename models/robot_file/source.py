@@ -11,7 +11,7 @@ import pinocchio as pin
 from surefoot.models.robot_file.base import base_frame, based_on, held_by, moved, told
 from surefoot.models.robot_file.bindings import Binding, Follower
 from surefoot.models.robot_file.document import Node, number
-from surefoot.models.robot_file.files import Document, read_document
+from surefoot.models.robot_file.files import Document
 from surefoot.models.robot_file.magnitudes import Part, check_parts
 from surefoot.models.robot_file.quantities import INERTIA, LENGTH, MASS
 from surefoot.models.robot_file.schema import RobotFile
@@ -61,13 +61,13 @@ class Source:
     held: tuple[str, ...] = ()
 
 
-def read_source(file: RobotFile, path: Path) -> Source:
-    """Read the model of a robot file.
+def read_source(file: RobotFile, document: Document) -> Source:
+    """Make a model of Pinocchio and shapes of the document of a robot file.
 
     Raises:
-        RobotError: it is missing, none that can be read, or physically impossible.
+        RobotError: no engine takes it, or it is physically impossible.
     """
-    document = read_document(path)
+    path = document.path
     if document.mjcf is None:
         source = _read_urdf(file, document)
     else:

@@ -11,12 +11,13 @@ from typing import Protocol
 
 import numpy as np
 
+from surefoot import linear
 from surefoot.planner.laws.qp import Qp, QpSolution
 from surefoot.planner.references.zmp_reference import ZmpReference
 from surefoot.planner.types import Array, SolverStatus
 
 
-@dataclass(frozen=True, slots=True)
+@dataclass(frozen=True)
 class StepContext:
     """The next two footsteps, in the plan frame.
 
@@ -41,7 +42,7 @@ class StepContext:
     upper: Array
 
 
-@dataclass(frozen=True, slots=True)
+@dataclass(frozen=True)
 class MotionProblem:
     """What is known of one tick, in the plan frame (origin and heading of the stance foot, or of the last landed one).
 
@@ -87,12 +88,12 @@ class MotionProblem:
             steps: as of the attribute.
             rotation: likewise, shape (2, 2) [-].
         """
-        turned, (stiffness, omega, reference) = before @ rotation, window
-        fallback = np.vstack((turned[1:], np.zeros((1, 2))))
-        return cls(state, stiffness, omega, reference, steps, turned[0], fallback, rotation)
+        turned, (stiffness, omega, reference) = np.zeros((len(before) + 1, 2)), window
+        linear.fused_product(before, rotation, turned[: len(before)])
+        return cls(state, stiffness, omega, reference, steps, turned[0], turned[1:], rotation)
 
 
-@dataclass(frozen=True, slots=True)
+@dataclass(frozen=True)
 class Motion:
     """The answer to a `MotionProblem`, in the plan frame.
 
@@ -123,7 +124,7 @@ class MotionPlanner(Protocol):
         """The jerk over the horizon, and where the next footsteps go."""
 
 
-@dataclass(frozen=True, slots=True)
+@dataclass(frozen=True)
 class BuiltQps:
     """The QPs of one tick, and what their solutions are to be added to.
 

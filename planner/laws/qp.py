@@ -23,7 +23,7 @@ _UNBOUNDED = 1e30
 """A bound that DAQP takes for none, as its manual says [-]."""
 
 
-@dataclass(frozen=True, slots=True)
+@dataclass(frozen=True)
 class Qp:
     """min ½ zᵀ P z + qᵀ z subject to G z <= h and lower <= z <= upper.
 
@@ -50,7 +50,7 @@ class Qp:
         return qpsolvers.Problem(self.P, self.q, self.G, self.h, None, None, self.lower, self.upper)
 
 
-@dataclass(frozen=True, slots=True)
+@dataclass(frozen=True)
 class QpSolution:
     """Result of the first solver that succeeded.
 

@@ -7,5 +7,8 @@ cpdef void integrate_riccati(const double[:] stiffness, double sample_time, doub
 cpdef void fade(const double[:] stiffness, const double[:] omega, double sample_time, double[:] decay) noexcept nogil
 @cython.locals(k=Py_ssize_t)
 cpdef void weigh(const double[:] decay, double[:] weights) noexcept nogil
-@cython.locals(last=Py_ssize_t, before=double, after=double)
 cpdef double weight(const double[:] decay, Py_ssize_t k) noexcept nogil
+@cython.locals(last=Py_ssize_t, counted=double)
+cpdef double share(const double[:] decay, Py_ssize_t k) noexcept nogil
+@cython.locals(k=Py_ssize_t, ahead=double, following=double)
+cpdef void gather(const double[:] decay, const double[:] zmp, double[:] bounded) noexcept nogil

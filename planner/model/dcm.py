@@ -91,10 +91,14 @@ def weigh(decay: Array, weights: Array) -> None:
 
 def weight(decay: Array, k: int) -> float:
     """That of sample k: w_k = (d_{k-1} - d_k) / 2 + (d_k - d_{k+1}) / 2, and d_k in place of the last half."""
+    return (share(decay, k - 1) if k > 0 else 0.0) + share(decay, k)
+
+
+def share(decay: Array, k: int) -> float:
+    """What each end of the interval after sample k counts by: (d_k - d_{k+1}) / 2, and d_k after the last one."""
     last = decay.shape[0] - 1
-    before: float = 0.5 * (decay[k - 1] - decay[k]) if k > 0 else 0.0
-    after: float = 0.5 * (decay[k] - decay[k + 1]) if k < last else decay[last]
-    return before + after
+    counted: float = 0.5 * (decay[k] - decay[k + 1]) if k < last else decay[last]
+    return counted
 
 
 def nominal_dcm(stiffness: Array, omega: Array, zmp: Array, sample_time: float) -> Array:
@@ -111,8 +115,16 @@ def nominal_dcm(stiffness: Array, omega: Array, zmp: Array, sample_time: float) 
     Returns:
         ξ, shape (n, k) [m].
     """
-    decay = decays(stiffness, omega, sample_time)[:, None]
-    share = 0.5 * (decay[:-1] - decay[1:]) * (zmp[:-1] + zmp[1:])
-    last = len(zmp) - 1
-    ahead = np.concatenate((np.cumsum(share[::-1], axis=0)[::-1], np.zeros_like(zmp[:1])))
-    return np.asarray((ahead + decay[last] * zmp[last]) / decay)
+    decay, bounded = decays(stiffness, omega, sample_time), np.empty(zmp.shape)
+    for column in range(zmp.shape[1]):
+        gather(decay, np.asarray(zmp[:, column], dtype=np.float64), bounded[:, column])
+    return bounded
+
+
+def gather(decay: Array, zmp: Array, bounded: Array) -> None:
+    """Write ξ_k with ξ_k d_k = Σ_{j ≥ k} (d_j - d_{j+1}) (p_j + p_{j+1}) / 2, shape (n,); it ends on the last ZMP."""
+    ahead, following = 0.0, 0.0
+    for k in range(decay.shape[0] - 1, -1, -1):
+        ahead += share(decay, k) * (zmp[k] + following)
+        following = zmp[k]
+        bounded[k] = ahead / decay[k]

@@ -9,7 +9,6 @@ from itertools import product
 
 import numpy as np
 
-from surefoot import algebra
 from surefoot.planner import geometry, quintic
 from surefoot.planner.quintic import Quintic
 from surefoot.planner.types import Array
@@ -30,7 +29,7 @@ Course = tuple[float, tuple[float, ...]]
 """What the clock showed when it began to follow a quintic [samples], and the coefficients of that."""
 
 
-@dataclass(frozen=True, slots=True)
+@dataclass(frozen=True)
 class TimeScaling:
     """The clock, and the quintic that it follows or has followed last.
 
@@ -76,7 +75,7 @@ class TimeScaling:
         """What the clock shows so many samples from now [samples]."""
         if self.steady:
             return self.now + samples
-        return float((self.begun + self._followed(np.array([self.elapsed + samples]))[0])[0])
+        return self.begun + self._at(self.elapsed + samples)[0]
 
     def until(self, instant: float) -> float:
         """Time until the clock shows an instant that is not within the quintic [samples]."""
@@ -95,7 +94,7 @@ class TimeScaling:
             return time, 1.0, 0.0
         t = self.sample_time
         begin = told - self.elapsed * t
-        way, rate, bend = (float(value[0]) for value in self._followed(np.array([(time - begin) / t])))
+        way, rate, bend = self._at((time - begin) / t)
         return told + (self.begun - self.now) * t + way * t, rate, bend / t
 
     def scaled(self, way: float, length: float) -> "TimeScaling":
@@ -106,14 +105,13 @@ class TimeScaling:
         """
         rate, bend = 1.0, 0.0
         if not self.steady:
-            _, rates, bends = self._followed(np.array([self.elapsed]))
-            rate, bend = float(rates[0]), float(bends[0])
+            _, rate, bend = self._at(self.elapsed)
         for slowing, factor in product((bend, max(bend, 0.0)), _LENGTHS):
             start, end = np.array([[0.0], [rate], [slowing]]), np.array([[way], [1.0], [0.0]])
             lasting = factor * length
             course = tuple(geometry.quintic(start, end, lasting)[:, 0].tolist())
             scaling = replace(self, begun=self.now, elapsed=0.0, way=way, length=lasting, coefficients=course)
-            if scaling._followed(np.linspace(0.0, lasting, _LOOKED_AT))[1].min() > _SLOWEST:
+            if min(scaling._at(time)[1] for time in np.linspace(0.0, lasting, _LOOKED_AT).tolist()) > _SLOWEST:
                 break
         return scaling
 
@@ -126,16 +124,10 @@ class TimeScaling:
         """The clock that shows an instant and goes on from there at its own rate [samples]; its course is another."""
         return TimeScaling(self.sample_time, instant, self.ticks, begun=instant)
 
-    def _followed(self, time: Array) -> tuple[Array, Array, Array]:
-        """Way, rate and its derivative at times since the quintic began; after it the clock goes at its own rate."""
-        order, coefficients = np.arange(1.0, 6.0), np.array(self.coefficients)
-        first = coefficients[1:] * order
-        inside = np.clip(time, 0.0, self.length)
-        powers = inside[:, None] ** np.arange(6)
-        ways = (coefficients, first, first[1:] * order[:-1])
-        way, rate, bend = (powers[:, : 6 - k] @ c for k, c in enumerate(ways))
-        over = time > self.length
-        return way + (time - inside), np.where(over, 1.0, rate), np.where(over, 0.0, bend)
+    def _at(self, time: float) -> tuple[float, float, float]:
+        """Way, rate and its derivative at a time since the quintic began [samples]."""
+        a, b, c, d, e, f = self.coefficients
+        return followed((a, b, c, d, e, f), self.length, time)
 
 
 def follow(course: Quintic, length: float, begun: float, time: Array, told: Array) -> None:
@@ -149,8 +141,13 @@ def follow(course: Quintic, length: float, begun: float, time: Array, told: Arra
         told: where the clock, its rate and the derivative of that by samples are written, shape (3, n).
     """
     for k in range(time.shape[0]):
-        t = algebra.clamp(time[k], 0.0, length)
-        over = time[k] > length
-        told[0, k] = begun + quintic.value(course, t) + (time[k] - t)
-        told[1, k] = 1.0 if over else quintic.slope(course, t)
-        told[2, k] = 0.0 if over else quintic.bend(course, t)
+        way, rate, bend = followed(course, length, time[k])
+        told[0, k], told[1, k], told[2, k] = begun + way, rate, bend
+
+
+def followed(course: Quintic, length: float, time: float) -> tuple[float, float, float]:
+    """Way, rate and its derivative at a time since a quintic of a length began; then the clock goes at its own rate."""
+    if time > length:
+        return quintic.value(course, length) + (time - length), 1.0, 0.0
+    t = max(time, 0.0)
+    return quintic.value(course, t) + (time - t), quintic.slope(course, t), quintic.bend(course, t)

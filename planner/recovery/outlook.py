@@ -86,7 +86,7 @@ class Outlook:
         for column in range(COLUMNS):
             self._ahead[column] = self._next[column] = 0.0
         for k in range(last, -1, -1):
-            share = 0.5 * (self.decay[k] - self.decay[k + 1]) if k < last else self.decay[last]
+            share = law.share(self.decay, k)
             for column in range(COLUMNS):
                 value = self._driving(k, column, lift)
                 self._ahead[column] += share * (value + self._next[column])

@@ -21,3 +21,6 @@ cdef vector3 quintic_rise(double s, double rate) noexcept nogil
 cdef vector3 sine_cubed(double apex, double elapsed, double length, double sample_time) noexcept nogil
 @cython.locals(k=Py_ssize_t)
 cdef void _stiffen(const double[:, :] height, const double[:] ground, double pressing, double over, double[::1] stiffness) noexcept
+
+cdef class HeightPreview:
+    cdef readonly object height, stiffness

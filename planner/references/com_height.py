@@ -280,7 +280,7 @@ def shortest_support(apex: float) -> float:
     return _PI * math.sqrt(3.0 * apex / STEEPEST_FALL)
 
 
-@dataclass(frozen=True, slots=True)
+@dataclass(frozen=True)
 class HeightPreview:
     """CoM height over a window of samples.
 

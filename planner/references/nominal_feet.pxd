@@ -2,6 +2,7 @@ cimport cython
 cimport libc.math as math
 from surefoot cimport algebra
 from surefoot.planner cimport quintic
+from surefoot.planner.swing cimport heel_off
 from surefoot.planner.quintic cimport quintic6
 
 @cython.final

@@ -10,6 +10,7 @@ from surefoot.planner.model.time_scaling import CLOCK_ROUNDING
 from surefoot.planner.steps.phases import Phase, PhaseSamples
 from surefoot.planner.steps.schedule import Schedule
 from surefoot.planner.steps.step import unit_swing
+from surefoot.planner.swing import heel_off
 from surefoot.planner.swing.trajectory import TOUCHING, SwingTrajectory
 from surefoot.planner.types import Array, PhaseKind
 
@@ -128,9 +129,7 @@ class NominalFeet:
     def _roll(self, start: float, over: float, angle: float, first: int, end: int, swings: int) -> None:
         """Pitch of the foot that rolls between two instants of the clock, see `planner.swing.heel_off.FootRoll`."""
         for k in range(first, end):
-            s = (self._clock[k] - start) / (over - start)
-            w = s * (1.0 - s)
-            self._pitch[swings, k] = angle * (64.0 * w * w * w) if 0.0 < s < 1.0 else 0.0
+            self._pitch[swings, k] = angle * heel_off.bump((self._clock[k] - start) / (over - start))[0]
 
 
 class UnitSwing:

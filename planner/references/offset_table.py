@@ -10,7 +10,7 @@ from surefoot.planner.references.zmp_reference import SupportKey
 from surefoot.planner.types import Array
 
 
-@dataclass(frozen=True, slots=True)
+@dataclass(frozen=True)
 class OffsetTable:
     """What the swing leg adds to the ZMP over a window and some samples more: planner state that outlives a tick.
 

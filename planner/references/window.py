@@ -11,7 +11,7 @@ from surefoot.planner.references.zmp_reference import ZmpReference
 from surefoot.planner.types import GRAVITY, Array
 
 
-@dataclass(frozen=True, slots=True)
+@dataclass(frozen=True)
 class Window:
     """References over the window of one tick, in the plan frame.
 

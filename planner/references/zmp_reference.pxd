@@ -1,6 +1,6 @@
 cimport cython
 cimport libc.math as math
-from surefoot cimport algebra
+from surefoot cimport algebra, linear
 from surefoot.planner.steps.phases cimport PhaseSamples
 
 ctypedef (double, double) box2
@@ -18,3 +18,9 @@ cdef box2 joint_box(box2 box, double x, double y) noexcept nogil
 cdef void _refer(PhaseSamples samples, const double[:, :, ::1] table, double[:, ::1] point, double[:, ::1] gain, double[:, ::1] half_size, double[::1] height)
 @cython.locals(index=Py_ssize_t[::1], fraction=double[::1], k=Py_ssize_t, i=Py_ssize_t, last=Py_ssize_t)
 cdef void _share_load(PhaseSamples samples, const double[:] on_left, double[::1] load)
+
+cdef class ZmpReference:
+    cdef readonly object point, gain, half_size, height
+
+cdef class Support:
+    cdef readonly object key, rotation, origin, table, heights, on_left, outer, inner, footholds, increment

@@ -7,7 +7,7 @@ from typing import NamedTuple
 import numpy as np
 from numpy.typing import NDArray
 
-from surefoot import algebra
+from surefoot import algebra, linear
 from surefoot.planner.geometry import CORNERS, frame_rotation, points_of_sole
 from surefoot.planner.steps.phases import PhaseSamples
 from surefoot.planner.steps.schedule import Schedule
@@ -15,7 +15,7 @@ from surefoot.planner.types import Array, Foot, Footstep, PhaseKind
 from surefoot.polygon import convex_hull
 
 
-@dataclass(frozen=True, slots=True)
+@dataclass(frozen=True)
 class ZmpReference:
     """ZMP reference and its box over a window, in the plan frame.
 
@@ -63,11 +63,12 @@ def support_table(
         Columns x, y [m], gain of the next two footstep shifts [-], box half sizes x, y [m], height [m], and their
         differences to the next row, zero in the last one, shape (2, m, 7).
     """
-    table = np.zeros((2, len(schedule.supports), 7))
-    values, stance = table[0], schedule.index(landed)
-    _place_supports(schedule.positions, schedule.yaws, schedule.supports, stance, values)
-    _move_supports(schedule.supports, stance, np.array(free, dtype=np.float64), stay, values)
-    _box_supports(schedule.positions, schedule.yaws, schedule.supports, stance, half_size, values)
+    positions, yaws, supports, stance = schedule.positions, schedule.yaws, schedule.supports, schedule.index(landed)
+    table = np.zeros((2, len(supports), 7))
+    values = table[0]
+    _place_supports(positions, yaws, supports, stance, values)
+    _move_supports(supports, stance, np.array(free, dtype=np.float64), stay, values)
+    _box_supports(positions, yaws, supports, stance, half_size, values)
     table[1, : len(values) - 1] = values[1:] - values[: len(values) - 1]
     return table
 
@@ -203,7 +204,7 @@ def hulls_of(soles: list[Sole]) -> tuple[Array, Array]:
     return hull_of(*outer), hull_of(*inner)
 
 
-@dataclass(frozen=True, slots=True)
+@dataclass(frozen=True)
 class Support:
     """The present support and the plan frame on it.
 
@@ -217,6 +218,7 @@ class Support:
         outer: support polygon of the planned soles, shape (v, 2) [m].
         inner: support polygon of the soles shrunk to the ZMP margin, shape (v, 2) [m].
         footholds: where the left and the right foot stand, or stood last.
+        increment: displacements of the next two footsteps, in the plan frame, zero where none comes, shape (2, 2) [m].
     """
 
     key: SupportKey
@@ -228,6 +230,7 @@ class Support:
     outer: Array
     inner: Array
     footholds: tuple[Footstep, Footstep]
+    increment: Array
 
     @property
     def frame(self) -> tuple[Array, Array]:
@@ -254,6 +257,15 @@ def _share_load(samples: PhaseSamples, on_left: Array, load: Array) -> None:
         load[k] = (1.0 - share) * on_left[i] + share * on_left[min(i + 1, last)]
 
 
+def _increments(schedule: Schedule, landed: int, rotation: Array) -> Array:
+    """Those of a `Support`, by the plan frame's rotation to the world."""
+    increment, before = np.zeros((2, 2)), schedule.step(landed).place.position
+    for n, step in enumerate(schedule.after(landed)[:2]):
+        linear.fused_product((step.place.position - before)[None, :2], rotation, increment[n : n + 1])
+        before = step.place.position
+    return increment
+
+
 def present_support(key: SupportKey, phase: PhaseKind, margin: float, room: tuple[float, float]) -> Support:
     """The support of this tick.
 
@@ -267,11 +279,11 @@ def present_support(key: SupportKey, phase: PhaseKind, margin: float, room: tupl
     latest, before = schedule.step(landed).place, schedule.step(landed - 1).place
     standing = (latest,) if phase is PhaseKind.SINGLE else (latest, before)
     outer, inner = hulls_of([sole_of(place, ground.half_size, margin) for place in standing])
-    stay = not ground.terrain.footholds.follow
+    rotation, stay = frame_rotation(latest.yaw), not ground.terrain.footholds.follow
     table = support_table(schedule, landed, key.free, np.minimum(margin * ground.half_size, room), stay)
     return Support(
         key=key,
-        rotation=frame_rotation(latest.yaw),
+        rotation=rotation,
         origin=latest.position[:2],
         table=table,
         heights=table[0, :, 6],
@@ -279,4 +291,5 @@ def present_support(key: SupportKey, phase: PhaseKind, margin: float, room: tupl
         outer=outer,
         inner=inner,
         footholds=(latest, before) if latest.foot is Foot.LEFT else (before, latest),
+        increment=_increments(schedule, landed, rotation),
     )

@@ -122,7 +122,7 @@ def with_heel_lifted(schedule: Schedule, number: int, radius: float) -> Schedule
     angle = stretched(ahead, radius, schedule.ground.parameters.size.length)
     if angle <= (step.roll.angle if step.roll else 0.0):
         return schedule
-    step = replace(step, roll=roll_span(stance.double, step.lift_off, step.single, angle))
+    step = replace(step, roll=roll_span(stance.double_support, step.lift_off, step.single_support, angle))
     return schedule.with_steps((*schedule.steps[:at], step, *schedule.steps[at + 1 :]))
 
 

@@ -4,6 +4,27 @@ from surefoot cimport algebra
 cdef Py_ssize_t _DOUBLE
 cdef double CLOCK_ROUNDING
 
+cdef class Phase:
+    cdef readonly object kind
+    cdef readonly double start, samples
+    cdef readonly Py_ssize_t step
+    cdef readonly object stance
+    cdef readonly Py_ssize_t support
+    cdef readonly double rest
+    cdef readonly object roll
+
+cdef class PhaseTable:
+    cdef readonly tuple phases
+    cdef readonly object kind, start, length, rest, support, contacts
+
+cdef object _LEFT, _RIGHT
+
+@cython.locals(k=Py_ssize_t, phase=Phase)
+cdef void _tabulate(
+    tuple phases, Py_ssize_t[::1] kind, Py_ssize_t[::1] support, double[::1] start, double[::1] length,
+    double[::1] rest, unsigned char[:, ::1] contacts,
+)
+
 cdef class PhaseSamples:
     cdef readonly object phases, which, kind, clock, rate, elapsed, length, index, fraction, fraction_rate, contacts
     cdef readonly double sample_time

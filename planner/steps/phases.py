@@ -14,9 +14,10 @@ from surefoot.planner.swing.heel_off import RollSpan
 from surefoot.planner.types import Array, Foot, PhaseKind
 
 _DOUBLE = int(PhaseKind.DOUBLE)
+_LEFT, _RIGHT = Foot.LEFT, Foot.RIGHT
 
 
-@dataclass(frozen=True, slots=True)
+@dataclass(frozen=True)
 class Phase:
     """One support phase; it covers the clock from `start` to `end`.
 
@@ -72,10 +73,11 @@ def phases_of(steps: Sequence[Step], stands: bool) -> tuple[Phase, ...]:
         if step.number >= 1:
             stance = step.place.foot.other
             swing = Phase(
-                PhaseKind.SINGLE, step.lift_off, step.single, step.number, stance, step.support, roll=step.roll
+                PhaseKind.SINGLE, step.lift_off, step.single_support, step.number, stance, step.support, 0.0, step.roll
             )
             rolling = roll if stop is None else None
-            after = Phase(PhaseKind.DOUBLE, step.touchdown, step.double, step.number, None, step.support, roll=rolling)
+            double, number, point = step.double_support, step.number, step.support
+            after = Phase(PhaseKind.DOUBLE, step.touchdown, double, number, None, point, roll=rolling)
             phases += [swing, after]
         between = step.support + 1
         if stop is not None:
@@ -93,7 +95,7 @@ def phases_since(begin: float, steps: Sequence[Step], stands: bool) -> tuple[Pha
     return tuple([phase for phase in phases_of(steps, stands) if phase.end > begin + CLOCK_ROUNDING])
 
 
-@dataclass(frozen=True, slots=True)
+@dataclass(frozen=True)
 class PhaseTable:
     """Phases in order, without gaps, as columns of n rows.
 
@@ -118,11 +120,28 @@ class PhaseTable:
     @classmethod
     def of(cls, phases: tuple[Phase, ...]) -> "PhaseTable":
         """That of some phases."""
-        # Of plain numbers: numpy is slow to make arrays of an enumeration.
-        whole = [(int(p.kind), p.support, p.stance is not Foot.RIGHT, p.stance is not Foot.LEFT) for p in phases]
-        kind, support, left, right = np.array(whole, dtype=np.intp).T.copy()
-        start, length, rest = np.array([(p.start, p.samples, p.rest) for p in phases], dtype=np.float64).T.copy()
-        return cls(phases, kind, start, length, rest, support, np.stack((left, right), axis=1) != 0)
+        n = len(phases)
+        (kind, support), (start, length, rest) = np.empty((2, n), dtype=np.intp), np.empty((3, n))
+        contacts = np.empty((n, 2), dtype=np.uint8)
+        _tabulate(phases, kind, support, start, length, rest, contacts)
+        return cls(phases, kind, start, length, rest, support, contacts.view(np.bool_))
+
+
+def _tabulate(
+    phases: tuple[Phase, ...],
+    kind: NDArray[np.intp],
+    support: NDArray[np.intp],
+    start: Array,
+    length: Array,
+    rest: Array,
+    contacts: NDArray[np.uint8],
+) -> None:
+    """Write the columns of a `PhaseTable`."""
+    for k in range(len(phases)):
+        phase = phases[k]
+        kind[k], support[k] = phase.kind, phase.support
+        start[k], length[k], rest[k] = phase.start, phase.samples, phase.rest
+        contacts[k, 0], contacts[k, 1] = phase.stance is not _RIGHT, phase.stance is not _LEFT
 
 
 class PhaseSamples:

@@ -104,7 +104,7 @@ class Schedule:
                 points.append((step.support - 1, (at - 2, at - 1)))
             points.append((step.support, (at - 1, at - 1)))
         if self.stands:
-            points.append((self.steps[-1].support + 1, (len(self.steps) - 2, len(self.steps) - 1)))
+            points.append((self.last.support + 1, (len(self.steps) - 2, len(self.steps) - 1)))
         return np.array([between for number, between in points if number >= self.first_support])
 
     @property
@@ -125,7 +125,8 @@ class Schedule:
     @property
     def on_left(self) -> Array:
         """Share of the weight on the left foot at the support points, shape (m,) [-]."""
-        return self.at_supports(np.array([float(step.place.foot is Foot.LEFT) for step in self.steps]))
+        left = [1.0 if step.place.foot is Foot.LEFT else 0.0 for step in self.steps]
+        return np.array([0.5 * (left[one] + left[other]) for one, other in self.supports.tolist()])
 
     @property
     def support_points(self) -> Array:
@@ -135,12 +136,12 @@ class Schedule:
     @property
     def last(self) -> Step:
         """The last step in sight."""
-        return self.steps[-1]
+        return self.steps[len(self.steps) - 1]
 
     @property
     def last_phase(self) -> Phase:
         """The last phase in sight."""
-        return self.phases[-1]
+        return self.phases[len(self.phases) - 1]
 
     def index(self, number: int) -> int:
         """Where a step is in `steps`."""
@@ -300,14 +301,16 @@ class Schedule:
 
     def retimed(self, gait: GaitParameters, now: float) -> "Schedule":
         """All phases to come have the durations of a gait; those that have begun by now keep theirs on the clock."""
-        begun, steps = self.phase(now).start, [self.steps[0]]
+        begun, before = self.phase(now).start, self.steps[0]
+        steps = [before]
         single, double = durations(gait, self.ground.parameters.sample_time)
         for step in self.steps[1:]:
             if step.lift_off > begun:
-                step = step.retimed(steps[-1], (single, double), begun, now, self.ground.parameters)
+                step = step.retimed(before, (single, double), begun, now, self.ground.parameters)
             elif step.touchdown > begun:
-                step = replace(step, double=double)
+                step = replace(step, double_support=double)
             steps.append(step)
+            before = step
         return replace(self.with_steps(tuple(steps)), gait=gait)
 
     def moved(self, number: int, position: Array) -> "Schedule":

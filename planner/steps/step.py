@@ -24,7 +24,7 @@ _LOOKED_AT = 60
 """Instants of a swing over edges at which its acceleration is looked at [-]."""
 
 
-@dataclass(frozen=True, slots=True)
+@dataclass(frozen=True)
 class Stop:
     """Standing before a step, and the double support in which the weight then goes onto the stance foot.
 
@@ -55,7 +55,7 @@ class Stop:
         return Stop.usual(self.stand, double) if self.rest else Stop(self.stand, double, 0.0)
 
 
-@dataclass(frozen=True, slots=True, eq=False)
+@dataclass(frozen=True, eq=False)
 class Step:
     """A step in sight, or one that has landed; the start feet count as steps -1 and 0.
 
@@ -77,8 +77,8 @@ class Step:
         support: number in the walk of the support point of the ZMP on its stance foot.
         stop: standing before it; None where it follows a step.
         lift_off: when its foot leaves the ground, on the clock [samples].
-        single: duration of its single support [samples].
-        double: duration of the double support after it [samples].
+        single_support: duration of its single support [samples].
+        double_support: duration of the double support after it [samples].
         roll: of its foot as it leaves the ground; None for one that stays level.
     """
 
@@ -98,19 +98,19 @@ class Step:
     support: int = -1
     stop: Stop | None = None
     lift_off: float = 0.0
-    single: float = 0.0
-    double: float = 0.0
+    single_support: float = 0.0
+    double_support: float = 0.0
     roll: RollSpan | None = None
 
     @property
     def touchdown(self) -> float:
         """When its foot lands, on the clock [samples]."""
-        return self.lift_off + self.single
+        return self.lift_off + self.single_support
 
     @property
     def end(self) -> float:
         """When the double support after it is over, on the clock [samples]."""
-        return self.touchdown + self.double
+        return self.touchdown + self.double_support
 
     def landing(self, position: Array, normal: Array) -> "Step":
         """The step that lands elsewhere, positions and normals of shape (3,) [m, -]."""
@@ -151,7 +151,9 @@ class Step:
         elif roll is not None:
             single = max(single, (roll.end - lift_off) / LEVEL_AGAIN)
         swing = unit_swing(single, self.climb, self.course, parameters)
-        return replace(self, stop=stop, lift_off=lift_off, single=single, double=double, roll=roll, swing=swing)
+        return replace(
+            self, stop=stop, lift_off=lift_off, single_support=single, double_support=double, roll=roll, swing=swing
+        )
 
 
 def durations(gait: GaitParameters, sample_time: float) -> tuple[float, float]:
@@ -166,7 +168,7 @@ def lift_off_after(before: Step, stop: Stop | None) -> float:
 
 def ramp_before(before: Step, stop: Stop | None) -> float:
     """Time that the weight takes to leave a foot after a step and a stop [samples]."""
-    return before.double if stop is None else stop.shift - stop.rest
+    return before.double_support if stop is None else stop.shift - stop.rest
 
 
 def start_step(number: int, place: Footstep, path: Path, gait: GaitParameters, ground: Ground) -> Step:
@@ -212,7 +214,7 @@ def lay(
     course = swing_course(number, start, place, single, gait.swing_height, ground)
     to, off, other = (float(one.position[2]) for one in (place, start, stance))
     climb, lift = round(to - off, _MEASURED), round(min(to, other) - min(other, off), _MEASURED)
-    alike = [one.swing for one in before if (one.single, one.climb, one.course) == (single, climb, course)]
+    alike = [one.swing for one in before if (one.single_support, one.climb, one.course) == (single, climb, course)]
     swing = alike[0] if alike else unit_swing(single, climb, course, parameters)
     way = math.dist(xy, start.position[:2])
     lift_off, half_length = lift_off_after(last, stop), float(ground.half_size[0])
@@ -234,8 +236,8 @@ def lay(
         support=last.support + 1 + (stop is not None),
         stop=stop,
         lift_off=lift_off,
-        single=single,
-        double=double,
+        single_support=single,
+        double_support=double,
         roll=roll_span(ramp_before(last, stop), lift_off, single, gait.heel_off) if heel_off else None,
     )
     check_reach(number, seen_from(stance, place), parameters)
@@ -260,10 +262,11 @@ def laid_step(
     at = other.number - laid[0].number if laid else 0
     if not 0 < at < len(laid) - 1:
         return None
-    first, second, step = laid[at - 1 : at + 2]
+    first, second, step = laid[at - 1], laid[at], laid[at + 1]
     same = one.nominal is first.nominal and other.nominal is second.nominal and other.path is second.path
-    told = other.ordinal, other.support, other.end, other.double, stride, stop, *lasting
-    then = second.ordinal, second.support, second.end, second.double, step.stride, step.stop, step.single, step.double
+    told = other.ordinal, other.support, other.end, other.double_support, stride, stop, *lasting
+    second_told = second.ordinal, second.support, second.end, second.double_support
+    then = *second_told, step.stride, step.stop, step.single_support, step.double_support
     return step if same and told == then else None
 
 

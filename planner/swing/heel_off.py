@@ -47,7 +47,7 @@ class RollSpan(NamedTuple):
     angle: float
 
 
-@dataclass(frozen=True, slots=True)
+@dataclass(frozen=True)
 class FootRoll:
     """Pitch of one foot about its toe edge over time; the heel is up where it is positive.
 
@@ -119,7 +119,7 @@ def bump(s: float) -> tuple[float, float, float]:
     if not 0.0 < s < 1.0:
         return 0.0, 0.0, 0.0
     w, tilt = s * (1.0 - s), 1.0 - 2.0 * s
-    return 64.0 * w**3, 192.0 * (w * w) * tilt, 384.0 * w * (tilt * tilt - w)
+    return 64.0 * w * w * w, 192.0 * (w * w) * tilt, 384.0 * w * (tilt * tilt - w)
 
 
 def stretched(ahead: float, radius: float, length: float = 1.0) -> float:

@@ -13,7 +13,7 @@ from surefoot.planner.swing.trajectory import SwingTrajectory
 from surefoot.planner.types import Array, Footstep
 
 
-@dataclass(frozen=True, slots=True)
+@dataclass(frozen=True)
 class LegReach:
     """Where legs let a foot land that catches the body, and how hard they swing it there.
 

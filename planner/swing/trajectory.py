@@ -5,7 +5,8 @@ from dataclasses import dataclass, field, replace
 
 import numpy as np
 
-from surefoot.planner.geometry import shifted
+from surefoot import linear
+from surefoot.planner.geometry import shift, shifted
 from surefoot.planner.parameters import GroundSearch, PlannerParameters
 from surefoot.planner.quintic import between
 from surefoot.planner.swing.quintics import detour, straight_time, to_rest, up_and_down
@@ -28,7 +29,7 @@ _MOST_LEAD = 0.25
 """Share of a single support by which its swing ends before it at most, so that a short one still swings [-]."""
 
 
-@dataclass(frozen=True, slots=True, eq=False)
+@dataclass(frozen=True, eq=False)
 class SwingTrajectory:
     """Motion of a swing foot; columns are x, y, z [m], yaw, pitch, roll [rad] in the world frame.
 
@@ -98,11 +99,12 @@ class SwingTrajectory:
         if time >= self.glide_end - TOUCHING:
             result[0] = self.target
         elif time >= self.start_time - TOUCHING:
-            after = time >= self.bend_time - TOUCHING
-            told = shifted(self.onward, time - self.bend_time) if after else shifted(self.level, time - self.start_time)
+            after, told = time >= self.bend_time - TOUCHING, np.empty((6, len(_GLIDING)))
+            level, begin = (self.onward, self.bend_time) if after else (self.level, self.start_time)
+            linear.fused_product(shift(time - begin), level, told)
             result[:, :2], result[:, 3:] = told[:, :2], told[:, 2:]  # faster than by a list of columns
         else:
-            result[0, _GLIDING] = self.level[0]
+            result[0, :2], result[0, 3:] = self.level[0, :2], self.level[0, 2:]
         if time >= self.apex_time - TOUCHING:
             result[:, 2] = shifted(self.fall, time - self.fall_start)[:, 0]
         else:
@@ -111,7 +113,9 @@ class SwingTrajectory:
 
     def evaluate(self, time: float) -> Array:
         """Position, velocity and acceleration at an instant after the start, shape (3, 6)."""
-        return np.asarray(self.coefficients(time)[:3] * _FACTORIAL)
+        state = self.coefficients(time)[:3]
+        state[2] *= 2.0
+        return state
 
     def positions(self, times: Array) -> Array:
         """Position at instants from the start on, of shape (n,) [s]; shape (n, 6)."""
@@ -240,12 +244,11 @@ class SwingTrajectory:
         return replace(self, rise_start=time, rise=rise, fall_start=self.apex_time, fall=fall)
 
 
-_FACTORIAL = np.array([[1.0], [1.0], [2.0]])
 _EXPONENTS = np.arange(6)
 _BENDING = (_EXPONENTS * (_EXPONENTS - 1.0))[2:]
 
 
-@dataclass(frozen=True, slots=True)
+@dataclass(frozen=True)
 class SwingCourse:
     """How a swing divides its time, as shares of it.
 

@@ -2,8 +2,7 @@
 
 import json
 import re
-from dataclasses import dataclass, field
-from functools import cache, lru_cache
+from functools import cache
 from typing import TYPE_CHECKING, Any
 
 import yaml
@@ -32,8 +31,6 @@ def dumped_values(text: str, name: str) -> Any:
     """The values of `parse_dumped`, which has the arguments and errors; nobody may change them.
 
     A text that a program has written gives no key twice; one that does is an error as well.
-
-    Keys of the first level are read one by one: in log after log of a campaign most are the same.
     """
     keys = _KEYS.split(text)
     try:
@@ -53,7 +50,6 @@ def _sound(source: Source) -> Any:
 _KEYS, _MOST_KEYS = re.compile(r"^(?=[a-z_]+:)", re.MULTILINE), 64
 
 
-@lru_cache(maxsize=256)
 def _values(text: str) -> dict[str, Any]:
     """The values of one key, with it."""
     found = _sound(parse_dumped(text, ""))
@@ -81,30 +77,8 @@ def _composer() -> type[Composer]:
 
 def scenario_yaml(scenario: "Scenario") -> str:
     """The scenario as run: every key with its value, but for those left null."""
-    told = scenario.model_dump_json(exclude={"seed"}, exclude_none=True)
-    # In JSON a number that is not finite is null, whichever it is.
-    before, after = (_around_seed.__wrapped__ if "null" in told else _around_seed)(_Told(told, scenario))
-    return f"{before}seed: {scenario.seed}\n{after}"
-
-
-@dataclass(frozen=True, slots=True)
-class _Told:
-    """A scenario, equal to those that tell the same but for their seed."""
-
-    text: str
-    scenario: "Scenario" = field(compare=False)
-
-
-@lru_cache(maxsize=32)
-def _around_seed(told: _Told) -> tuple[str, str]:
-    """YAML of the keys before the seed and after it, the same in run after run of a campaign."""
-    groups = told.scenario.model_dump(mode="json", exclude_none=True)
-    lines = {name: _group_yaml(name, json.dumps(group)) for name, group in groups.items()}
-    at = [*lines].index("seed")
-    return "".join([*lines.values()][:at]), "".join([*lines.values()][at + 1 :])
-
-
-@lru_cache(maxsize=256)
-def _group_yaml(name: str, group: str) -> str:
-    """A key with its group, given as JSON: most are the same from run to run of a campaign."""
-    return yaml.safe_dump({name: json.loads(group)}, sort_keys=False)
+    groups = scenario.model_dump(mode="json", exclude_none=True)
+    # Through JSON no two groups share a list, which YAML would tell by an anchor.
+    return "".join(
+        yaml.safe_dump({name: json.loads(json.dumps(group))}, sort_keys=False) for name, group in groups.items()
+    )

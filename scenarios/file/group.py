@@ -4,7 +4,6 @@ import re
 from collections.abc import Iterator
 from dataclasses import Field as DataclassField
 from dataclasses import fields, is_dataclass, replace
-from functools import lru_cache
 from typing import TYPE_CHECKING, Annotated, Any, TypeVar, get_args
 
 from pydantic import BaseModel, BeforeValidator, ConfigDict, Field, create_model
@@ -167,13 +166,8 @@ def controller_parameters(settings: "ControllerSettings | None", size: Similarit
     Raises:
         ParameterError: a number is out of its range, or a solver unknown.
     """
-    changed: WbcParameters = _changed(_usual(size), settings)
+    changed: WbcParameters = _changed(size.scaled(WbcParameters()), settings)
     return changed
-
-
-@lru_cache(maxsize=8)
-def _usual(size: Similarity) -> WbcParameters:
-    return size.scaled(WbcParameters())
 
 
 def controller_faults(settings: "ControllerSettings | None") -> list[ParameterError]:

@@ -1,11 +1,9 @@
 """YAML text to plain values that know where they stand in the text."""
 
 import math
-import pickle
 import re
 from collections.abc import Mapping, Sequence
 from dataclasses import dataclass, field
-from functools import lru_cache
 from typing import IO, Any
 
 import yaml
@@ -116,14 +114,6 @@ def parse(text: str, name: str, most_values: int = MAX_VALUES) -> Source:
     Raises:
         ScenarioError: the text is no YAML, nests too deep or expands to too many values.
     """
-    found = pickle.loads(_read(text, name, most_values))  # a copy, since overrides are set in place
-    assert isinstance(found, Source)
-    return found
-
-
-@lru_cache(maxsize=16)
-def _read(text: str, name: str, most_values: int) -> bytes:
-    """See `parse`, pickled; the runs of a campaign begin with the same text."""
     source = Source(name)
     try:
         root = Composer(text, most_values).get_single_node()
@@ -141,7 +131,7 @@ def _read(text: str, name: str, most_values: int) -> bytes:
         raise ScenarioError([message]) from None
     except RecursionError:
         raise ScenarioError([f"{name}:1:1: nested too deep; at most {MAX_DEPTH} levels"]) from None
-    return pickle.dumps(source)
+    return source
 
 
 def plain_scalar(text: str) -> Any:

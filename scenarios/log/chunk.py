@@ -3,7 +3,6 @@
 from bisect import bisect_right
 from collections.abc import Mapping, Sequence
 from dataclasses import dataclass
-from functools import lru_cache
 from operator import itemgetter
 
 import numpy as np
@@ -15,7 +14,6 @@ from surefoot.scenarios.log.channel import ENTRY, ChannelWriter, Slab, Waiting, 
 Record = bytes | memoryview
 
 
-@lru_cache(maxsize=256)
 def _index_dtype(count: int) -> np.dtype[np.void]:
     """A MessageIndex record of so many messages; what stands there without a sign fits with one."""
     head = [("opcode", "u1"), ("length", "<u8"), ("channel", "<u2"), ("size", "<u4")]

@@ -7,7 +7,6 @@ from array import array
 from bisect import bisect_right
 from collections.abc import Callable, Iterator
 from dataclasses import dataclass, field
-from functools import lru_cache
 from io import BytesIO
 from typing import Any, TypeVar
 
@@ -220,10 +219,10 @@ def take_definition(opcode: int, body: bytes, contents: Contents) -> None:
 
 def _define(opcode: int, body: bytes, contents: Contents) -> None:
     if opcode == Opcode.SCHEMA:
-        schema = _definition(Schema.read, body)
+        schema = _decode(Schema.read, body)
         _agree(contents.schemas.setdefault(schema.id, schema), schema, "schema", contents)
     elif opcode == Opcode.CHANNEL:
-        channel = _definition(Channel.read, body)
+        channel = _decode(Channel.read, body)
         if channel.id not in contents.channels:
             _keys_once(body, 4, 2, f"the metadata of {channel.topic}", contents)
         _agree(contents.channels.setdefault(channel.id, channel), channel, "channel", contents)
@@ -378,10 +377,6 @@ def _indexed_chunks(data: Buffer) -> list[int]:
 
 def _decode(read: Callable[[ReadDataStream], _T], body: bytes) -> _T:
     return read(ReadDataStream(BytesIO(body)))
-
-
-_definition = lru_cache(maxsize=64)(_decode)
-"""`_decode` of schemas and channels, the same in log after log of a campaign."""
 
 
 def _name(opcode: int) -> str:

@@ -8,7 +8,7 @@ reads or writes a block of them without a loop.
 import json
 from collections.abc import Iterator, Mapping, Sequence
 from dataclasses import dataclass
-from functools import cache, cached_property, lru_cache
+from functools import cached_property
 from math import prod
 from typing import Any, Literal, NamedTuple
 
@@ -151,12 +151,6 @@ def layout_of(metadata: Mapping[str, str]) -> tuple[FieldSpec, ...]:
     Raises:
         ValueError: the metadata give no layout.
     """
-    return _layout_of(tuple(metadata.items()))
-
-
-@lru_cache(maxsize=256)
-def _layout_of(items: tuple[tuple[str, str], ...]) -> tuple[FieldSpec, ...]:
-    metadata = dict(items)
     try:
         rows = json.loads(metadata["layout"])
         if len(rows) > _MOST_FIELDS:
@@ -195,7 +189,6 @@ _FIXED64, _PACKED, _FIXED32 = 1, 2, 5
 _Descriptor = descriptor_pb2.FieldDescriptorProto
 
 
-@cache
 def record_dtype(fields: tuple[FieldSpec, ...]) -> np.dtype[Any]:
     """Numpy type of a whole MCAP message record with these fields."""
     header: list[Any] = list(zip(HEADER, ("u1", "<u8", "<u2", "<u4", "<u8", "<u8", "u1", "<u8"), strict=True))

@@ -4,7 +4,6 @@ import zlib
 from collections import deque
 from collections.abc import Iterator, Mapping, Sequence
 from dataclasses import dataclass
-from functools import lru_cache
 from pathlib import Path
 from types import TracebackType
 from typing import Literal, Self
@@ -57,9 +56,8 @@ class PublishedSchema:
     descriptors: bytes
 
 
-@lru_cache(maxsize=128)
-def _defined(number: int, topic: str, schema: PublishedSchema, metadata: tuple[tuple[str, str], ...]) -> Defined:
-    """Records of a schema and a channel, the same in run after run of a campaign."""
+def _defined(number: int, topic: str, schema: PublishedSchema, metadata: Mapping[str, str]) -> Defined:
+    """Records of a schema and a channel."""
     return Defined(
         number,
         encoded(Schema(number, schema.descriptors, "protobuf", schema.name)),
@@ -165,7 +163,7 @@ class LogWriter:
         """Write the schema and the channel; gives the channel's number."""
         number = len(self._channels) + 1
         noted = metadata if sieve is None else {**metadata, THINNED: str(sieve.rate)}
-        self._sink.add(_defined(number, topic, schema, tuple(noted.items())))
+        self._sink.add(_defined(number, topic, schema, noted))
         return number
 
     def attach(self, file: AttachedFile) -> None:

@@ -4,7 +4,6 @@ Feet are ordered left, right; wrenches force first; poses x y z qx qy qz qw; q a
 """
 
 from dataclasses import dataclass
-from functools import cache
 
 from surefoot.documented import doc_of
 from surefoot.scenarios.log.spec import ChannelSpec, FieldSpec
@@ -53,7 +52,6 @@ _STEP = "in the physics step that ended at the message's time"
 _PUSHED = "sum of pushes, mean over the tick that ends at the message's time; NaN where a plant does not measure it"
 
 
-@cache
 def measurement(n: Sizes) -> ChannelSpec:
     """What the sensors give, every control tick."""
     fields = (
@@ -69,7 +67,6 @@ def measurement(n: Sizes) -> ChannelSpec:
     return ChannelSpec("/measurement", "Measurement", fields, doc_of(measurement))
 
 
-@cache
 def readings(n: Sizes) -> ChannelSpec:
     """What sensors say to an estimator, every control tick; only in a run whose estimator reads them."""
     fields = (
@@ -91,7 +88,6 @@ def readings(n: Sizes) -> ChannelSpec:
     return ChannelSpec("/readings", "Readings", fields, doc_of(readings))
 
 
-@cache
 def truth(n: Sizes) -> ChannelSpec:
     """The simulator's state, every control tick."""
     fields = (
@@ -109,7 +105,6 @@ def truth(n: Sizes) -> ChannelSpec:
     return ChannelSpec("/truth", "Truth", fields, doc_of(truth))
 
 
-@cache
 def point_truth(_: Sizes) -> ChannelSpec:
     """The pendulum's state, every control tick."""
     fields = (
@@ -122,7 +117,6 @@ def point_truth(_: Sizes) -> ChannelSpec:
     return ChannelSpec("/truth", "PointTruth", fields, doc_of(point_truth))
 
 
-@cache
 def estimate(_: Sizes) -> ChannelSpec:
     """The state that the whole-body controller was given, by its robot model, and the load with which it counted."""
     fields = (
@@ -138,7 +132,6 @@ def estimate(_: Sizes) -> ChannelSpec:
     return ChannelSpec("/estimate", "Estimate", fields, doc_of(estimate))
 
 
-@cache
 def estimation() -> ChannelSpec:
     """What an estimator of the sensors knows, how sure it is and by what it is wrong, every control tick.
 
@@ -167,7 +160,6 @@ def estimation() -> ChannelSpec:
     return ChannelSpec("/estimation", "Estimation", fields, doc_of(estimation).split("\n")[0])
 
 
-@cache
 def planner_state(_: Sizes) -> ChannelSpec:
     """What the planner measured of the CoM and was given of it, every planner tick."""
     fields = (
@@ -182,7 +174,6 @@ def planner_state(_: Sizes) -> ChannelSpec:
     return ChannelSpec("/planner_state", "PlannerState", fields, doc_of(planner_state))
 
 
-@cache
 def contact(_: Sizes) -> ChannelSpec:
     """Contacts planned, used by the controller and felt, every control tick."""
     fields = (
@@ -197,7 +188,6 @@ def contact(_: Sizes) -> ChannelSpec:
     return ChannelSpec("/contact", "Contact", fields, doc_of(contact))
 
 
-@cache
 def felt_contact(_: Sizes) -> ChannelSpec:
     """Contacts felt, every control tick; of a run whose controller has no plan."""
     fields = (
@@ -210,7 +200,6 @@ def felt_contact(_: Sizes) -> ChannelSpec:
     return ChannelSpec("/contact", "FeltContact", fields, doc_of(felt_contact))
 
 
-@cache
 def gait(_: Sizes) -> ChannelSpec:
     """The gait as feet feel it, every control tick; of a run whose controller has no plan."""
     fields = (
@@ -222,7 +211,6 @@ def gait(_: Sizes) -> ChannelSpec:
     return ChannelSpec("/gait", "Gait", fields, doc_of(gait))
 
 
-@cache
 def reference(_: Sizes) -> ChannelSpec:
     """The whole-body reference and the gait's clock, every control tick."""
     fields = (
@@ -247,7 +235,6 @@ def reference(_: Sizes) -> ChannelSpec:
     return ChannelSpec("/reference", "Reference", fields, doc_of(reference))
 
 
-@cache
 def plan(n: Sizes) -> ChannelSpec:
     """The plan with its horizon, every planner tick; sample 0 is the message's time."""
     states, moves = n.horizon + 1, n.horizon
@@ -270,7 +257,6 @@ def plan(n: Sizes) -> ChannelSpec:
     return ChannelSpec("/plan", "Plan", fields, doc_of(plan))
 
 
-@cache
 def footsteps(_: Sizes) -> ChannelSpec:
     """Feet and the next three footsteps as planned, every planner tick."""
     fields = (
@@ -283,7 +269,6 @@ def footsteps(_: Sizes) -> ChannelSpec:
     return ChannelSpec("/footsteps", "Footsteps", fields, doc_of(footsteps))
 
 
-@cache
 def footstep(_: Sizes) -> ChannelSpec:
     """A footstep taken, when its swing is over and its foot has touched down; none of a foot that never does."""
     fields = (
@@ -295,7 +280,6 @@ def footstep(_: Sizes) -> ChannelSpec:
     return ChannelSpec("/footstep", "Footstep", fields, doc_of(footstep))
 
 
-@cache
 def wbc(n: Sizes) -> ChannelSpec:
     """The whole-body QP's solution, every control tick."""
     rows, tasks = sum(size for _, size in n.tasks), ", ".join(f"{name} {size}" for name, size in n.tasks)
@@ -314,7 +298,6 @@ def wbc(n: Sizes) -> ChannelSpec:
     return ChannelSpec("/wbc", "WholeBodyControl", fields, doc_of(wbc))
 
 
-@cache
 def torque(n: Sizes) -> ChannelSpec:
     """The joint torques commanded, every control tick."""
     fields = (
@@ -324,14 +307,12 @@ def torque(n: Sizes) -> ChannelSpec:
     return ChannelSpec("/torque", "JointTorque", fields, doc_of(torque))
 
 
-@cache
 def coupling(n: Sizes) -> ChannelSpec:
     """How well the simulator holds joints that follow others, every control tick; only of a robot that has such."""
     fields = (_real("apart", n.nf, "rad", "", "of each from where the joint that it follows would have it"),)
     return ChannelSpec("/coupling", "Coupling", fields, doc_of(coupling))
 
 
-@cache
 def link(_: Sizes | None = None) -> ChannelSpec:
     """What became of messages between plant and controller in two processes, with each state that came."""
     fields = (
@@ -344,14 +325,12 @@ def link(_: Sizes | None = None) -> ChannelSpec:
     return ChannelSpec("/link", "Link", fields, doc_of(link))
 
 
-@cache
 def shadow(n: Sizes) -> ChannelSpec:
     """The torques of the log in whose shadow a controller walked, every control tick."""
     fields = (_real("command", n.nj, "N m", "", "commanded then"),)
     return ChannelSpec("/shadow", "Shadow", fields, doc_of(shadow))
 
 
-@cache
 def timing(_: Sizes) -> ChannelSpec:
     """Time spent in each part of a control tick; excluded from reproducibility."""
     parts = ("state", "wbc_build", "wbc_solve", "planner", "physics", "log", "tick")
@@ -360,7 +339,6 @@ def timing(_: Sizes) -> ChannelSpec:
     return ChannelSpec("/timing", "Timing", fields, doc_of(timing))
 
 
-@cache
 def command(_: Sizes) -> ChannelSpec:
     """What the walk was told while it went on, in the plan from which on it holds; NaN for what was not."""
     fields = (
@@ -377,7 +355,6 @@ def command(_: Sizes) -> ChannelSpec:
     return ChannelSpec("/command", "Command", fields, doc_of(command))
 
 
-@cache
 def process(_: Sizes) -> ChannelSpec:
     """The process that makes the run, every simulated second; excluded from reproducibility."""
     fields = (_scalar("memory", "B", "resident memory"),)

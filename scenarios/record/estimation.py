@@ -75,7 +75,8 @@ class EstimationRecorder:
         self._readings.tick(time_ns, readings)
         sure, contact = estimate.deviation or _UNKNOWN, estimate.contact or (False, False)
         self._wrench[...] = wrench
-        np.concatenate((sure.com, sure.com_velocity, sure.tilt, sure.sole_height), out=self._deviations)
+        own = self._deviations
+        own[0:3], own[3:6], own[6:8], own[8:10] = sure.com, sure.com_velocity, sure.tilt, sure.sole_height
         self._rotations[0], self._rotations[1] = terms.base_rotation, truth.base_rotation
         numbers = (*contact, sure.force, sure.moment, forces.item(1) > forces.item(0))
         self._row.append(

@@ -17,6 +17,9 @@ GROUPS = f"{OWN_PACKAGE}."
 EVERYWHERE = f"{GROUPS}metrics"
 """Group of what is in every run, whether a scenario names it or not."""
 
+NO_PARTS = (f"{GROUPS}commands", f"{GROUPS}files")
+"""Groups of what a run has no part of."""
+
 _PASSED_OVER = ("__pycache__", ".dist-info", ".egg-info", ".pyc")
 
 
@@ -42,10 +45,10 @@ def packages_of(names: frozenset[str]) -> Mapping[str, str]:
 
 
 def _entries() -> Iterator[tuple[str, EntryPoint]]:
-    """All that packages bring, with their names."""
+    """All parts that packages bring, with their names."""
     for package in metadata.distributions():
         points = (entry for entry in package.entry_points if entry.group.startswith(GROUPS))
-        yield from ((_canonical(package.name), entry) for entry in points)
+        yield from ((_canonical(package.name), entry) for entry in points if entry.group not in NO_PARTS)
 
 
 def _with_required(names: Iterable[str]) -> Iterator[tuple[str, Distribution]]:

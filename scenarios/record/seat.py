@@ -6,16 +6,15 @@ from collections.abc import Mapping
 import numpy as np
 from numpy.typing import NDArray
 
-from surefoot import algebra
 from surefoot.planner.types import Foot, PhaseInfo
 from surefoot.scenarios.log import LogWriter
 from surefoot.scenarios.log.layout import RowLayout, Table
 from surefoot.scenarios.log.spec import ChannelSpec, FieldSpec
 from surefoot.scenarios.record import channels
+from surefoot.scenarios.record.body import RobotRows
 from surefoot.scenarios.record.channels import Sizes
 from surefoot.scenarios.record.walk import RunRecorder
 from surefoot.sim.measurement import Measurement
-from surefoot.wbc import zmp
 from surefoot.wbc.model import RobotTerms
 
 Array = NDArray[np.float64]
@@ -53,8 +52,10 @@ class SeatRecorder(RunRecorder):
             (contact, ("zmp", "normal_force", "cop_left", "cop_right")),
         )
 
-        def derive(table: Table) -> SeatRows:
-            return SeatRows(table, 1.0 / torque_limit)
+        inverse_limit = 1.0 / torque_limit
+
+        def derive(table: Table) -> RobotRows:
+            return RobotRows(table, inverse_limit)
 
         self._row = writer.rows(RowLayout(vectors, numbers, derived, derive, {"sole_rotation": 18}, ("upright",)))
         super().__init__(writer, sizes)
@@ -105,35 +106,3 @@ class SeatRecorder(RunRecorder):
             fields = tuple([FieldSpec(name, np.shape(value), "", "", "") for name, value in told.items()])
             self._more = self._writer.channel(ChannelSpec("/controller", "Controller", fields, _OWN))
         self._more.append(time_ns, *[told[name] for name in self._told])
-
-
-class SeatRows:
-    """What of the rows follows from the rest: ZMP, centres of pressure, the torso's tilt.
-
-    Args:
-        table: of the rows.
-        inverse_limit: of the joints' torques, shape (nj,) [1/(N·m)].
-    """
-
-    def __init__(self, table: Table, inverse_limit: Array) -> None:
-        count = len(table.values)
-        self._inverse_limit = inverse_limit
-        left, right = ("/measurement", "wrench_left"), ("/measurement", "wrench_right")
-        self._wrench = table.span(left, right).reshape(count, 2, 6)
-        self._soles = table.span(("/truth", "left_sole"), ("/truth", "right_sole")).reshape(count, 2, 7)
-        self._sole_rotation = table["sole_rotation"].reshape(count, 2, 3, 3)
-        self._zmp, self._normal_force = table["/contact", "zmp"], table["/contact", "normal_force"]
-        self._cop = table.span(("/contact", "cop_left"), ("/contact", "cop_right")).reshape(count, 2, 2)
-        self._upright, self._tilt = table["upright"], table["/truth", "torso_tilt"]
-        self._command, self._limit_ratio = table["/torque", "command"], table["/torque", "limit_ratio_max"]
-
-    def derive(self, rows: int) -> None:
-        """See `Derived`."""
-        self._normal_force[:rows] = self._wrench[:rows, :, 2]
-        self._limit_ratio[:rows, 0] = np.abs(self._command[:rows] * self._inverse_limit).max(axis=1)
-        for n in range(rows):
-            wrench = self._wrench[n]
-            self._zmp[n] = zmp.measured_zmp(wrench, self._soles[n, :, :3], self._sole_rotation[n])
-            for foot in range(2):
-                self._cop[n, foot] = zmp.centre_of_pressure(wrench[foot])
-            self._tilt[n, 0] = math.acos(algebra.clamp(self._upright[n, 0], -1.0, 1.0))

@@ -10,7 +10,8 @@ from numpy.typing import NDArray
 from surefoot.forces import Push
 from surefoot.planner.geometry import frame_rotation
 from surefoot.planner.orientation import roll_sole
-from surefoot.planner.plan import POINT, PlanSample, WalkPlan, in_point
+from surefoot.planner.plan import WalkPlan
+from surefoot.planner.sample import POINT, PlanSample, in_point
 from surefoot.planner.steps.commands import Command
 from surefoot.planner.types import GRAVITY, CentroidalState, FeetState, Foot, Footstep, SolverStatus
 from surefoot.scenarios.log import LogWriter
@@ -60,7 +61,7 @@ TickTiming = tuple[float, float, float, float, float, float, float, float]
 """Wall-clock time of the parts of one control tick, and the controller's processor time, as the log has them [s]."""
 
 
-@dataclass(frozen=True, slots=True)
+@dataclass(frozen=True)
 class PlannerState:
     """What the planner measured, and what it was given; world frame.
 

@@ -10,6 +10,7 @@ import numpy as np
 from surefoot.forces import NO_LOAD, ExternalLoad
 from surefoot.joints import JointCommand
 from surefoot.models.types import RobotDescription
+from surefoot.planner.plan import WalkPlan
 from surefoot.planner.steps.commands import Command
 from surefoot.planner.types import CentroidalState, FeetState
 from surefoot.readings import Reading, Readings
@@ -27,8 +28,6 @@ from surefoot.scenarios.setup.stance import body_of, feet_at
 from surefoot.scenarios.setup.walk import Walk
 from surefoot.similarity import GRAVITY
 from surefoot.wbc.driven import DrivenRows
-from surefoot.wbc.estimation.parameters import SensorNoise
-from surefoot.wbc.estimation.torques import TorqueWrench
 from surefoot.wbc.falling import GivingWay
 from surefoot.wbc.model import RobotTerms
 from surefoot.wbc.soles import yaws
@@ -37,6 +36,7 @@ from surefoot.wbc.zmp import measured_zmp
 
 if TYPE_CHECKING:
     from surefoot.sim.measurement import Measurement
+    from surefoot.wbc.estimation.torques import TorqueWrench
 
 
 class Controller:
@@ -244,22 +244,9 @@ class Controller:
         arriving, self._arriving = self._arriving, NONE_TOUCHES
         if self.planning.plan.swing is None:
             return arriving
-        return self._comes_down(self._output.period) if self._output.holds else NONE_TOUCHES
-
-    def _comes_down(self, time: float, due: bool = False) -> tuple[bool, bool]:
-        """Which sole comes to the planned ground in no more than so long [s], (left, right).
-
-        One that is due by then does so as well, however slowly it comes down now.
-        """
-        plan, terms = self.planning.plan, self.terms
-        if plan.swing is None:
+        if not self._output.holds:
             return NONE_TOUCHES
-        foot = int(plan.swing.foot)
-        height = float(terms.sole_position[foot, 2] - plan.footsteps[0].position[2])
-        speed = float(terms.sole_rotation[foot, 2] @ terms.sole_velocity[foot, :3])
-        comes = speed < 0.0 and height + speed * time < 0.0
-        comes = comes or (due and plan.swing.touchdown_time - self._now <= time)
-        return comes and foot == 0, comes and foot == 1
+        return comes_down(self.planning.plan, self.terms, self._now, self._output.period)
 
     def _tell(self, driven: DrivenRows, told: JointCommand | None) -> None:
         """Tell the whole-body controller what drives the joints that are not its own."""
@@ -273,6 +260,9 @@ class Controller:
     def _inferred(self, readings: "Readings | Measurement", state: RobotState, passed: float) -> Array:
         """Wrenches of soles that feel none, by the torques of the joints, shape (2, 6) [N, N·m]."""
         if self._torques is None:
+            from surefoot.wbc.estimation.parameters import SensorNoise
+            from surefoot.wbc.estimation.torques import TorqueWrench
+
             self._torques = TorqueWrench(
                 self.body.model, self.body.frames.soles, self._period, SensorNoise(), held=not self._output.servo
             )
@@ -290,7 +280,7 @@ class Controller:
         state = CentroidalState(self._now, terms.com.copy(), terms.com_velocity.copy(), self._lasting())
         if False in self._landed and self.planning.plan.balance.catching:
             arrives = self._output.period + self.planning.planner.parameters.freeze_catching
-            self._arriving = self._comes_down(arrives, due=True)
+            self._arriving = comes_down(self.planning.plan, terms, self._now, arrives, due=True)
         feet = FeetState(terms.level_soles(self._toe), yaws(terms.sole_rotation), self._landed, arriving=self._arriving)
         if self.estimate.deviation is not None:
             state, feet = unsure(self.estimate.deviation, state, feet)
@@ -300,3 +290,23 @@ class Controller:
         """The load that the controller counted with a tick ago, per mass."""
         load = self._load
         return None if load is NO_LOAD else load.per_mass(load.mass_scale * self.whole_body.terms.model_mass)
+
+
+def comes_down(plan: WalkPlan, terms: RobotTerms, now: float, time: float, due: bool = False) -> tuple[bool, bool]:
+    """Which sole comes to the planned ground in no more than so long, (left, right).
+
+    Args:
+        plan: that is followed.
+        terms: of the robot now.
+        now: instant [s].
+        time: how long [s].
+        due: whether one whose touchdown is planned by then does so as well, however slowly it comes down now.
+    """
+    if plan.swing is None:
+        return NONE_TOUCHES
+    foot = int(plan.swing.foot)
+    height = float(terms.sole_position[foot, 2] - plan.footsteps[0].position[2])
+    speed = float(terms.sole_rotation[foot, 2] @ terms.sole_velocity[foot, :3])
+    comes = speed < 0.0 and height + speed * time < 0.0
+    comes = comes or (due and plan.swing.touchdown_time - now <= time)
+    return comes and foot == 0, comes and foot == 1

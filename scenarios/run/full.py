@@ -1,20 +1,21 @@
 """The closed loop in full physics: a simulated robot under its controller, and the log around it."""
 
+from typing import TYPE_CHECKING
+
 import numpy as np
 from numpy.typing import NDArray
 
 from surefoot.errors import ParameterError
 from surefoot.guard import Guard
 from surefoot.joints import JointCommand
-from surefoot.planner.plan import PlanSample, WalkPlan
+from surefoot.planner.plan import WalkPlan
+from surefoot.planner.sample import PlanSample
 from surefoot.plugins import Registry
 from surefoot.readings import Readings
 from surefoot.scenarios.file.control import PlantSettings
 from surefoot.scenarios.file.registries import DEFAULTS, PLANT_NAMES
 from surefoot.scenarios.log import AttachedFile, LogWriter
 from surefoot.scenarios.record.body import Recorder
-from surefoot.scenarios.record.coupling import CouplingRecorder
-from surefoot.scenarios.record.estimation import EstimationRecorder
 from surefoot.scenarios.record.foxglove.views import BodyView
 from surefoot.scenarios.record.provenance import WORLD_FILE
 from surefoot.scenarios.record.walk import WalkRecorder
@@ -29,11 +30,15 @@ from surefoot.scenarios.run.tick import Look, Spent
 from surefoot.scenarios.setup.stance import as_told, disturbed, pressed
 from surefoot.scenarios.setup.walk import Walk
 from surefoot.sim.drives import IDEAL, Drives
-from surefoot.sim.readings import SensorSuite
 from surefoot.sim.world import World
 from surefoot.wbc.controller import WholeBodyController
 from surefoot.wbc.statics import LEVER, standing_torque
 from surefoot.wbc.zmp import measured_zmp
+
+if TYPE_CHECKING:
+    from surefoot.scenarios.record.coupling import CouplingRecorder
+    from surefoot.scenarios.record.estimation import EstimationRecorder
+    from surefoot.sim.readings import SensorSuite
 
 Array = NDArray[np.float64]
 
@@ -65,10 +70,13 @@ def full_loop(walk: Walk, writer: LogWriter, parts: Parts | None = None) -> Clos
     controller.reset(as_told(q, walk, body) if controller.senses.reads else q)
     sizes = controller.sizes
     writer.attach(AttachedFile(WORLD_FILE, "application/xml", world.mjcf().encode()))
-    sensors = sensors_of(walk, plant, controller.senses.reads)
+    sensors, sensed = sensors_of(walk, plant, controller.senses.reads), None
     body_recorder, recorder = Recorder(writer, sizes, walk.robot.torque_limit), WalkRecorder(writer, sizes)
     view = BodyView(writer, world, walk.robot, walk.rates.control)
-    sensed = EstimationRecorder(writer, sizes) if sensors is not None else None
+    if sensors is not None:
+        from surefoot.scenarios.record.estimation import EstimationRecorder
+
+        sensed = EstimationRecorder(writer, sizes)
     controller.planning.recorder = recorder
     coupled = coupling_of(writer, sizes, plant)
     walker = WholeBody(controller, plant, sensors, body_recorder, view, sensed, coupled)
@@ -124,8 +132,8 @@ class WholeBody(Moved, Planned):
         sensors: "SensorSuite | Sensors | None",
         recorder: Recorder,
         view: BodyView,
-        sensed: EstimationRecorder | None = None,
-        coupled: CouplingRecorder | None = None,
+        sensed: "EstimationRecorder | None" = None,
+        coupled: "CouplingRecorder | None" = None,
     ) -> None:
         walk = mind.walk
         # The controller's terms are those of the true robot in its true state where nothing is believed or estimated.
@@ -156,7 +164,7 @@ class WholeBody(Moved, Planned):
             command = mind.step(self._readings)
         else:
             theirs = somebody.command(now)
-            command = mind.step(self._readings, driven_joints=theirs if self._told else None)
+            command = mind.step(self._readings, None, theirs if self._told else None)
             command = command.with_joints(somebody.joints, theirs)
         self._truth = self._own_truth or mind.terms
         lost = self._faults is not None and self._faults.active("torque_loss", tick)

@@ -1,7 +1,7 @@
 """A robot in full physics whatever controls it: it is measured, moved and pushed, and may have fallen."""
 
 import math
-from typing import cast
+from typing import TYPE_CHECKING, cast
 
 from surefoot.forces import Push
 from surefoot.joints import JointCommand
@@ -9,7 +9,6 @@ from surefoot.models.pinocchio import pinocchio_model
 from surefoot.scenarios.judge.body import lies
 from surefoot.scenarios.log import LogWriter
 from surefoot.scenarios.record.channels import Sizes
-from surefoot.scenarios.record.coupling import CouplingRecorder
 from surefoot.scenarios.run.planning import FaultSchedule, RunFault
 from surefoot.scenarios.run.plant import Plant, Sensors, measured_tick, push_plant
 from surefoot.scenarios.setup.hardware import refuse_unread
@@ -17,13 +16,18 @@ from surefoot.scenarios.setup.stance import frames_of
 from surefoot.scenarios.setup.walk import Walk
 from surefoot.sim.errors import SimulationDiverged
 from surefoot.sim.measurement import Measurement
-from surefoot.sim.readings import SensorSuite
 from surefoot.sim.world import World
 from surefoot.wbc.model import RobotTerms
+
+if TYPE_CHECKING:
+    from surefoot.scenarios.record.coupling import CouplingRecorder
+    from surefoot.sim.readings import SensorSuite
 
 
 def sensors_of(walk: Walk, plant: Plant, senses: bool) -> "SensorSuite | Sensors | None":
     """What says of a plant's measurements what sensors say, to whom it is to say it; None where nobody reads it.
+
+    A run in which nobody reads them does not import them.
 
     Args:
         walk: what is run.
@@ -36,14 +40,20 @@ def sensors_of(walk: Walk, plant: Plant, senses: bool) -> "SensorSuite | Sensors
     if not senses:
         refuse_unread(walk.sensing)
         return None
-    if isinstance(plant, World):
-        return SensorSuite(plant, walk.hardware.sensors, walk.rates.control, walk.seed)
-    return cast("Sensors", plant)
+    if not isinstance(plant, World):
+        return cast("Sensors", plant)
+    from surefoot.sim.readings import SensorSuite
+
+    return SensorSuite(plant, walk.hardware.sensors, walk.rates.control, walk.seed)
 
 
-def coupling_of(writer: LogWriter, sizes: Sizes, plant: Plant) -> CouplingRecorder | None:
+def coupling_of(writer: LogWriter, sizes: Sizes, plant: Plant) -> "CouplingRecorder | None":
     """Records how joints follow others; None of a robot that has no such joints, and of another plant."""
-    return CouplingRecorder(writer, sizes, plant) if isinstance(plant, World) and sizes.nf else None
+    if not isinstance(plant, World) or not sizes.nf:
+        return None
+    from surefoot.scenarios.record.coupling import CouplingRecorder
+
+    return CouplingRecorder(writer, sizes, plant)
 
 
 class Moved:

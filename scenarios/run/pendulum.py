@@ -11,8 +11,9 @@ from surefoot.errors import ParameterError
 from surefoot.forces import Push
 from surefoot.planner.geometry import sole_corners
 from surefoot.planner.parameters import LegInertia
-from surefoot.planner.plan import PlanSample, WalkPlan
+from surefoot.planner.plan import WalkPlan
 from surefoot.planner.plants import CartTable, IdealFeet, Pendulum
+from surefoot.planner.sample import PlanSample
 from surefoot.planner.sampling import PlanSampler
 from surefoot.planner.types import GRAVITY, CentroidalState, FeetState, Foot, Footstep
 from surefoot.polygon import convex_hull

@@ -60,6 +60,7 @@ class Planned:
         planning: its planner, on its own clock.
     """
 
+    __slots__ = ()  # as a base beside a compiled one needs
     planning: "Planning"
 
     @property

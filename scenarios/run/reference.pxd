@@ -1,19 +1,21 @@
 cimport cython
-from libc.stdint cimport int64_t
 from surefoot cimport algebra
 from surefoot.algebra cimport vector3
 from surefoot.planner cimport orientation
+from surefoot.planner.sample cimport PlanSample
 from surefoot.planner.sampling cimport PlanSampler
+from surefoot.wbc.reference cimport WbcReference
 
-cdef const int64_t[::1] INTO, OUT_OF
-cdef Py_ssize_t ZMP, PENDULUM_ZMP, LOAD, SWING, RATE, BEND
-cdef Py_ssize_t OFFSET, SPIN, SPIN_RATE, ROTATION, NORMAL, HEADING, SHARE, ROLL, SIZE
+cdef Py_ssize_t OMEGA, STIFFNESS, LOAD, ZMP, PENDULUM_ZMP, COM, VELOCITY, ACCELERATION
+cdef Py_ssize_t SWING, SWING_VELOCITY, SWING_ACCELERATION
 
+@cython.locals(sample=PlanSample, until=PlanSample)
 cpdef planned(PlanSampler sampler, double time, double middle)
-@cython.locals(told=double[::1], passed=double, left=double, right=double, swings=Py_ssize_t, progress=double,
-               lifting=Py_ssize_t, rolling=Py_ssize_t, yaw=double, switch=double)
-cpdef whole_body_reference(plan, sample)
-@cython.locals(axis=Py_ssize_t)
-cdef void _stand(double[::1] numbers, Py_ssize_t foot, const double[:] normal) noexcept nogil
-@cython.locals(k=Py_ssize_t, axis=Py_ssize_t, rates=vector3)
-cdef void _fill(double[::1] numbers, double[:, ::1] R, const double[::1] point) noexcept nogil
+@cython.locals(passed=double, left=double, told=WbcReference)
+cpdef WbcReference whole_body_reference(plan, PlanSample sample)
+@cython.locals(swings=int, yaw_left=double, yaw_right=double)
+cdef int _ground(WbcReference told, plan, double yaw) except -1
+cdef vector3 _tuple(vector)
+@cython.locals(rates=vector3)
+cdef void _fill(WbcReference told, const double[::1] point) noexcept nogil
+cdef vector3 _part(const double[::1] point, Py_ssize_t first) noexcept nogil

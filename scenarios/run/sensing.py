@@ -2,7 +2,7 @@
 
 from collections.abc import Callable
 from dataclasses import replace
-from typing import Protocol
+from typing import TYPE_CHECKING, Any, Protocol
 
 import numpy as np
 from numpy.typing import NDArray
@@ -15,12 +15,14 @@ from surefoot.readings import Readings
 from surefoot.scenarios.file.registries import SOURCES
 from surefoot.scenarios.file.sensing import Sensing
 from surefoot.scenarios.record.walk import PlannerState
-from surefoot.scenarios.run.sensed import sensed_state
 from surefoot.scenarios.setup.walk import Walk
 from surefoot.sim.measurement import Measurement
 from surefoot.similarity import REFERENCE_SIZE, Similarity
 from surefoot.wbc.estimation.estimate import Estimate
 from surefoot.wbc.types import RobotState
+
+if TYPE_CHECKING:
+    from surefoot.wbc.estimation.estimator import SensedState
 
 
 class Estimator(Protocol):
@@ -81,7 +83,18 @@ class SensorEstimator(Protocol):
 
 EstimatorMaker = Callable[..., Estimator | SensorEstimator]
 
-ESTIMATORS: Registry[EstimatorMaker] = SOURCES.filled(None, {"truth": TrueState, "ekf": sensed_state})
+
+def ekf(walk: Walk, **options: Any) -> "SensedState":
+    """An invariant Kalman filter of IMU, encoders and feet.
+
+    It is imported when it is made; arguments are those of `scenarios.run.ekf.sensed_state`.
+    """
+    from surefoot.scenarios.run.ekf import sensed_state
+
+    return sensed_state(walk, **options)
+
+
+ESTIMATORS: Registry[EstimatorMaker] = SOURCES.filled(None, {"truth": TrueState, "ekf": ekf})
 """What makes an estimator of a walk and of ``sensing.options`` by name, by the value of ``sensing.source``."""
 
 

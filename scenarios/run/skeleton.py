@@ -280,7 +280,8 @@ class ClosedLoop:
         decided = clock()
         self.sample = sample
         if self._pushes:
-            self._push(now, *walker.gait)
+            since, phase = walker.gait
+            self._push(now, since, phase)
         walker.record(now_ns, sample)
         planning = self.planning
         plan = None if planning is None else planning.plan

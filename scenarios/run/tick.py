@@ -6,7 +6,8 @@ from typing import NamedTuple
 import numpy as np
 from numpy.typing import NDArray
 
-from surefoot.planner.plan import PlanSample, WalkPlan
+from surefoot.planner.plan import WalkPlan
+from surefoot.planner.sample import PlanSample
 from surefoot.planner.types import PhaseInfo, PhaseKind
 from surefoot.sim.measurement import Measurement
 from surefoot.wbc.types import RobotState, WbcReport

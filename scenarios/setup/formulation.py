@@ -3,7 +3,7 @@
 import math
 from collections.abc import Iterator
 from dataclasses import dataclass, replace
-from functools import cached_property, lru_cache
+from functools import cached_property
 from typing import Any
 
 from surefoot.guard import Guard
@@ -159,7 +159,6 @@ class Formulation:
             yield Problem(("planner", "horizon"), what, f"use at least {profile.parameters.moves[-1] + 1}")
 
 
-@lru_cache(maxsize=8)
 def _usual(size: Similarity) -> tuple[PlannerParameters, PlannerParameters]:
     """Parameters of the reference robot, and the same for a size."""
     usual = PlannerParameters()

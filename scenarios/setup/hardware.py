@@ -2,7 +2,6 @@
 
 from collections.abc import Iterator
 from dataclasses import dataclass, fields, replace
-from functools import lru_cache
 from typing import Any
 
 from surefoot.errors import ParameterError
@@ -50,7 +49,7 @@ def sensor_errors(sensing: Sensing, size: Similarity) -> SensorErrors:
         sensing: keys, which are meant as they are.
         size: of the robot, with which forces and moments of a preset go.
     """
-    preset = _preset(sensing.preset or "perfect", size)
+    preset = size.scaled(PRESETS[sensing.preset or "perfect"])
     named = {entry.name for entry in fields(SensorErrors)}
     given = {name: getattr(sensing, name) for name in SENSOR_KEYS if name in named}
     changed: dict[str, Any] = {name: value for name, value in given.items() if value is not None}
@@ -59,11 +58,6 @@ def sensor_errors(sensing: Sensing, size: Similarity) -> SensorErrors:
     for group, name in _GROUPS.items():
         changed[group] = _delivery(sensing, name, getattr(preset, group))
     return replace(preset, **changed)
-
-
-@lru_cache(maxsize=32)
-def _preset(name: str, size: Similarity) -> SensorErrors:
-    return size.scaled(PRESETS[name])
 
 
 def refuse_unread(sensing: Sensing) -> None:

@@ -11,7 +11,6 @@ import math
 from collections.abc import Iterator
 from contextlib import suppress
 from dataclasses import dataclass, fields, is_dataclass
-from functools import lru_cache
 from typing import Any, TypeVar
 
 from pydantic import BaseModel
@@ -284,7 +283,6 @@ def _followed(group: G, size: Similarity) -> G:
     return group.model_copy(update=update)
 
 
-@lru_cache(maxsize=512)
 def default_of(model: type[BaseModel], name: str, size: Similarity) -> Any:
     """Default of a key for a robot of a size, but for what follows from more than that."""
     field = model.model_fields[name]

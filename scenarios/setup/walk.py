@@ -2,7 +2,7 @@
 
 import math
 from collections.abc import Mapping
-from dataclasses import dataclass, field, replace
+from dataclasses import dataclass, replace
 from functools import cached_property
 from operator import index
 from typing import TYPE_CHECKING, Any
@@ -51,8 +51,6 @@ if TYPE_CHECKING:
 LEAST_BELIEVED_FRICTION = 0.05
 """The controller counts on at least this friction, so that its wrench cones keep an inside."""
 
-_HANDED_ON = ("name", "fidelity", "seed", "rates", "start", "sensing", "faults", "pendulum")
-
 
 @dataclass(frozen=True, eq=False)
 class Walk:
@@ -69,14 +67,6 @@ class Walk:
         foot_length: of its soles where it is known without the scenario, which that of the reference is not [m].
         described: a robot in place of the one that the scenario names.
         given: a profile in place of the planner's profile that it names.
-        name: of the scenario.
-        fidelity: full or pendulum.
-        seed: of everything random.
-        rates: of the clock.
-        start: where the walk starts, with its noises.
-        sensing: what planner and controller know of the robot.
-        faults: injected.
-        pendulum: the plant of fidelity pendulum.
     """
 
     keys: Scenario
@@ -85,19 +75,46 @@ class Walk:
     foot_length: float | None = None
     described: "RobotDescription | None" = None
     given: Profile | None = None
-    name: str = field(init=False)
-    fidelity: str = field(init=False)
-    seed: int = field(init=False)
-    rates: Rates = field(init=False)
-    start: Start = field(init=False)
-    sensing: Sensing = field(init=False)
-    faults: tuple[Fault, ...] = field(init=False)
-    pendulum: PendulumSettings = field(init=False)
 
-    def __post_init__(self) -> None:
-        """Hand on what is as the user wrote it."""
-        for name in _HANDED_ON:
-            object.__setattr__(self, name, getattr(self.keys, name))
+    @property
+    def name(self) -> str:
+        """Of the scenario."""
+        return self.keys.name
+
+    @property
+    def fidelity(self) -> str:
+        """Full or pendulum."""
+        return self.keys.fidelity
+
+    @property
+    def seed(self) -> int:
+        """Of everything random."""
+        return self.keys.seed
+
+    @property
+    def rates(self) -> Rates:
+        """Of the clock."""
+        return self.keys.rates
+
+    @property
+    def start(self) -> Start:
+        """Where the walk starts, with its noises."""
+        return self.keys.start
+
+    @property
+    def sensing(self) -> Sensing:
+        """What planner and controller know of the robot."""
+        return self.keys.sensing
+
+    @property
+    def faults(self) -> tuple[Fault, ...]:
+        """Injected."""
+        return self.keys.faults
+
+    @property
+    def pendulum(self) -> PendulumSettings:
+        """The plant of fidelity pendulum."""
+        return self.keys.pendulum
 
     def __reduce__(self) -> tuple[type["Walk"], tuple[Any, ...]]:
         """Survive the way between processes; what is derived is derived anew."""

@@ -35,12 +35,13 @@ DIRECTIVES = {
     "language_level": "3",
     "annotation_typing": "False",
     "infer_types": "True",
-    "boundscheck": "False",
-    "wraparound": "False",
     "cdivision": "True",
     "initializedcheck": "False",
 }
-"""How Cython reads the modules: types by the `.pxd` and by inference, indices and divisors unchecked."""
+"""How Cython reads the modules: types by the `.pxd` and by inference, divisors unchecked."""
+
+UNCHECKED = {"boundscheck": "False", "wraparound": "False"}
+"""The same of modules that have arrays of C: no index is looked at, nor counted from the end, of lists either."""
 
 FLAGS = ("-O3", "-ffp-contract=off", "-fno-math-errno", "-fPIC", "-w", "--param=vect-max-version-for-alias-checks=200")
 """The last one lets loops over many rows of an array become vector instructions; GCC tests first
@@ -81,6 +82,11 @@ def sources() -> Mapping[str, Path]:
     return dict(sorted(found.items()))
 
 
+def has_arrays(path: Path) -> bool:
+    """Whether a source, relative to `ROOT`, has arrays of C, so that its indices are not looked at."""
+    return "[:" in (ROOT / path).with_suffix(".pxd").read_text(encoding="utf-8")
+
+
 def target(path: Path) -> Path:
     """Where the extension module of a source is, relative to `ROOT`."""
     return path.with_name(path.stem + SUFFIX)
@@ -96,7 +102,7 @@ def digests() -> Mapping[str, str]:
     found = sources()
     types = {name: (ROOT / path).with_suffix(".pxd").read_text(encoding="utf-8") for name, path in found.items()}
     needs = {name: types.keys() & _cimported(text) for name, text in types.items()}
-    how = hashlib.sha256(repr((DIRECTIVES, FLAGS, BASELINE, LINK)).encode())
+    how = hashlib.sha256(repr((DIRECTIVES, UNCHECKED, FLAGS, BASELINE, LINK)).encode())
     made = {}
     for name, path in found.items():
         known, left = {name}, [name]
@@ -304,7 +310,8 @@ def _compile_shared(compiler: list[str], folder: Path) -> None:
 
 def _compile(compiler: list[str], name: str, path: Path, folder: Path) -> None:
     c_file = folder / f"{name}.c"
-    directives = [part for key, value in DIRECTIVES.items() for part in ("-X", f"{key}={value}")]
+    chosen = {**DIRECTIVES, **(UNCHECKED if has_arrays(path) else {})}
+    directives = [part for key, value in chosen.items() for part in ("-X", f"{key}={value}")]
     command = [sys.executable, "-m", "cython", f"--shared={SHARED}", "--module-name", name, *directives]
     _run([*command, str(path), "-o", str(c_file)])
     _link(compiler, c_file, target(path))

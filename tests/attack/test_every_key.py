@@ -6,16 +6,17 @@ import pytest
 import yaml
 from every_key import NOT_YET, SCENARIOS, given, keys
 
+from surefoot.scenarios.check.check import cases, check, run_case
 from surefoot.scenarios.file.schema import Scenario
 from surefoot.scenarios.judge.scenario import scenario_of
 from surefoot.scenarios.log import read
+from surefoot.scenarios.run.processes import processes
 from surefoot.scenarios.setup.load import load, written
-from surefoot.scenarios.study.campaigns.campaign import Base
-from surefoot.scenarios.study.campaigns.engine import local_workers, processes
-from surefoot.scenarios.study.campaigns.journal import Journal, outcome_of
-from surefoot.scenarios.study.campaigns.points import Point, Single
-from surefoot.scenarios.study.campaigns.sweep import run_cells
-from surefoot.scenarios.study.checks.check import cases, check, run_case
+from surefoot.studies.campaigns.campaign import Base
+from surefoot.studies.campaigns.engine import local_workers
+from surefoot.studies.campaigns.journal import Journal, outcome_of
+from surefoot.studies.campaigns.points import Point, Single
+from surefoot.studies.campaigns.sweep import run_cells
 
 
 @pytest.fixture

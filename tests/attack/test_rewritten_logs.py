@@ -7,7 +7,7 @@ from rewritten import Records, alike, filtered, joined, left_out, of_two_runs, u
 from typer.testing import CliRunner
 
 import surefoot
-from surefoot.scenarios.apps.cli import app
+from surefoot.scenarios.cli.program import app
 from surefoot.scenarios.errors import LogError, ScenarioError
 from surefoot.scenarios.judge.inspection import inspect
 from surefoot.scenarios.log import read

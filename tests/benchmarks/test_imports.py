@@ -50,3 +50,27 @@ def test_a_command_imports_no_more_modules_than_before(command):
     most, most_of_ours = (LIMITS[f"{which} modules that a command imports"][name] for which in ("all", "surefoot's"))
     assert 0.85 * most_of_ours < len(own) <= most_of_ours
     assert 0.7 * most < len(modules) <= most
+
+
+VALUES = {"surefoot.wbc.estimation", "surefoot.wbc.estimation.estimate"}
+"""The types of an estimate, which the truth has too."""
+
+UNUSED = {
+    "sensing.source=truth": (
+        *("surefoot.wbc.estimation.", "surefoot.scenarios.run.ekf", "surefoot.scenarios.record.estimation"),
+        *("surefoot.sim.readings", "surefoot.sim.imu_motion"),
+    ),
+    "sensing={source: ekf, preset: good}": (),
+}
+"""What a walk with a setting does not use, beside what none uses."""
+
+OF_NO_WALK = ("surefoot.studies", "surefoot.apps", "surefoot.models.robot_file", "surefoot.scenarios.run.processes")
+
+
+@pytest.mark.parametrize("setting", UNUSED)
+def test_a_walk_imports_what_it_uses(setting):
+    words = (*COMMANDS["run diagonal-walk"], "--set", setting)
+    modules = [name for name in imported(words) if name not in VALUES]
+    assert "surefoot.scenarios.run.skeleton" in modules
+    assert [name for name in modules if name.startswith((*OF_NO_WALK, *UNUSED[setting]))] == []
+    assert ("surefoot.wbc.estimation.estimator" in modules) == ("ekf" in setting)

@@ -20,7 +20,7 @@ pytestmark = pytest.mark.unit
 ROOT = Path(__file__).parents[2]
 TEXT = (ROOT / "docs" / "architecture.md").read_text(encoding="utf-8")
 PICTURE = re.search(r"(?s)```\n(Scenario .*?)```", TEXT)[1]
-ROOMS = ("planner", "wbc", "sim", "models", "scenarios")
+ROOMS = ("planner", "wbc", "sim", "models", "scenarios", "studies", "apps")
 
 
 def classes():
@@ -37,7 +37,7 @@ def classes():
 
 
 @pytest.mark.parametrize(
-    "name", sorted(set(re.findall(r"`((?:planner|wbc|sim|models|scenarios|surefoot)\.[\w.]+\w)`", TEXT)))
+    "name", sorted(set(re.findall(r"`((?:planner|wbc|sim|models|scenarios|studies|apps|surefoot)\.[\w.]+\w)`", TEXT)))
 )
 def test_code_is_there(name):
     assert named(name) is not None

@@ -10,11 +10,11 @@ import pytest
 import typer
 import yaml
 
-from surefoot.scenarios.apps.cli import app
+from surefoot.scenarios.cli.program import app
 from surefoot.scenarios.file.schema import Scenario
 from surefoot.scenarios.show.options import keys
-from surefoot.scenarios.study.campaigns.campaign import read_campaign
-from surefoot.scenarios.study.campaigns.shipped import shipped
+from surefoot.studies.campaigns.campaign import read_campaign
+from surefoot.studies.campaigns.shipped import shipped
 
 pytestmark = pytest.mark.unit
 

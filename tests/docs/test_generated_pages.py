@@ -10,7 +10,7 @@ import pytest
 import typer
 from dotted import named
 
-from surefoot.scenarios.apps.cli import app
+from surefoot.scenarios.cli.program import app
 from surefoot.scenarios.file.schema import Scenario
 from surefoot.scenarios.judge.metrics import OWN
 from surefoot.scenarios.show.options import keys

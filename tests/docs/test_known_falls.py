@@ -5,7 +5,7 @@ from pathlib import Path
 
 import pytest
 
-from surefoot.scenarios.study.campaigns.campaign import read_campaign
+from surefoot.studies.campaigns.campaign import read_campaign
 
 FOLDER = Path(__file__).parents[2] / "docs"
 

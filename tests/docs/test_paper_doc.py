@@ -60,7 +60,8 @@ def test_every_equation_is_on_the_page_and_at_its_code(number):
 
 
 def test_no_label_of_the_manuscript_is_left():
-    texts = [*(ROOT / "planner").rglob("*.py"), *(ROOT / "docs").glob("*.md"), *(ROOT / "scenarios").rglob("*.py")]
+    code = (file for folder in ("planner", "scenarios", "studies", "apps") for file in (ROOT / folder).rglob("*.py"))
+    texts = [*code, *(ROOT / "docs").glob("*.md")]
     for file in texts:
         text = file.read_text(encoding="utf-8")
         assert not re.findall(rf"\b(?:{LABELS})\b|\b[Ee]qs?\. [a-zA-Z]", text), file

@@ -13,7 +13,7 @@ from surefoot.scenarios.file.schema import Scenario
 from surefoot.scenarios.log import ChannelSpec, FieldSpec, LogWriter, read
 from surefoot.scenarios.setup.load import read_scenario
 from surefoot.scenarios.setup.robot import Robots
-from surefoot.scenarios.study.campaigns.campaign import read_campaign
+from surefoot.studies.campaigns.campaign import read_campaign
 
 pytestmark = pytest.mark.unit
 

@@ -10,7 +10,7 @@ pytestmark = pytest.mark.unit
 ROOT = Path(__file__).parents[2]
 TEXT = (ROOT / "docs" / "how-to" / "robot-refused.md").read_text(encoding="utf-8")
 ROWS = re.findall(r"(?m)^\| (`.*?) \| ", TEXT.split("| the message says |")[1])
-PLACES = ("models", "scenarios/setup", "scenarios/apps/robots")
+PLACES = ("models", "scenarios/setup", "apps/robots")
 
 
 def quoted(rows):

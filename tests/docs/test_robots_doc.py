@@ -6,9 +6,9 @@ from pathlib import Path
 import pytest
 import yaml
 
+from surefoot.apps.robots.taken import rows as rows_of
 from surefoot.models import RobotOptions, describe
 from surefoot.scenarios import catalogue
-from surefoot.scenarios.apps.robots.taken import rows as rows_of
 from surefoot.similarity import Similarity
 
 ROOT = Path(__file__).parents[2]

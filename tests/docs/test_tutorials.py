@@ -9,7 +9,7 @@ from pathlib import Path
 
 import pytest
 
-from surefoot.models.robot_file.draft import draft
+from surefoot.apps.robots.draft import draft
 from surefoot.scenarios.errors import SetupError
 from surefoot.scenarios.run.simulation import Simulation
 from surefoot.scenarios.setup.load import load

@@ -8,19 +8,19 @@ import pytest
 import yaml
 from typed import Row, typed
 
+from surefoot.apps.bridge import command, door, remote, serve
+from surefoot.apps.drive.page import LIMITS
 from surefoot.models.robot_file import document, files, quantities, shapes, urdf
 from surefoot.planner.ground import terrain
 from surefoot.planner.parameters import PlannerParameters
 from surefoot.planner.steps import adaptation
-from surefoot.scenarios.apps.bridge import command, door, remote, serve
-from surefoot.scenarios.apps.drive.page import LIMITS
 from surefoot.scenarios.judge import causes, computing_checks, motion_checks
 from surefoot.scenarios.policy import mends, trial
 from surefoot.scenarios.record.foxglove import drawing, views
 from surefoot.scenarios.show.figures import ground, motion
 from surefoot.scenarios.show.replay import content, video
-from surefoot.scenarios.study.campaigns import against
-from surefoot.scenarios.study.tour import rules, world
+from surefoot.studies.campaigns import against
+from surefoot.studies.tour import rules, world
 from surefoot.wbc import external
 from surefoot.wbc.cone import Sole
 
@@ -31,14 +31,17 @@ PAGES = ["README.md", "CONTRIBUTING.md", *(path.relative_to(ROOT).as_posix() for
 
 
 def _yaml(path):
-    return yaml.safe_load((ROOT / "scenarios" / f"{path}.yaml").read_text(encoding="utf-8"))
+    return yaml.safe_load((ROOT / f"{path}.yaml").read_text(encoding="utf-8"))
 
 
 def _gaits():
     """Of the push map."""
-    natural = _yaml("study/campaigns/campaigns/push-map")["grid"]["gait"]["natural"]
-    feet = [100 * _yaml("catalogue/walk")["robot_options"][f"foot_{side}"] for side in ("length", "width")]
-    paper, small = _yaml("catalogue/diagonal-walk")["gait"], _yaml("catalogue/stair-climbing")["robot_options"]
+    natural = _yaml("studies/campaigns/campaigns/push-map")["grid"]["gait"]["natural"]
+    feet = [100 * _yaml("scenarios/catalogue/walk")["robot_options"][f"foot_{side}"] for side in ("length", "width")]
+    paper, small = (
+        _yaml("scenarios/catalogue/diagonal-walk")["gait"],
+        _yaml("scenarios/catalogue/stair-climbing")["robot_options"],
+    )
     own = (natural[f"gait.{key}"] for key in ("step_length", "single_support", "double_support"))
     return (*own, *feet, paper["single_support"], paper["double_support"], 100 * small["foot_length"])
 
@@ -150,7 +153,7 @@ CODED = {
 
 HELD = {
     ("README.md", "What walks"): "test_readme.py",
-    ("docs/campaigns.md", "Campaigns"): "../scenarios/study/campaigns/test_against.py",
+    ("docs/campaigns.md", "Campaigns"): "../studies/campaigns/test_against.py",
     ("docs/recovery.md", "Step adjustment"): "test_recovery_doc.py",
     ("docs/recovery.md", "The boxes of `LegReach.allowed`"): "test_recovery_doc.py",
     ("docs/robots.md", "Gallery"): "test_robots_doc.py",

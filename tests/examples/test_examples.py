@@ -47,7 +47,7 @@ SOON = ("run_and_read", "planner_alone", "controller_alone", "own_loop", "own_pl
     "name", [name if name in SOON else pytest.param(name, marks=pytest.mark.long) for name in TOLD]
 )
 def test_an_example_runs_beside_files_named_as_our_parts(name, tmp_path):
-    for part in ("models", "sim", "planner", "wbc", "scenarios"):
+    for part in ("models", "sim", "planner", "wbc", "scenarios", "studies", "apps"):
         (tmp_path / f"{part}.py").write_text("raise ImportError('the wrong one')\n")
     script = shutil.copy(FOLDER / f"{name}.py", tmp_path)
     done = subprocess.run([sys.executable, script], capture_output=True, text=True, cwd=tmp_path, timeout=120)

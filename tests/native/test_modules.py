@@ -1,6 +1,8 @@
 """Compiled modules: made of their sources, known by them, made anew where these changed, and never needed."""
 
+import ast
 import os
+import re
 import shutil
 import subprocess
 import sys
@@ -94,6 +96,64 @@ def test_without_headers_the_reason_names_them(monkeypatch, tmp_path):
     monkeypatch.setattr(sysconfig, "get_paths", lambda: {"include": str(tmp_path)})
     with pytest.raises(modules.NothingCompilesError, match=r"no headers of Python; install them, such as python3"):
         modules.build([])
+
+
+LAST = "def last(them):\n    return them[-1]\n\n\ndef beyond(them):\n    return them[9]\n"
+LOOK = """
+import surefoot.law as it
+print(it.last((1.0, 2.0)), it.__file__.endswith(".py"))
+try:
+    it.beyond((1.0, 2.0))
+except IndexError as error:
+    print(error)
+"""
+
+
+def test_a_module_without_arrays_of_c_looks_at_its_indices(checkout):
+    COMPILER.or_skip()
+    (checkout / "surefoot" / "law.py").write_text(LAST)
+    (checkout / "surefoot" / "law.pxd").write_text("cpdef last(tuple them)\ncpdef beyond(tuple them)\n")
+    assert python(checkout, "-c", LOOK) == "2.0 False\ntuple index out of range\n"
+
+
+def compiled_values():
+    """Source and types of each module that has types."""
+    found = []
+    for path in modules.sources().values():
+        source = (modules.ROOT / path).with_suffix(".py")
+        types = source.with_suffix(".pxd").read_text(encoding="utf-8")
+        found.append(pytest.param(source.read_text(encoding="utf-8"), types, id=str(path)))
+    return found
+
+
+@pytest.mark.parametrize(("source", "types"), compiled_values())
+def test_a_compiled_dataclass_takes_its_values_in_the_order_of_its_source(source, types):
+    """Cython takes them in the order of the types."""
+    assert field_orders(source, types) == []
+
+
+def test_another_order_is_seen():
+    source = "@dataclass(frozen=True)\nclass A:\n    x: float\n    y: float\n"
+    assert field_orders(source, "cdef class A:\n    cdef readonly double x, y\n") == []
+    assert field_orders(source, "cdef class A:\n    cdef readonly double y\n    cdef readonly double x\n") == ["A"]
+    assert field_orders(source, "cdef class A:\n    cdef readonly double x\n") == ["A"]
+
+
+def field_orders(source: str, types: str) -> list[str]:
+    """Dataclasses whose fields have another order, or are others, where their types are."""
+    wrong = []
+    for node in ast.walk(ast.parse(source)):
+        declared = isinstance(node, ast.ClassDef) and re.search(
+            rf"(?m)^cdef class {node.name}\b.*:\n((    .*\n|\n)*)", types
+        )
+        if not declared or not any("dataclass" in ast.unparse(one) for one in node.decorator_list):
+            continue
+        lines = re.findall(r"(?m)^    cdef (?:readonly |public )?(?:[\w.]+|\([\w, ]+\)) ((?:\w+, )*\w+)$", declared[1])
+        there = [name for line in lines for name in line.split(", ")]
+        own = [one.target.id for one in node.body if isinstance(one, ast.AnnAssign)]
+        if there[: len(own)] != own:
+            wrong.append(node.name)
+    return wrong
 
 
 def test_a_change_of_types_makes_stale_who_knows_them(checkout, monkeypatch):

@@ -1,4 +1,4 @@
-"""Compiled modules count no index from the end: without wraparound that reads memory before a list's first item."""
+"""Modules with arrays of C count no index from the end: there that reads memory before a list's first item."""
 
 import ast
 from collections.abc import Iterator
@@ -19,7 +19,10 @@ def negative(text: str) -> Iterator[str]:
                 yield ast.unparse(node)
 
 
-@pytest.mark.parametrize("name", sorted(modules.sources()))
+UNCHECKED = sorted(name for name, path in modules.sources().items() if modules.has_arrays(path))
+
+
+@pytest.mark.parametrize("name", UNCHECKED)
 def test_no_index_is_counted_from_the_end(name):
     source = modules.ROOT / modules.sources()[name]
     if source.suffix == ".py":

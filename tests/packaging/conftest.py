@@ -16,8 +16,9 @@ import pytest
 from surefoot.models.registry import ROBOTS
 from surefoot.native import modules
 from surefoot.planner.laws.profiles import PROFILES
-from surefoot.scenarios.apps import cli
 from surefoot.scenarios.catalogue import SCENARIOS
+from surefoot.scenarios.cli import program as cli
+from surefoot.scenarios.cli.files import FILES
 from surefoot.scenarios.judge.metrics import METRICS
 from surefoot.scenarios.run.full import PLANTS
 from surefoot.scenarios.run.sensing import ESTIMATORS
@@ -135,7 +136,7 @@ def importing() -> Iterator[None]:
     for name in set(sys.modules) - before:
         if name.startswith(("my_package", "broken")):
             del sys.modules[name]
-    for registry in (KINDS, PROFILES, ESTIMATORS, PLANTS, TASKS, ROBOTS, METRICS, SCENARIOS):
+    for registry in (KINDS, PROFILES, ESTIMATORS, PLANTS, TASKS, ROBOTS, METRICS, SCENARIOS, FILES):
         registry._loaded.clear()
 
 
@@ -149,7 +150,7 @@ def at_hand(
         for made in sites:
             monkeypatch.syspath_prepend(str(made.folder))
         with pytest.raises(SystemExit) as ended:
-            cli.main([*arguments])
+            cli.program([*arguments])
         said = capsys.readouterr()
         return Answer(int(ended.value.code or 0), said.out, said.err)
 

@@ -19,7 +19,7 @@ from surefoot.native import modules
 pytestmark = pytest.mark.unit
 
 ROOT = Path(__file__).parents[2]
-PARTS = ("models", "planner", "scenarios", "sim", "wbc")
+PARTS = ("apps", "models", "planner", "scenarios", "sim", "studies", "wbc")
 """Folders of the root that the package holds as links, names that a user's own files may well have."""
 
 
@@ -45,8 +45,8 @@ def test_the_wheel_holds_the_package_whole_and_nothing_beside_it(distributions):
     data = (
         "py.typed",
         "scenarios/show/kit/page.css",
-        "scenarios/study/paper/claims.yaml",
-        "scenarios/study/paper/sections.yaml",
+        "studies/paper/claims.yaml",
+        "studies/paper/sections.yaml",
         "scenarios/catalogue/walk.yaml",
     )
     assert {f"surefoot/{name}" for name in data} <= set(packed)

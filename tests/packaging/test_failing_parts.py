@@ -288,7 +288,7 @@ def test_a_metric_that_leaves_takes_no_verdict_with_it(hop, at_hand, tmp_path):
 @pytest.mark.unit
 def test_what_leaves_where_nobody_stands_guard_is_a_defect(at_hand, monkeypatch):
     """The exit code is the command line's own, wherever a SystemExit comes from."""
-    from surefoot.scenarios.apps import listing
+    from surefoot.scenarios.cli import listing
 
     namespace = {"__name__": "broken_hop"}
     exec("import sys\ndef leave():\n    sys.exit(0)\n", namespace)

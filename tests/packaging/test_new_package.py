@@ -11,13 +11,13 @@ from pathlib import Path
 import pytest
 import yaml
 
-from surefoot.scenarios.apps.package import new
+from surefoot.apps.package.new import new
 from surefoot.scenarios.errors import ScenarioError
 
 ROOT = Path(__file__).parents[2]
 PAGE = (ROOT / "docs" / "extending.md").read_text(encoding="utf-8")
 
-LEFT_OUT = ("planners", "ground", "plants", "rules", "controllers", "observations")
+LEFT_OUT = ("planners", "ground", "plants", "rules", "commands", "terrains", "controllers", "observations")
 """Modules of the page that a first package does not need."""
 
 

@@ -3,7 +3,7 @@ from dataclasses import replace
 import numpy as np
 import pytest
 
-from surefoot.planner.plan import PLACES, POINT, PlanSample, in_point
+from surefoot.planner.sample import PLACES, POINT, PlanSample, in_point
 from surefoot.planner.sampling import PlanSampler
 from surefoot.planner.steps.gait import GaitParameters
 from surefoot.planner.types import PhaseKind

@@ -21,8 +21,9 @@ from dataclasses import dataclass
 from pathlib import Path
 
 ROOT = Path(__file__).parents[2]
-FOLDERS = ("planner", "wbc", "sim", "models", "scenarios", "surefoot", "tests", "docs", "examples", "benchmarks")
-FILES = ("pyproject.toml", "README.md", "CHANGELOG.md", "CONTRIBUTING.md", "constraints.txt")
+CODE = ("planner", "wbc", "sim", "models", "scenarios", "studies", "apps", "surefoot")
+FOLDERS = (*CODE, "tests", "docs", "examples", "benchmarks")
+FILES = ("pyproject.toml", "Makefile", "README.md", "CHANGELOG.md", "CONTRIBUTING.md", "constraints.txt")
 LONGEST = 600.0
 """Of the tests of one mutant [s]; a mutant that takes longer runs without end and counts as found."""
 

@@ -12,8 +12,8 @@ import numpy as np
 from controllers import CONTROLLERS
 
 import surefoot
+from surefoot.scenarios.check import check as checking
 from surefoot.scenarios.judge import feet, metrics, verdict
-from surefoot.scenarios.study.checks import check as checking
 from surefoot.sim import contacts, drives, readings, scene, world
 
 
@@ -193,7 +193,7 @@ def _sensors(made: type) -> Sabotage:
     return Sabotage(patches={"scenarios.run.full.SensorSuite": made})
 
 
-SLIPS = ("scenarios.judge.feet.stance_slips", "scenarios.study.checks.signs.stance_slips")
+SLIPS = ("scenarios.judge.feet.stance_slips", "scenarios.check.signs.stance_slips")
 """Where slips are looked at."""
 
 

@@ -21,10 +21,10 @@ from sabotages import ALL
 
 import surefoot
 from surefoot.scenarios.catalogue import CONTROLS, OURS, OWN
+from surefoot.scenarios.check.baseline import read_baseline
+from surefoot.scenarios.check.check import cases, run_case
+from surefoot.scenarios.check.report import lines_of
 from surefoot.scenarios.record.provenance import relevant_versions
-from surefoot.scenarios.study.checks.baseline import read_baseline
-from surefoot.scenarios.study.checks.check import cases, run_case
-from surefoot.scenarios.study.checks.report import lines_of
 
 MAKEFILE = Path(__file__).parents[2] / "Makefile"
 

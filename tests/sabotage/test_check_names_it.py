@@ -6,9 +6,9 @@ import pytest
 from controllers import SABOTAGES
 
 import surefoot
-from surefoot.scenarios.study.checks import check as checking
-from surefoot.scenarios.study.checks.check import cases, run_case, updated
-from surefoot.scenarios.study.checks.report import lines_of
+from surefoot.scenarios.check import check as checking
+from surefoot.scenarios.check.check import cases, run_case, updated
+from surefoot.scenarios.check.report import lines_of
 
 pytestmark = pytest.mark.physics
 

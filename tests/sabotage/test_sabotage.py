@@ -9,7 +9,7 @@ from table import first_that_catches, of_make_check, short_first
 
 import surefoot
 from surefoot.scenarios.catalogue import CONTROLS, OURS, OWN
-from surefoot.scenarios.study.checks.check import cases, run_case
+from surefoot.scenarios.check.check import cases, run_case
 
 EXPECTED = {
     "friction times 1.5": ("control-slide", "failed", "foot_slip_max is 0.0"),

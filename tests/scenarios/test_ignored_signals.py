@@ -9,7 +9,7 @@ import time
 import pytest
 
 from surefoot.scenarios.run.interrupts import SIGNALS
-from surefoot.scenarios.study.campaigns.engine import processes
+from surefoot.scenarios.run.processes import processes
 
 CAMPAIGN = "scenario: stand\nset: {duration: 2, criteria: {fell: false}}\n"
 

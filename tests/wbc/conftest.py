@@ -15,8 +15,9 @@ from surefoot.wbc.limits import JointLimits
 from surefoot.wbc.model import BodyFrames
 from surefoot.wbc.parameters import WbcParameters
 from surefoot.wbc.qp import QpData
+from surefoot.wbc.reference import WbcReference
 from surefoot.wbc.tasks import Task
-from surefoot.wbc.types import FootSensing, RobotState, WbcReference
+from surefoot.wbc.types import FootSensing, RobotState
 
 PERIOD = 0.002
 HALF_SOLE = 0.0375

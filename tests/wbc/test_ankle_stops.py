@@ -10,9 +10,9 @@ from surefoot.models import RobotOptions, describe
 from surefoot.scenarios.setup.stance import Body, body_of
 from surefoot.wbc.limits import JointLimits
 from surefoot.wbc.model import RobotTerms
+from surefoot.wbc.reference import WbcReference
 from surefoot.wbc.tasks.parameters import TaskGains, TaskWeights
 from surefoot.wbc.tasks.swing import YIELDING, AnkleStops, SwingFoot
-from surefoot.wbc.types import WbcReference
 
 pytestmark = pytest.mark.unit
 

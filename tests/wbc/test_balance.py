@@ -4,7 +4,6 @@ from scipy.spatial import ConvexHull
 
 from surefoot.wbc.balance import BalanceLaw, SupportRegion
 from surefoot.wbc.parameters import BalanceGains
-from surefoot.wbc.setpoint import Setpoint
 
 pytestmark = pytest.mark.unit
 
@@ -12,9 +11,7 @@ SQUARE = 0.0375
 
 
 def com_acceleration(reference, com, com_velocity, region, gains):
-    setpoint = Setpoint()
-    setpoint.take(reference)
-    return BalanceLaw(gains, region).acceleration(setpoint, com, com_velocity)
+    return BalanceLaw(gains, region).acceleration(reference, com, com_velocity)
 
 
 def region(half_length=SQUARE, half_width=SQUARE, feet=((0.0, 0.1), (0.0, -0.1)), yaws=(0.0, 0.0), active=(True, True)):

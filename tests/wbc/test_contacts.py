@@ -4,7 +4,8 @@ import numpy as np
 import pytest
 
 from surefoot.wbc.contacts import ContactParameters, ContactSchedule
-from surefoot.wbc.types import FootSensing, WbcReference
+from surefoot.wbc.reference import WbcReference
+from surefoot.wbc.types import FootSensing
 
 pytestmark = pytest.mark.unit
 

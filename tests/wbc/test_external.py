@@ -9,7 +9,7 @@ import pytest
 
 from surefoot.similarity import REFERENCE_SIZE, Similarity
 from surefoot.wbc.external import PAST, LoadObserver
-from surefoot.wbc.model import RobotTerms
+from surefoot.wbc.model import BodyFrames, RobotTerms
 from surefoot.wbc.types import GRAVITY, NO_LOAD, ExternalLoad, FootSensing
 
 pytestmark = pytest.mark.unit
@@ -17,6 +17,19 @@ pytestmark = pytest.mark.unit
 PERIOD, MASS = 0.002, 100.0
 FORCE, MOMENT = np.array([-30.0, 20.0, 0.0]), np.array([-9.0, -12.0, 5.0])
 LOAD = ExternalLoad(FORCE, MOMENT, 1.15)
+
+
+def terms_of_one_body():
+    """Terms to be written by hand; at first nothing moves, and the left foot's wrench is that about the origin."""
+    model, here = pin.Model(), pin.SE3.Identity()
+    joint = model.addJoint(0, pin.JointModelFreeFlyer(), here, "base")
+    model.appendBodyToJoint(joint, pin.Inertia(MASS, np.zeros(3), np.eye(3)), here)
+    for name in ("left", "right", "torso"):
+        model.addFrame(pin.Frame(name, joint, 0, here, pin.FrameType.OP_FRAME))
+    terms = RobotTerms(model, BodyFrames(("left", "right"), "torso"))
+    terms.com[:], terms.com_velocity[:], terms.angular_momentum[:] = 0.0, 0.0, 0.0
+    terms.sole_wrench_map[:] = np.hstack((np.eye(6), np.zeros((6, 6))))
+    return terms
 
 
 def observed(
@@ -28,6 +41,7 @@ def observed(
     What the feet feel is told so many ticks late, with an age in ticks.
     """
     rng, observer, loads, wrenches = np.random.default_rng(5), LoadObserver(MASS, PERIOD, size), [], []
+    terms = terms_of_one_body()
     mass, weight = scale * MASS, np.array([0.0, 0.0, -scale * MASS * GRAVITY])
     com, momentum = np.array([40.0, -7.0, 1.0]), np.array([20.0, -30.0, 5.0])
     spin = np.cross(com, momentum)
@@ -42,10 +56,7 @@ def observed(
             lever = com + np.array([0.0, 0.0, 0.8])
             spin = spin + PERIOD * (felt[3:] + np.cross(com, weight) + np.cross(lever, acting))
         turning = (spin - np.cross(com, momentum)) / scale
-        wrench_map = np.hstack((np.eye(6), np.zeros((6, 6))))
-        terms = SimpleNamespace(
-            com=com, com_velocity=momentum / mass, angular_momentum=turning, sole_wrench_map=wrench_map
-        )
+        terms.com[:], terms.com_velocity[:], terms.angular_momentum[:] = com, momentum / mass, turning
         wrenches.append(np.concatenate((felt, np.zeros(6))).reshape(2, 6))
         wrench = wrenches[max(tick - late, 0)]
         deviation = (0.0, 0.0) if unsure is None else unsure(tick * PERIOD)
@@ -83,17 +94,14 @@ def test_an_age_that_is_no_time_is_none(told):
 
 def test_between_two_ticks_the_motion_is_as_far_from_each_as_the_age_says():
     """A push of the feet that grows evenly tells 1.5 ticks from 1 and from 2."""
-    found = {}
+    found, terms = {}, terms_of_one_body()
     for told in (1.0, 1.5, 2.0):
         observer = LoadObserver(MASS, PERIOD)
         for tick in range(40):
             now, then = tick * PERIOD, (tick - 1.5) * PERIOD
             # Of forces at the ends of ticks a mean is half a tick younger than the momentum: the last rows take it out.
             momentum = np.array([500.0 * now * now + 500.0 * PERIOD * now, 0.0, 0.0])
-            terms = SimpleNamespace(
-                com=np.zeros(3), com_velocity=momentum / MASS, angular_momentum=np.zeros(3),
-                sole_wrench_map=np.hstack((np.eye(6), np.zeros((6, 6)))),
-            )  # fmt: skip
+            terms.com_velocity[:] = momentum / MASS
             wrench = np.zeros((2, 6))
             wrench[0, [0, 2]] = 1000.0 * then, MASS * GRAVITY
             observer.update(terms, wrench, (0.0, 0.0), told * PERIOD)

@@ -25,7 +25,7 @@ def controller(robot, rng):
 
 
 def break_first(controller, solver):
-    controller._solvers = (solver, *controller._solvers[1:])
+    controller.solvers = (solver, *controller.solvers[1:])
 
 
 def test_the_second_solver_answers_for_the_first(controller, reference, loaded):
@@ -38,7 +38,7 @@ def test_the_second_solver_answers_for_the_first(controller, reference, loaded):
 
 def test_so_does_the_last_one_for_both_before_it(controller, reference, loaded):
     good = controller.update(reference, loaded).torque.copy()
-    controller._solvers = (Failing(), Failing(), Failing(), controller._solvers[-1])
+    controller.solvers = (Failing(), Failing(), Failing(), controller.solvers[-1])
     report = controller.update(reference, loaded)
     assert report.status is SolveStatus.SECOND_SOLVER
     np.testing.assert_allclose(report.torque, good, atol=1e-3)
@@ -55,13 +55,13 @@ def contradicted(controller, reference, loaded):
     return qp
 
 
-def test_limits_that_contradict_each_other_are_broken_and_no_others(controller, contradicted):
+def test_limits_that_contradict_each_other_are_broken_and_no_others(robot, controller, contradicted):
     status, solution = controller.solve(contradicted)
     assert status is SolveStatus.SOFTENED
     assert contradicted.violation(solution.x) > 0.1
     assert contradicted.violation(solution.x, controller.layout.soft) <= 1e-6
     torque = contradicted.A[controller.layout.torque_rows] @ solution.x + controller.terms.bias[6:]
-    assert (np.abs(torque) <= controller._limits.torque + 1e-6).all()
+    assert (np.abs(torque) <= robot.limits.torque + 1e-6).all()
 
 
 def test_the_equalities_alone_would_break_others_as_well(controller, contradicted):
@@ -71,7 +71,7 @@ def test_the_equalities_alone_would_break_others_as_well(controller, contradicte
 
 def test_where_all_can_hold_none_is_broken(controller, reference, loaded):
     controller.update(reference, loaded)
-    usual, softened = (controller._solvers[k].solve(controller.qp).x for k in (0, 1))
+    usual, softened = (controller.solvers[k].solve(controller.qp).x for k in (0, 1))
     assert controller.qp.violation(softened) <= 1e-3
     np.testing.assert_allclose(softened, usual, atol=1e-3)
 
@@ -91,7 +91,7 @@ def torn(controller, reference, loaded):
     return qp
 
 
-def test_a_sole_that_nothing_holds_is_let_go_of_before_the_robot_is_thrown(controller, torn):
+def test_a_sole_that_nothing_holds_is_let_go_of_before_the_robot_is_thrown(robot, controller, torn):
     """Dynamics, cones and torques hold; only joints, distances and the soles' motion do not."""
     status, solution = controller.solve(torn)
     n, layout = controller.layout.variables, controller.layout
@@ -99,14 +99,14 @@ def test_a_sole_that_nothing_holds_is_let_go_of_before_the_robot_is_thrown(contr
     assert solution.violation <= 1e-3
     assert torn.violation(solution.x, np.concatenate((layout.soft, n + np.arange(12)))) == solution.violation
     torque = torn.A[layout.torque_rows] @ solution.x + controller.terms.bias[6:]
-    assert (np.abs(torque) <= controller._limits.torque + 1e-3).all()
+    assert (np.abs(torque) <= robot.limits.torque + 1e-3).all()
 
 
-def test_the_equalities_alone_would_throw_it(controller, torn):
+def test_the_equalities_alone_would_throw_it(robot, controller, torn):
     """Negative control: with torques far beyond their limits."""
     assert Daqp(soft=controller.layout.soft).solve(torn) is None
     torque = torn.A[controller.layout.torque_rows] @ equalities_only(torn).x + controller.terms.bias[6:]
-    assert (np.abs(torque) / controller._limits.torque).max() > 3.0
+    assert (np.abs(torque) / robot.limits.torque).max() > 3.0
 
 
 @pytest.mark.parametrize("reference", ["swing"], indirect=True)
@@ -127,7 +127,7 @@ def test_a_solver_that_lies_is_not_believed(controller, reference, loaded):
             wrong = solution.x + 0.1
             return type(solution)(wrong, qp.violation(wrong), solution.iterations)
 
-    break_first(controller, Lying(controller._solvers[0]))
+    break_first(controller, Lying(controller.solvers[0]))
     assert controller.update(reference, loaded).status is SolveStatus.SECOND_SOLVER
 
 

@@ -9,9 +9,9 @@ import pytest
 from surefoot.models import RobotOptions, describe
 from surefoot.scenarios.setup.stance import Body, body_of
 from surefoot.wbc.model import RobotTerms
+from surefoot.wbc.reference import WbcReference
 from surefoot.wbc.tasks.parameters import TaskGains, TaskWeights
 from surefoot.wbc.tasks.trunk import SOFTENED, SPARED, HipStops, Pelvis
-from surefoot.wbc.types import WbcReference
 
 pytestmark = pytest.mark.unit
 

@@ -96,7 +96,7 @@ def test_the_commanded_zmp_stays_on_the_line(leaning, references):
     contacts = replace(controller.schedule.update(swing(), _carried()), active=(True, False))
     controller.build(terms, swing(), contacts)
     line = terms.contact_position[0]
-    x, y = controller._region.project(line[0], line[1] + 1.0)
+    x, y = controller.region.project(line[0], line[1] + 1.0)
     assert abs(y - line[1]) <= TOE_DEPTH
     assert x == pytest.approx(line[0], abs=1e-6)
 

@@ -9,7 +9,6 @@ import pytest
 from surefoot.wbc.balance import BalanceLaw, SupportRegion
 from surefoot.wbc.parameters import BalanceGains, WbcParameters
 from surefoot.wbc.qp import WRENCH_UNIT, QpLayout, allocate
-from surefoot.wbc.setpoint import Setpoint
 from surefoot.wbc.solvers import QpSolution
 from surefoot.wbc.tasks import DEFAULT_LAYOUT, TaskGains, TaskStack, TaskWeights
 from surefoot.wbc.tasks.default import default_tasks
@@ -25,12 +24,6 @@ PLACES = {
     for (name, size), end in zip(DEFAULT_LAYOUT, np.cumsum([n for _, n in DEFAULT_LAYOUT]), strict=True)
 }
 TOE = 0.0375
-
-
-def setpoint(reference):
-    made = Setpoint()
-    made.take(reference)
-    return made
 
 
 @pytest.fixture
@@ -96,7 +89,7 @@ def test_a_unit_weight_makes_the_cost_that_of_its_jacobian(robot, asked, name):
     )
     task.weight = 1.0
     qp = allocate(QpLayout(robot.nv, 16))
-    TaskStack(qp, (task,), ()).write(terms, setpoint(reference))
+    TaskStack(qp, (task,), ()).write(terms, reference)
     J, a = found[name]
     np.testing.assert_allclose(qp.H, J.T @ J, atol=1e-12)
     np.testing.assert_allclose(qp.g, -J.T @ a, atol=1e-12)
@@ -219,7 +212,7 @@ def test_targets_are_the_feedback_that_they_claim(robot, state, asked):
     """Error and velocity in world axes, from forward kinematics alone."""
     terms, reference, region, found = asked
     gains = TaskGains()
-    com = BalanceLaw(BalanceGains(), region).acceleration(setpoint(reference), terms.com, terms.com_velocity)
+    com = BalanceLaw(BalanceGains(), region).acceleration(reference, terms.com, terms.com_velocity)
     np.testing.assert_allclose(found["CoM"][1], np.array(com) + np.array([0.0, 0.0, GRAVITY]))
     np.testing.assert_allclose(found["angular momentum"][1] * terms.mass, -3.0 * terms.angular_momentum)
     data, velocity = placed(robot, state.q, state.v)

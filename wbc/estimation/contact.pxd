@@ -1,5 +1,6 @@
 cimport cython
 from surefoot cimport algebra
+from surefoot.readings cimport Reading
 
 cdef double CARRIES, UNLIKELY, FIRM_EDGE
 
@@ -18,7 +19,7 @@ cdef class SoleContact:
     cdef double[::1] _slow, _tared
     cdef Py_ssize_t[::1] _count
 
-    cpdef update(self, reading, still, const double[:] above)
+    cpdef update(self, Reading reading, still, const double[:] above)
     @cython.locals(k=Py_ssize_t, i=Py_ssize_t)
     cdef void _filter(self, const double[:, :] reading, double share) noexcept
     cdef double _force(self, Py_ssize_t k) noexcept

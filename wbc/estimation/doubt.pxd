@@ -2,6 +2,7 @@ cimport cython
 from surefoot cimport algebra, linear
 from surefoot.algebra cimport vector3
 from surefoot.wbc.estimation cimport stand
+from surefoot.wbc.estimation.estimate cimport Deviation
 from surefoot.wbc.estimation.kinematics cimport SensedBody
 
 @cython.final
@@ -19,7 +20,7 @@ cdef class Doubt:
     cdef vector3 _by_others, _by_rates
 
     @cython.locals(deviation=object, up=double)
-    cpdef deviation(self, contact, double gyro)
+    cpdef Deviation deviation(self, contact, double gyro)
     @cython.locals(a=Py_ssize_t, found=double, arm=vector3, reach=vector3)
     cpdef look(self, Py_ssize_t stance, double gyro)
     @cython.locals(body=SensedBody, at=vector3, c=Py_ssize_t, j=Py_ssize_t, moved=vector3, own=vector3, by=vector3, rate=vector3)

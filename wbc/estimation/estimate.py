@@ -6,7 +6,7 @@ from dataclasses import dataclass, field
 from surefoot.wbc.types import Array, RobotState
 
 
-@dataclass(frozen=True, slots=True)
+@dataclass(frozen=True)
 class Deviation:
     """Standard deviations of an estimate; zeros for the truth.
 
@@ -29,7 +29,7 @@ class Deviation:
     moment: float
 
 
-@dataclass(frozen=True, slots=True)
+@dataclass(frozen=True)
 class Estimate:
     """What an estimator makes of the readings of a tick.
 
@@ -51,7 +51,7 @@ class Estimate:
     wrench_age: float = 0.0
 
 
-@dataclass(frozen=True, slots=True)
+@dataclass(frozen=True)
 class Planned:
     """What the controller has decided at a tick: what an estimator is told back after it.
 

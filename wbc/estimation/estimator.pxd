@@ -1,9 +1,11 @@
 cimport cython
 from surefoot cimport algebra
 from surefoot.algebra cimport vector3
+from surefoot.readings cimport Reading, Readings
 from surefoot.wbc.estimation.base cimport FloatingBase
 from surefoot.wbc.estimation.contact cimport SoleContact
 from surefoot.wbc.estimation.doubt cimport Doubt
+from surefoot.wbc.estimation.estimate cimport Deviation, Estimate
 from surefoot.wbc.estimation.invariant_filter cimport InvariantFilter
 from surefoot.wbc.estimation.joints cimport JointObserver
 from surefoot.wbc.estimation.kinematics cimport SensedBody
@@ -31,15 +33,16 @@ cdef class SensedState:
 
     @cython.locals(slot=Py_ssize_t, i=Py_ssize_t)
     cdef void _remember(self, const double[:] acceleration)
-    cdef _fitting(self, readings)
+    @cython.locals(reading=Reading)
+    cdef Readings _fitting(self, Readings readings)
     @cython.locals(contact=SoleContact)
-    cpdef sense(self, readings)
+    cpdef Estimate sense(self, Readings readings)
     @cython.locals(at=Py_ssize_t, time=double, v=vector3)
-    cdef _measured(self, readings)
+    cdef _measured(self, Readings readings)
     @cython.locals(filter_=InvariantFilter, contact=SoleContact, body=SensedBody, changed=cython.bint, due=cython.bint)
-    cdef _step(self, readings)
+    cdef _step(self, Readings readings)
     @cython.locals(at=Py_ssize_t, gained=double[::1])
-    cdef _turn(self, readings)
+    cdef _turn(self, Readings readings)
     @cython.locals(back=Py_ssize_t)
     cdef bint _hears(self, Py_ssize_t at)
     @cython.locals(step=Py_ssize_t, i=Py_ssize_t, back=Py_ssize_t, gained=double)
@@ -54,4 +57,4 @@ cdef class SensedState:
     @cython.locals(late=Py_ssize_t, gained=double[::1])
     cdef _now(self)
 
-cdef bint _fits(reading, tuple shape)
+cdef bint _fits(Reading reading, tuple shape)

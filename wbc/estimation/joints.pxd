@@ -1,5 +1,6 @@
 cimport cython
 from surefoot cimport linear
+from surefoot.readings cimport Readings
 
 @cython.final
 cdef class JointObserver:
@@ -12,7 +13,7 @@ cdef class JointObserver:
 
     cpdef void told(self, const double[:] acceleration)
     @cython.locals(at=Py_ssize_t, tick=Py_ssize_t)
-    cpdef update(self, readings)
+    cpdef update(self, Readings readings)
     cdef void _take(self, Py_ssize_t at, const double[:] position, const double[:] velocity)
     @cython.locals(newer=cython.bint, tick=Py_ssize_t, i=Py_ssize_t)
     cdef void _hear(self, Py_ssize_t at, const double[:] reading, bint fresh) noexcept

@@ -1,10 +1,10 @@
 cimport cython
 from surefoot.wbc.arm_swing cimport ArmSwing
 from surefoot.wbc.model cimport RobotTerms
-from surefoot.wbc.setpoint cimport Setpoint
+from surefoot.wbc.reference cimport WbcReference
 
 cdef class DiagonalTerm:
-    cdef void put(self, RobotTerms terms, Setpoint reference, double[::1] linear) noexcept
+    cdef void put(self, RobotTerms terms, WbcReference reference, double[::1] linear) noexcept
 
 cdef class Regularisation(DiagonalTerm):
     cdef object _weight
@@ -15,10 +15,10 @@ cdef class Posture(DiagonalTerm):
     cdef double[::1] _K, _D, _pull
 
     @cython.locals(j=Py_ssize_t, arms=ArmSwing, angle=double, rate=double)
-    cdef void put(self, RobotTerms terms, Setpoint reference, double[::1] linear) noexcept
+    cdef void put(self, RobotTerms terms, WbcReference reference, double[::1] linear) noexcept
 
 cdef class ForceDistribution(DiagonalTerm):
     cdef double _force, _moment, _unit, _g
 
     @cython.locals(weight=double)
-    cdef void put(self, RobotTerms terms, Setpoint reference, double[::1] linear) noexcept
+    cdef void put(self, RobotTerms terms, WbcReference reference, double[::1] linear) noexcept

@@ -8,7 +8,7 @@ from numpy.typing import NDArray
 
 from surefoot.wbc.arm_swing import ArmSwing
 from surefoot.wbc.model import RobotTerms
-from surefoot.wbc.setpoint import Setpoint
+from surefoot.wbc.reference import WbcReference
 from surefoot.wbc.tasks.parameters import TaskGains, TaskWeights
 from surefoot.wbc.types import GRAVITY, Array
 
@@ -25,7 +25,7 @@ class DiagonalTerm:
         """
         raise NotImplementedError
 
-    def put(self, terms: RobotTerms, reference: Setpoint, linear: Array) -> None:
+    def put(self, terms: RobotTerms, reference: WbcReference, linear: Array) -> None:
         """Write weight times target of its variables into ``linear``, shape (nv + 12,), zero at first.
 
         Where the target is zero, that is nothing.
@@ -81,7 +81,7 @@ class Posture(DiagonalTerm):
         self._pull = stiffness * weight * self._posture
         diagonal[6:-12] += weight
 
-    def put(self, terms: RobotTerms, reference: Setpoint, linear: Array) -> None:
+    def put(self, terms: RobotTerms, reference: WbcReference, linear: Array) -> None:
         """See ``DiagonalTerm.put``."""
         for j in range(self._K.shape[0]):
             linear[6 + j] = self._pull[j] - self._K[j] * terms._q[7 + j] - self._D[j] * terms._v[6 + j]
@@ -104,9 +104,9 @@ class ForceDistribution(DiagonalTerm):
         """See ``DiagonalTerm.weigh``."""
         diagonal[-12:] += np.tile([self._force] * 3 + [self._moment] * 3, 2) * self._unit**2
 
-    def put(self, terms: RobotTerms, reference: Setpoint, linear: Array) -> None:
+    def put(self, terms: RobotTerms, reference: WbcReference, linear: Array) -> None:
         """See ``DiagonalTerm.put``."""
         # The diagonal weighs forces in wrench units, their targets are shares of the weight.
         weight = self._force * terms.wrench_unit * terms.mass * self._g
-        linear[terms.nv + 2] = weight * reference.load_left
-        linear[terms.nv + 8] = weight * reference.load_right
+        linear[terms.nv + 2] = weight * reference.load_share[0]
+        linear[terms.nv + 8] = weight * reference.load_share[1]

@@ -2,11 +2,11 @@ cimport cython
 from surefoot cimport algebra
 from surefoot.algebra cimport vector3
 from surefoot.wbc.model cimport RobotTerms
-from surefoot.wbc.setpoint cimport Setpoint
+from surefoot.wbc.reference cimport WbcReference
 
 cdef class TaskLaw:
     cdef void put(
-        self, RobotTerms terms, Setpoint reference, const double[::1] scale, double[:, ::1] rows, double[::1] target
+        self, RobotTerms terms, WbcReference reference, const double[::1] scale, double[:, ::1] rows, double[::1] target
     ) noexcept
 
 cdef class Place:
@@ -16,7 +16,7 @@ cdef class Place:
     cdef double[:, ::1] _rows
     cdef double[::1] _target
 
-    cdef int put(self, RobotTerms terms, Setpoint reference) except -1
+    cdef int put(self, RobotTerms terms, WbcReference reference) except -1
 
 cpdef vector3 angular_feedback(
     double stiffness, double damping, const double[:, :] R, vector3 velocity, const double[:, :] desired, vector3 ahead

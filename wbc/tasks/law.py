@@ -6,8 +6,8 @@ import numpy as np
 
 from surefoot import algebra
 from surefoot.wbc.model import RobotTerms
-from surefoot.wbc.setpoint import Setpoint
-from surefoot.wbc.types import Array, WbcReference
+from surefoot.wbc.reference import WbcReference
+from surefoot.wbc.types import Array
 
 if TYPE_CHECKING:
     from surefoot.wbc.tasks.task import Task
@@ -21,12 +21,11 @@ class TaskLaw:
 
     def write(self, terms: RobotTerms, reference: WbcReference, scale: Array, rows: Array) -> Array:
         """See ``Task.write``; rows, shape (size, nv + 12), lie side by side in memory."""
-        target, setpoint = np.zeros(len(rows)), Setpoint()
-        setpoint.take(reference)
-        self.put(terms, setpoint, scale.reshape(-1), rows, target)
+        target = np.zeros(len(rows))
+        self.put(terms, reference, scale.reshape(-1), rows, target)
         return target
 
-    def put(self, terms: RobotTerms, reference: Setpoint, scale: Array, rows: Array, target: Array) -> None:
+    def put(self, terms: RobotTerms, reference: WbcReference, scale: Array, rows: Array, target: Array) -> None:
         """Write rows and target of this state and reference.
 
         Args:
@@ -54,7 +53,7 @@ class Place:
         self._law = cast(TaskLaw, task) if own else None
         self._scale, self._rows, self._target = scale, rows, target
 
-    def put(self, terms: RobotTerms, reference: Setpoint) -> None:
+    def put(self, terms: RobotTerms, reference: WbcReference) -> None:
         """Let the task write.
 
         Raises:
@@ -64,7 +63,7 @@ class Place:
             self._law.put(terms, reference, self._scale, self._rows, self._target)
         else:
             scale, rows, target = self._arrays
-            wanted = self._task.write(terms, reference.reference, scale, rows)
+            wanted = self._task.write(terms, reference, scale, rows)
             target[:] = np.reshape(tuple(wanted), target.shape)
 
 

@@ -3,7 +3,7 @@ from surefoot cimport algebra, linear
 from surefoot.algebra cimport vector3
 from surefoot.wbc.balance cimport BalanceLaw
 from surefoot.wbc.model cimport RobotTerms
-from surefoot.wbc.setpoint cimport Setpoint
+from surefoot.wbc.reference cimport WbcReference
 from surefoot.wbc.tasks.law cimport TaskLaw
 
 cdef class CentreOfMass(TaskLaw):
@@ -13,7 +13,7 @@ cdef class CentreOfMass(TaskLaw):
 
     @cython.locals(m=double)
     cdef void put(
-        self, RobotTerms terms, Setpoint reference, const double[::1] scale, double[:, ::1] rows, double[::1] target
+        self, RobotTerms terms, WbcReference reference, const double[::1] scale, double[:, ::1] rows, double[::1] target
     ) noexcept
 
 cdef class AngularMomentum(TaskLaw):
@@ -22,5 +22,5 @@ cdef class AngularMomentum(TaskLaw):
 
     @cython.locals(i=Py_ssize_t, j=Py_ssize_t, nv=Py_ssize_t, m=double, s=double, F=vector3, M=vector3)
     cdef void put(
-        self, RobotTerms terms, Setpoint reference, const double[::1] scale, double[:, ::1] rows, double[::1] target
+        self, RobotTerms terms, WbcReference reference, const double[::1] scale, double[:, ::1] rows, double[::1] target
     ) noexcept

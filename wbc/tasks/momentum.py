@@ -6,7 +6,7 @@ from surefoot import algebra, linear
 from surefoot.wbc.balance import BalanceLaw, SupportRegion
 from surefoot.wbc.model import RobotTerms
 from surefoot.wbc.parameters import BalanceGains
-from surefoot.wbc.setpoint import Setpoint
+from surefoot.wbc.reference import WbcReference
 from surefoot.wbc.tasks.law import TaskLaw
 from surefoot.wbc.tasks.parameters import TaskGains, TaskWeights
 from surefoot.wbc.types import GRAVITY, Array
@@ -30,7 +30,7 @@ class CentreOfMass(TaskLaw):
         self.catching_weight = np.array([*across, weights.com_vertical_catching])
         self._balance, self._g = BalanceLaw(balance, region), GRAVITY
 
-    def put(self, terms: RobotTerms, reference: Setpoint, scale: Array, rows: Array, target: Array) -> None:
+    def put(self, terms: RobotTerms, reference: WbcReference, scale: Array, rows: Array, target: Array) -> None:
         """See ``TaskLaw.put``: (Σ R_k f_k) / m = c''_cmd + g - f / m."""
         m = terms.mass
         c_ddot = self._balance.acceleration(reference, terms._c, terms._c_dot)
@@ -54,7 +54,7 @@ class AngularMomentum(TaskLaw):
         self.weight, self.catching_weight = weights.angular_momentum, weights.angular_momentum_catching
         self._k = gains.angular_momentum
 
-    def put(self, terms: RobotTerms, reference: Setpoint, scale: Array, rows: Array, target: Array) -> None:
+    def put(self, terms: RobotTerms, reference: WbcReference, scale: Array, rows: Array, target: Array) -> None:
         """See ``TaskLaw.put``: (M + F x c) / m = -k L / m - n / m, with F and M by each number of the wrenches."""
         m, nv = terms.mass, terms.nv
         s = scale[0] * (terms.wrench_unit / m)

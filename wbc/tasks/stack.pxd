@@ -1,7 +1,7 @@
 cimport cython
 from surefoot cimport linear
 from surefoot.wbc.model cimport RobotTerms
-from surefoot.wbc.setpoint cimport Setpoint
+from surefoot.wbc.reference cimport WbcReference
 from surefoot.wbc.tasks.diagonal cimport DiagonalTerm
 from surefoot.wbc.tasks.law cimport Place
 
@@ -14,6 +14,6 @@ cdef class TaskStack:
     cdef double[::1] _t, _root_W, _D, _d, _g
 
     @cython.locals(place=Place, term=DiagonalTerm)
-    cpdef write(self, RobotTerms terms, Setpoint reference)
+    cpdef write(self, RobotTerms terms, WbcReference reference)
     @cython.locals(i=Py_ssize_t)
     cdef void _assemble(self) noexcept nogil

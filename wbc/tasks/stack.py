@@ -7,7 +7,7 @@ import numpy as np
 from surefoot import linear
 from surefoot.wbc.model import RobotTerms
 from surefoot.wbc.qp import QpData
-from surefoot.wbc.setpoint import Setpoint
+from surefoot.wbc.reference import WbcReference
 from surefoot.wbc.tasks.diagonal import DiagonalTerm
 from surefoot.wbc.tasks.law import Place
 from surefoot.wbc.tasks.registry import TaskLayout
@@ -71,7 +71,7 @@ class TaskStack:
         for term in self._terms:
             term.weigh(self.diagonal, catching)
 
-    def write(self, terms: RobotTerms, reference: Setpoint) -> None:
+    def write(self, terms: RobotTerms, reference: WbcReference) -> None:
         """Write H and g of the QP for this state and reference.
 
         Raises:

@@ -2,7 +2,7 @@ cimport cython
 from surefoot cimport algebra, linear
 from surefoot.algebra cimport vector3
 from surefoot.wbc.model cimport RobotTerms
-from surefoot.wbc.setpoint cimport Setpoint
+from surefoot.wbc.reference cimport WbcReference
 from surefoot.wbc.tasks cimport law
 from surefoot.wbc.tasks.law cimport TaskLaw
 
@@ -27,38 +27,37 @@ cdef class SwingFoot(TaskLaw):
     cdef Py_ssize_t _turned
     cdef double _k, _d, _toe, _side, _lifted, _resting
     cdef double[::1] _shares
+    cdef double[:, ::1] _R_d
 
     @cython.locals(k=Py_ssize_t)
     cdef void put(
-        self, RobotTerms terms, Setpoint reference, const double[::1] scale, double[:, ::1] rows, double[::1] target
+        self, RobotTerms terms, WbcReference reference, const double[::1] scale, double[:, ::1] rows, double[::1] target
     ) noexcept
     @cython.locals(n=Py_ssize_t, most=double)
     cdef void _put_with(
-        self, AnkleStops stops, RobotTerms terms, Setpoint reference, Py_ssize_t k, const double[::1] scale,
+        self, AnkleStops stops, RobotTerms terms, WbcReference reference, Py_ssize_t k, const double[::1] scale,
         double[:, ::1] rows, double[::1] target
     ) noexcept
     @cython.locals(
-        R=double[:, ::1], R_d=double[:, ::1], v=double[::1], bias=double[::1], rolls=cython.bint, lift=double, wanted=vector3,
+        R=double[:, ::1], v=double[::1], bias=double[::1], rolls=cython.bint, lift=double, along=vector3,
         pitching=double
     )
     cdef void _aim(
-        self, RobotTerms terms, Setpoint reference, Py_ssize_t k, double most, double[::1] target
+        self, RobotTerms terms, WbcReference reference, Py_ssize_t k, double most, double[::1] target
     ) noexcept
-    @cython.locals(e=double)
-    cdef double _along(
-        self, RobotTerms terms, Setpoint reference, Py_ssize_t k, Py_ssize_t i, bint rolls
-    ) noexcept nogil
+    @cython.locals(e=vector3)
+    cdef vector3 _along(self, WbcReference reference, vector3 position, bint rolls) noexcept nogil
     @cython.locals(R_d=double[:, ::1], beside=double)
-    cdef double _hangs(self, double[:, ::1] R, Setpoint reference) noexcept nogil
+    cdef double _hangs(self, double[:, ::1] R, WbcReference reference) noexcept nogil
     @cython.locals(R=double[:, ::1], R_d=double[:, ::1], i=Py_ssize_t, j=Py_ssize_t)
     cdef void _see_from_ankle(
-        self, AnkleStops stops, RobotTerms terms, Setpoint reference, Py_ssize_t k, const double[::1] scale,
+        self, AnkleStops stops, RobotTerms terms, WbcReference reference, Py_ssize_t k, const double[::1] scale,
         double[:, ::1] rows, double[::1] target
     ) noexcept
     @cython.locals(
         column=Py_ssize_t, j=Py_ssize_t, part=double, counted=double, resting=double, turn=double
     )
     cdef void _yield(
-        self, AnkleStops stops, RobotTerms terms, Setpoint reference, Py_ssize_t k, Py_ssize_t n,
+        self, AnkleStops stops, RobotTerms terms, WbcReference reference, Py_ssize_t k, Py_ssize_t n,
         const double[::1] scale, double[:, ::1] rows, double[::1] target
     ) noexcept

@@ -9,7 +9,7 @@ from surefoot import algebra, linear
 from surefoot.wbc.leaning import FREE
 from surefoot.wbc.limits import JointLimits
 from surefoot.wbc.model import BodyFrames, RobotTerms
-from surefoot.wbc.setpoint import Setpoint
+from surefoot.wbc.reference import WbcReference
 from surefoot.wbc.tasks import law
 from surefoot.wbc.tasks.law import TaskLaw
 from surefoot.wbc.tasks.parameters import TaskGains, TaskWeights
@@ -150,9 +150,9 @@ class SwingFoot(TaskLaw):
             self.weight[FREE] = 0.0
         self._k, self._d = gains.swing
         (self._toe, self._side), self._lifted, self._resting = edges, _LIFTED * length, _RESTING
-        self._shares = np.zeros(stops.joints if stops else 0)
+        self._shares, self._R_d = np.zeros(stops.joints if stops else 0), np.zeros((3, 3))
 
-    def put(self, terms: RobotTerms, reference: Setpoint, scale: Array, rows: Array, target: Array) -> None:
+    def put(self, terms: RobotTerms, reference: WbcReference, scale: Array, rows: Array, target: Array) -> None:
         """See ``TaskLaw.put``."""
         k = reference.swing_foot
         if self._turned != k:
@@ -161,6 +161,9 @@ class SwingFoot(TaskLaw):
             rows[:, :] = 0.0
             target[:] = 0.0
             return
+        algebra.put_row(self._R_d, 0, reference._R[0])
+        algebra.put_row(self._R_d, 1, reference._R[1])
+        algebra.put_row(self._R_d, 2, reference._R[2])
         linear.scale_rows(rows, 0, 1.0, scale, terms._J, 6 * k)
         if self._stops is None:
             self._aim(terms, reference, k, 0.0, target)
@@ -171,7 +174,7 @@ class SwingFoot(TaskLaw):
         self,
         stops: AnkleStops,
         terms: RobotTerms,
-        reference: Setpoint,
+        reference: WbcReference,
         k: int,
         scale: Array,
         rows: Array,
@@ -180,7 +183,7 @@ class SwingFoot(TaskLaw):
         """Write the target, and change the rows where the ankle comes to its end."""
         most = 0.0
         for n in range(stops.joints):
-            self._shares[n] = stops.yielding(terms, k, n, reference.swing_rotation)
+            self._shares[n] = stops.yielding(terms, k, n, self._R_d)
             most = max(most, self._shares[n])
         if most > 0.0:
             self._turned = k
@@ -191,24 +194,16 @@ class SwingFoot(TaskLaw):
             if self._shares[n] > 0.0:
                 self._yield(stops, terms, reference, k, n, scale, rows, target)
 
-    def _aim(self, terms: RobotTerms, reference: Setpoint, k: int, most: float, target: Array) -> None:
+    def _aim(self, terms: RobotTerms, reference: WbcReference, k: int, most: float, target: Array) -> None:
         """Target of the sole's centre: K e - D (ẏ - ẏ_d) + ÿ_d - J' v, in the frame of the sole."""
-        R, R_d, v, bias = terms._R_contact[k], reference.swing_rotation, terms._v_sole[k], terms._bias_sole[k]
+        R, v, bias = terms._R_contact[k], terms._v_sole[k], terms._bias_sole[k]
         rolls = k == reference.rolling_foot
         lift = self._k * most * self._hangs(R, reference) if most > 0.0 else 0.0
-        wanted = (
-            self._along(terms, reference, k, 0, rolls),
-            self._along(terms, reference, k, 1, rolls),
-            self._along(terms, reference, k, 2, rolls) + lift,
-        )
-        turning = algebra.add(
-            algebra.vector(reference.swing_angular_acceleration),
-            algebra.scale(self._d, algebra.vector(reference.swing_angular_velocity)),
-        )
-        a = algebra.rotate_back(R, wanted)
-        ahead = algebra.rotate_back(R, turning)
-        alpha = law.angular_feedback(self._k, self._d, R, (v[3], v[4], v[5]), R_d, ahead)
-        pitching = self._d * reference.roll_rate + reference.roll_acceleration if rolls else 0.0
+        along = self._along(reference, algebra.row(terms._p_contact, k), rolls)
+        a = algebra.rotate_back(R, (along[0], along[1], along[2] + lift))
+        ahead = algebra.rotate_back(R, algebra.add(reference._w_dot, algebra.scale(self._d, reference._w)))
+        alpha = law.angular_feedback(self._k, self._d, R, (v[3], v[4], v[5]), self._R_d, ahead)
+        pitching = self._d * reference.roll[1] + reference.roll[2] if rolls else 0.0
         target[0] = a[0] + (-self._d * v[0] - bias[0])
         target[1] = a[1] + (-self._d * v[1] - bias[1])
         target[2] = a[2] + (-self._d * v[2] - bias[2])
@@ -216,20 +211,20 @@ class SwingFoot(TaskLaw):
         target[4] = alpha[1] + pitching - bias[4]
         target[5] = alpha[2] - bias[5]
 
-    def _along(self, terms: RobotTerms, reference: Setpoint, k: int, i: int, rolls: bool) -> float:
-        """Acceleration along an axis of the world, but for the damping of the sole's own velocity [m/s^2].
+    def _along(self, reference: WbcReference, position: algebra.Vector, rolls: bool) -> algebra.Vector:
+        """K e + D ẏ_d + ÿ_d of a sole at a position, in the world [m/s^2].
 
         The position of a rolling foot is that of its toe edge.
         """
-        e = reference.swing_position[i] - terms._p_contact[k, i]
+        e = algebra.subtract(reference._s, position)
         if rolls:
-            e += self._toe * reference.swing_rotation[i, 0]
-        a: float = self._k * e + self._d * reference.swing_velocity[i] + reference.swing_acceleration[i]
-        return a
+            e = algebra.add(e, algebra.scale(self._toe, algebra.column(self._R_d, 0)))
+        back = algebra.add(algebra.scale(self._k, e), algebra.scale(self._d, reference._s_dot))
+        return algebra.add(back, reference._s_ddot)
 
-    def _hangs(self, R: Array, reference: Setpoint) -> float:
+    def _hangs(self, R: Array, reference: WbcReference) -> float:
         """How much lower an edge of the sole hangs than it should, as far as it is to be lifted for that [m]."""
-        R_d = reference.swing_rotation
+        R_d = self._R_d
         beside = self._side * abs(R[2, 1] - R_d[2, 1]) if reference.catching else 0.0
         hangs: float = min(self._toe * abs(R[2, 0] - R_d[2, 0]), self._lifted) + beside
         return hangs
@@ -238,7 +233,7 @@ class SwingFoot(TaskLaw):
         self,
         stops: AnkleStops,
         terms: RobotTerms,
-        reference: Setpoint,
+        reference: WbcReference,
         k: int,
         scale: Array,
         rows: Array,
@@ -249,13 +244,13 @@ class SwingFoot(TaskLaw):
         With the ankle at r in the frame of the sole: J_r = J_p - [r]x J_w, and the target gets the same of what the
         sole is to do, less what the sole does.
         """
-        r, R, R_d = algebra.vector(stops._ankles[k]), terms._R_contact[k], reference.swing_rotation
+        r, R, R_d = algebra.row(stops._ankles, k), terms._R_contact[k], self._R_d
         w, bias = algebra.vector(terms._v_sole[k, 3:]), algebra.vector(terms._bias_sole[k, 3:])
-        w_d = algebra.vector(reference.swing_angular_velocity)
+        w_d = reference._w
         here, there = algebra.rotate(R, r), algebra.rotate(R_d, r)
         along = algebra.cross(w_d, there)
         wanted = algebra.add(algebra.scale(self._k, algebra.subtract(there, here)), algebra.scale(self._d, along))
-        wanted = algebra.add(wanted, algebra.cross(algebra.vector(reference.swing_angular_acceleration), there))
+        wanted = algebra.add(wanted, algebra.cross(reference._w_dot, there))
         wanted = algebra.rotate_back(R, algebra.add(wanted, algebra.cross(w_d, along)))
         moved = algebra.cross(algebra.add(algebra.scale(self._d, w), bias), r)
         outward = algebra.cross(w, algebra.cross(w, r))
@@ -271,7 +266,7 @@ class SwingFoot(TaskLaw):
         self,
         stops: AnkleStops,
         terms: RobotTerms,
-        reference: Setpoint,
+        reference: WbcReference,
         k: int,
         n: int,
         scale: Array,

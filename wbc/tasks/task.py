@@ -7,9 +7,10 @@ from typing import Protocol
 import pinocchio as pin
 
 from surefoot.wbc.model import BodyFrames, RobotTerms
+from surefoot.wbc.reference import WbcReference
 from surefoot.wbc.tasks import law
 from surefoot.wbc.tasks.registry import TaskLayout
-from surefoot.wbc.types import Array, WbcReference
+from surefoot.wbc.types import Array
 
 Vector = tuple[float, float, float]
 

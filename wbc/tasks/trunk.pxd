@@ -3,7 +3,7 @@ cimport libc.math as math
 from surefoot cimport algebra, linear
 from surefoot.algebra cimport vector3
 from surefoot.wbc.model cimport RobotTerms
-from surefoot.wbc.setpoint cimport Setpoint
+from surefoot.wbc.reference cimport WbcReference
 from surefoot.wbc.tasks cimport law
 from surefoot.wbc.tasks.law cimport TaskLaw
 
@@ -26,17 +26,17 @@ cdef class Upright(TaskLaw):
     cdef double _k, _d
     cdef double[:, ::1] _R_d
 
-    cdef vector3 turn(self, Setpoint reference, const double[:, :] R, const double[:] velocity) noexcept
+    cdef vector3 turn(self, WbcReference reference, const double[:, :] R, const double[:] velocity) noexcept
 
 cdef class Pelvis(Upright):
     cdef HipStops _stops
 
     @cython.locals(i=Py_ssize_t, roll=double, rate=double)
     cdef void put(
-        self, RobotTerms terms, Setpoint reference, const double[::1] scale, double[:, ::1] rows, double[::1] target
+        self, RobotTerms terms, WbcReference reference, const double[::1] scale, double[:, ::1] rows, double[::1] target
     ) noexcept
 
 cdef class Torso(Upright):
     cdef void put(
-        self, RobotTerms terms, Setpoint reference, const double[::1] scale, double[:, ::1] rows, double[::1] target
+        self, RobotTerms terms, WbcReference reference, const double[::1] scale, double[:, ::1] rows, double[::1] target
     ) noexcept

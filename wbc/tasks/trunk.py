@@ -9,7 +9,7 @@ import pinocchio as pin
 from surefoot import algebra, linear
 from surefoot.wbc.limits import JointLimits
 from surefoot.wbc.model import BodyFrames, RobotTerms
-from surefoot.wbc.setpoint import Setpoint
+from surefoot.wbc.reference import WbcReference
 from surefoot.wbc.tasks import law
 from surefoot.wbc.tasks.law import TaskLaw
 from surefoot.wbc.tasks.parameters import TaskGains, TaskWeights
@@ -115,7 +115,7 @@ class Upright(TaskLaw):
         self._k, self._d = gains.orientation
         self._R_d = np.eye(3)
 
-    def turn(self, reference: Setpoint, R: Array, velocity: Array) -> algebra.Vector:
+    def turn(self, reference: WbcReference, R: Array, velocity: Array) -> algebra.Vector:
         """Angular acceleration of a body, in its frame [rad/s^2].
 
         Args:
@@ -143,7 +143,7 @@ class Pelvis(Upright):
         super().__init__(weights, gains)
         self._stops = stops
 
-    def put(self, terms: RobotTerms, reference: Setpoint, scale: Array, rows: Array, target: Array) -> None:
+    def put(self, terms: RobotTerms, reference: WbcReference, scale: Array, rows: Array, target: Array) -> None:
         """See ``TaskLaw.put``."""
         for i in range(3):
             rows[i, 3 + i] = scale[i]
@@ -158,7 +158,7 @@ class Torso(Upright):
 
     name = "torso"
 
-    def put(self, terms: RobotTerms, reference: Setpoint, scale: Array, rows: Array, target: Array) -> None:
+    def put(self, terms: RobotTerms, reference: WbcReference, scale: Array, rows: Array, target: Array) -> None:
         """See ``TaskLaw.put``."""
         wanted = self.turn(reference, terms._R_torso, terms._w_torso)
         linear.scale_rows(rows, 0, 1.0, scale, terms._J_torso, 0)

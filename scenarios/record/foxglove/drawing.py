@@ -2,7 +2,8 @@
 
 import math
 from collections.abc import Iterable, Sequence
-from functools import cache, lru_cache
+from functools import lru_cache
+from typing import cast
 
 import numpy as np
 from foxglove_schemas_protobuf.ArrowPrimitive_pb2 import ArrowPrimitive
@@ -40,15 +41,10 @@ from surefoot.sim.shapes import Shape, drawn_shapes
 
 def published(message: type[Message]) -> PublishedSchema:
     """The schema of a message class, with every file that it imports."""
-    return _published(message.DESCRIPTOR)
-
-
-@cache
-def _published(message: Descriptor) -> PublishedSchema:
-    files: dict[str, FileDescriptorProto] = {}
-    _collect(message.file, files)
+    found, files = cast("Descriptor", message.DESCRIPTOR), dict[str, FileDescriptorProto]()
+    _collect(found.file, files)
     descriptors = FileDescriptorSet(file=files.values()).SerializeToString(deterministic=True)
-    return PublishedSchema(message.full_name, descriptors)
+    return PublishedSchema(found.full_name, descriptors)
 
 
 def _collect(file: FileDescriptor, files: dict[str, FileDescriptorProto]) -> None:
@@ -137,7 +133,6 @@ LOOPS: tuple[tuple[str, int, Rgba], ...] = (
 """Outlines that are drawn: entity, vertices, colour."""
 
 
-@cache
 def transforms(frames: tuple[str, ...]) -> Template:
     """``foxglove.FrameTransforms`` of frames in the world; values: all x y z [m], then all qw qx qy qz."""
     n = len(frames)
@@ -153,7 +148,6 @@ def transforms(frames: tuple[str, ...]) -> Template:
     return Template(FrameTransforms(transforms=[one(i, name) for i, name in enumerate(frames)]), 7 * n)
 
 
-@cache
 def joint_states(names: tuple[str, ...]) -> Template:
     """``foxglove.JointStates``; values: all positions [rad], then all velocities [rad/s], then all torques [N m]."""
     n = len(names)
@@ -164,7 +158,6 @@ def joint_states(names: tuple[str, ...]) -> Template:
     return Template(JointStates(timestamp=stamp(), joints=joints), 3 * n)
 
 
-@cache
 def points() -> Template:
     """``foxglove.SceneUpdate`` of `BALLS`; values: x y z of each [m]."""
     entities = [
@@ -174,7 +167,6 @@ def points() -> Template:
     return Template(scene(*entities), 3 * len(BALLS))
 
 
-@cache
 def forces() -> Template:
     """``foxglove.SceneUpdate`` of `ARROWS`; values of each: x y z [m], qx qy qz qw, length [m]."""
     entities = []
@@ -185,7 +177,6 @@ def forces() -> Template:
     return Template(scene(*entities), 8 * len(ARROWS))
 
 
-@cache
 def outlines() -> Template:
     """``foxglove.SceneUpdate`` of `LOOPS`; values: x y z of each vertex [m]."""
     entities, first = [], 0

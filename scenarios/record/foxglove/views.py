@@ -15,7 +15,8 @@ from google.protobuf.timestamp_pb2 import Timestamp
 from numpy.typing import ArrayLike, NDArray
 
 from surefoot.models.types import RobotDescription
-from surefoot.planner.plan import PlanSample, WalkPlan
+from surefoot.planner.plan import WalkPlan
+from surefoot.planner.sample import PlanSample
 from surefoot.planner.types import SolverStatus
 from surefoot.scenarios.errors import LogError
 from surefoot.scenarios.log import Log as LogFile

@@ -8,6 +8,7 @@ import mujoco
 from biped import FILE
 from mjcf_biped import LIMITS, TEXT
 
+from surefoot.models.robot_file.files import originals
 from surefoot.models.robot_file.mjcf_schema import Fate, by_path, path_of
 from surefoot.models.robot_file.reduced import Reduced, reduced
 from surefoot.models.robot_file.schema import RobotFile, read
@@ -53,7 +54,8 @@ def read_text(folder: Path, text: str, more: str = "", limits: str = LIMITS) -> 
     place = folder / "biped.yaml"
     place.write_text(FILE.replace("biped.urdf", "biped.xml") + limits + more)
     file: RobotFile = read(place)
-    return reduced(file, read_source(file, folder / "biped.xml"), folder / "biped.xml")
+    made_of = originals(file, folder)
+    return reduced(made_of, read_source(file, made_of.document))
 
 
 HAND = '<body name="hand"><joint name="wrist" axis="1 0 0"/><geom size="0.02"/></body>'

@@ -9,9 +9,9 @@ import numpy as np
 import pytest
 import yaml
 
+from surefoot.apps.robots.draft import draft
+from surefoot.apps.robots.examine import examine
 from surefoot.models import RobotError, RobotOptions, describe
-from surefoot.models.robot_file.draft import draft
-from surefoot.scenarios.apps.robots.examine import examine
 from surefoot.scenarios.errors import ScenarioError, SetupError
 from surefoot.scenarios.run.simulation import Simulation
 from surefoot.scenarios.setup.feasible import told

@@ -1,6 +1,10 @@
 """Robot files by path and name, in other sizes, with options; and a cache that is never stale."""
 
+import subprocess
+import sys
+
 import biped
+import mjcf_biped
 import numpy as np
 import pinocchio as pin
 import pytest
@@ -9,7 +13,7 @@ from surefoot.models import RobotError, RobotOptions, describe
 from surefoot.models.belief import with_com_raised, with_mass_scaled
 from surefoot.models.consistency import EnginePair
 from surefoot.models.pinocchio import pinocchio_model
-from surefoot.models.robot_file import build, cache, derive
+from surefoot.models.robot_file import build, cache, derive, document, schema
 from surefoot.models.robot_file.document import raw
 from surefoot.models.similar import scaled
 
@@ -185,3 +189,26 @@ def test_masses_that_are_believed_wrongly_take_their_moments_with_them(slanted) 
     for before, after in zip(one.inertias, other.inertias, strict=True):
         np.testing.assert_allclose(after.inertia, 1.5 * before.inertia, atol=1e-12)
     assert EnginePair(with_mass_scaled(slanted, 1.5)).pin_model.nv == one.nv
+
+
+@pytest.mark.parametrize("suffix", ["urdf", "xml"])
+def test_a_document_is_read_once_for_what_is_derived_of_it(tmp_path, monkeypatch, derived, suffix):
+    """Robot file and model alike, also where the cache has it already."""
+    seen = []
+    for module in (document, schema):
+        plain = module.text_of
+        monkeypatch.setattr(module, "text_of", lambda path, kind, of=plain: seen.append(path.name) or of(path, kind))
+    limits = mjcf_biped.LIMITS if suffix == "xml" else ""
+    file = biped.FILE.replace("biped.urdf", f"biped.{suffix}") + limits
+    path = biped.write(tmp_path, mjcf_biped.TEXT if suffix == "xml" else None, file, f"biped.{suffix}")
+    for times in (1, 2):
+        describe(str(path), RobotOptions())
+        assert {name: seen.count(name) for name in seen} == {path.name: times, f"biped.{suffix}": times}
+        assert len(derived) == 1
+
+
+def test_nothing_that_reads_robot_files_knows_their_registry():
+    code = "import sys; import surefoot.models.robot_file.derive, surefoot.models.robot_file.build; print(*sys.modules)"
+    loaded = subprocess.run([sys.executable, "-c", code], capture_output=True, text=True, check=True).stdout.split()
+    assert "surefoot.models.robot_file.build" in loaded
+    assert "surefoot.models.registry" not in loaded

@@ -16,6 +16,7 @@ from surefoot.models.consistency import EnginePair
 from surefoot.models.convert import Coordinates, velocity_map
 from surefoot.models.facts import knee_turn, shank_outline
 from surefoot.models.pinocchio import pinocchio_model
+from surefoot.models.robot_file.files import originals
 from surefoot.models.robot_file.reduced import reduced
 from surefoot.models.robot_file.schema import read
 from surefoot.models.robot_file.source import read_source
@@ -36,7 +37,8 @@ def of_urdf(folder, text=None, more=""):
 def reduced_urdf(folder, text, more=""):
     path = biped.write(folder, text, biped.FILE + more)
     file = read(path)
-    return reduced(file, read_source(file, folder / "biped.urdf"), folder / "biped.urdf")
+    made_of = originals(file, folder)
+    return reduced(made_of, read_source(file, made_of.document))
 
 
 def of_mjcf(folder, text, more=""):

@@ -6,10 +6,9 @@ import numpy as np
 import pinocchio as pin
 import pytest
 
-from surefoot.models import RobotOptions, explain
+from surefoot.models import RobotOptions, describe, explain
 from surefoot.models.joints import meeting_point
 from surefoot.models.pinocchio import pinocchio_model
-from surefoot.models.robot_file.build import describe_file
 from surefoot.models.robot_file.touch import joined
 
 pytestmark = pytest.mark.unit
@@ -24,7 +23,7 @@ def shipped():
 
 
 def described(folder, *args, **changes):
-    return describe_file(biped.write(folder, biped.Biped(**changes), *args), RobotOptions())
+    return describe(str(biped.write(folder, biped.Biped(**changes), *args)), RobotOptions())
 
 
 def placed(robot, angles):

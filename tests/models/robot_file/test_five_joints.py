@@ -9,9 +9,9 @@ import pinocchio as pin
 import pytest
 
 import surefoot
+from surefoot.apps.robots.examine import examine
 from surefoot.models import RobotError, RobotOptions, describe, explain
 from surefoot.models.pinocchio import pinocchio_model
-from surefoot.scenarios.apps.robots.examine import examine
 from surefoot.scenarios.run.run import run_scenario
 from surefoot.scenarios.setup.stance import body_of, feet_at
 from surefoot.wbc.ik import PostureTarget

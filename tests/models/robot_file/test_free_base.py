@@ -9,9 +9,9 @@ import numpy as np
 import pinocchio as pin
 import pytest
 
+from surefoot.apps.robots.draft import draft
 from surefoot.models import RobotError, RobotOptions, describe, explain
 from surefoot.models.consistency import EnginePair
-from surefoot.models.robot_file.draft import draft
 
 pytestmark = pytest.mark.unit
 

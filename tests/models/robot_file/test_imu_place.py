@@ -5,8 +5,7 @@ import numpy as np
 import pinocchio as pin
 import pytest
 
-from surefoot.models import RobotError, RobotOptions, describe
-from surefoot.models.robot_file.build import explain
+from surefoot.models import RobotError, RobotOptions, describe, explain
 from surefoot.models.types import ImuPlace
 
 pytestmark = pytest.mark.unit
@@ -21,7 +20,7 @@ def link(name, parent, at="0.01 -0.02 0.03", rpy="0 0 0"):
 
 def place(tmp_path, extra, file=biped.FILE, **changes):
     path = biped.write(tmp_path, biped.Biped(extra=extra, **changes), file)
-    return describe(str(path), RobotOptions()).imu, explain(path)
+    return describe(str(path), RobotOptions()).imu, explain(str(path))
 
 
 def test_without_one_it_is_the_frame_of_the_base(tmp_path):

@@ -9,6 +9,7 @@ from surefoot.models import RobotOptions, describe
 from surefoot.models.consistency import EnginePair
 from surefoot.models.names import SHIPPED
 from surefoot.models.pinocchio import pinocchio_model
+from surefoot.models.robot_file.files import originals
 from surefoot.models.robot_file.paths import resolve
 from surefoot.models.robot_file.reduced import reduced
 from surefoot.models.robot_file.schema import read
@@ -21,7 +22,8 @@ TURNED = '<axis xyz="0.6 0 0.8"/>'
 
 def source_model(file, path) -> pin.Model:
     """The model of a file as its text is made of it: reduced, with x of the base ahead."""
-    return reduced(file, read_source(file, path), path).model
+    made_of = originals(file, path.parent)
+    return reduced(made_of, read_source(file, made_of.document)).model
 
 
 def model_difference(one: pin.Model, other: pin.Model, q, v) -> float:

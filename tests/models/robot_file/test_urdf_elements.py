@@ -7,6 +7,7 @@ import pytest
 
 from surefoot.models import RobotError, explain
 from surefoot.models.robot_file.bindings import rolling
+from surefoot.models.robot_file.files import originals
 from surefoot.models.robot_file.mjcf_schema import Fate
 from surefoot.models.robot_file.reduced import reduced
 from surefoot.models.robot_file.schema import read
@@ -25,7 +26,8 @@ INSIDE = {"dynamics": 'damping="0.5"', "safety_controller": 'k_velocity="9"', "c
 def read_text(folder, text, more=""):
     path = biped.write(folder, text, biped.FILE + more)
     file = read(path)
-    return reduced(file, read_source(file, folder / "biped.urdf"), folder / "biped.urdf")
+    made_of = originals(file, folder)
+    return reduced(made_of, read_source(file, made_of.document))
 
 
 def with_element(path: str) -> str:

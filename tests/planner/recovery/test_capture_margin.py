@@ -380,3 +380,17 @@ def test_shift_and_delay_are_of_one_landing(stand):
     assert {plan.phase.landed for plan in moved} == {2}
     first = next(plan for plan in made if plan.phase.landed == 3)
     assert np.abs(first.balance.shift).max() < 1e-3
+
+
+def test_with_a_time_of_its_own_a_step_captures_what_the_best_time_captures():
+    """The best is now and then in the middle: earlier legs do not reach as far, later the DCM is away."""
+    numbers, best = P.recovery, []
+    own, given = margin_of(timing=True), margin_of()
+    for x, y in np.random.default_rng(0).uniform((-0.1, -0.1), (0.4, 0.25), (40, 2)):
+        now = replace(situation((x, y)), cycle=own.cycle)
+        least = min(now.single, max(numbers.least_single, now.shortest))
+        times = [*np.interp(numbers.margin_times, (0.0, 1.0), (least, now.single + numbers.longer)), now.single]
+        each = np.array([given.margins(replace(now, single=time), 3) for time in times])
+        np.testing.assert_allclose(own.margins(now, 3), each.max(axis=0), rtol=1e-12)
+        best.append(times[int(each[:, 0].argmax())])
+    assert len(set(best)) > 2

@@ -38,3 +38,15 @@ def test_a_foot_that_lands_higher_or_lower_than_its_swing_was_laid_comes_to_rest
     assert height[swings[-1]] == pytest.approx(over if follows else 0.0, abs=1e-9)
     # Where the foot went off the ground, nothing has changed.
     assert height[swings[0]] == pytest.approx(0.0, abs=1e-9)
+
+
+def test_in_a_frame_that_is_turned_and_moved_feet_are_turned_and_moved(schedule):
+    turn, origin = 0.4, np.array([0.3, -0.2])
+    R = np.array([[np.cos(turn), -np.sin(turn)], [np.sin(turn), np.cos(turn)]])
+    made = schedule(GaitParameters(steps=4, single_support=0.5, double_support=0.2))
+    world, framed = NominalFeet(len(made.samples.clock)), NominalFeet(len(made.samples.clock))
+    world.move(len(made.samples.clock), made.samples, made.schedule, (np.eye(2), np.zeros(2)))
+    framed.move(len(made.samples.clock), made.samples, made.schedule, (R, origin))
+    np.testing.assert_allclose(framed.heading, world.heading - turn, atol=1e-12)
+    np.testing.assert_allclose(framed.soles[..., :2], (world.soles[..., :2] - origin) @ R, atol=1e-12)
+    np.testing.assert_array_equal(framed.soles[..., 2], world.soles[..., 2])

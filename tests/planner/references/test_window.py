@@ -7,7 +7,6 @@ import pytest
 from pendulum_walk import walk_pendulum
 
 from surefoot.forces import Push
-from surefoot.planner import walk_model
 from surefoot.planner.look import look
 from surefoot.planner.measured import Measured
 from surefoot.planner.model.dcm import viability_weights
@@ -78,7 +77,7 @@ class Recorded:
         return plan
 
 
-def test_an_offset_that_serves_is_about_what_it_would_be_anew(stand, monkeypatch):
+def test_an_offset_that_serves_is_about_what_it_would_be_anew(stand):
     """By what it does to the DCM, while a step is adapted; and it does serve for most ticks.
 
     The later a footstep moves, the harder and the shorter its foot is pushed there, which moves the DCM no farther.
@@ -86,21 +85,21 @@ def test_an_offset_that_serves_is_about_what_it_would_be_anew(stand, monkeypatch
     gait = GaitParameters(steps=3, step_length=0.3, single_support=0.5, double_support=0.12, com_height=0.95)
     legs, made = LegReach(0.36, 0.2, 0.115, 0.12, 0.24, (60.0, 50.0)), []
 
-    def planner(**numbers):
-        parameters = PlannerParameters(leg=LEG, recovery=RecoveryParameters(**numbers))
-        return Recorded(WalkingPlanner(gait, stand(), 0.22, 0.11, parameters=parameters, legs=legs))
-
-    class Counted:
+    class Counted(LegOffset):
         """An offset of which it is counted how often it is made."""
-
-        def __init__(self, *given):
-            self.offset = LegOffset(*given)
 
         def made(self, moving, *given):
             made.append(moving[-1] is not None)
-            return self.offset.made(moving, *given)
+            return super().made(moving, *given)
 
-    monkeypatch.setattr(walk_model, "LegOffset", Counted)
+    def planner(**numbers):
+        parameters = PlannerParameters(leg=LEG, recovery=RecoveryParameters(**numbers))
+        walking = WalkingPlanner(gait, stand(), 0.22, 0.11, parameters=parameters, legs=legs)
+        model, toe = walking.state.model, 0.11
+        offset = Counted(parameters.leg, toe, parameters.sample_time, model.reach)
+        walking.state = replace(walking.state, model=replace(model, leg_offset=offset))
+        return Recorded(walking)
+
     usual, push = planner(), Push(gait.lift_off(2) + 0.06, 0.1, np.array([250.0, 0.0, 0.0]))
     end, com = gait.lift_off(2) + 0.48, np.array([0.0, 0.0, 0.95])
     plans = walk_pendulum(usual, stand(), end, com=com, pushes=(push,)).plans

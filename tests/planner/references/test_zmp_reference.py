@@ -8,7 +8,14 @@ from hypothesis import strategies as st
 from surefoot.planner.geometry import frame_rotation, signed_distance, sole_corners
 from surefoot.planner.ground.terrain import flat
 from surefoot.planner.parameters import PlannerParameters
-from surefoot.planner.references.zmp_reference import SupportKey, hull_of, present_support, support_table, zmp_reference
+from surefoot.planner.references.zmp_reference import (
+    SupportKey,
+    hull_of,
+    load_left,
+    present_support,
+    support_table,
+    zmp_reference,
+)
 from surefoot.planner.steps.gait import GaitParameters
 from surefoot.planner.steps.schedule import Schedule
 from surefoot.planner.swing.course import Ground
@@ -118,3 +125,11 @@ def test_hull_of_a_sole_is_its_corners_from_the_leftmost_one_on(yaw, tilt, acros
     place = Footstep(Foot.LEFT, np.array([3.0, -2.0, 0.1]), yaw, normal / np.linalg.norm(normal))
     corners = sole_corners(place, np.array([0.11, 0.055]))
     np.testing.assert_array_equal(hull_of(corners), convex_hull(corners))
+
+
+def test_the_load_goes_evenly_from_one_support_point_to_the_next(schedule):
+    samples = schedule(GaitParameters(steps=4, single_support=0.5, double_support=0.2)).samples
+    on_left = np.random.default_rng(0).uniform(0.0, 1.0, int(max(samples.index)) + 2)
+    passed = np.add(samples.index, samples.fraction)
+    assert max(samples.fraction) > 0.0 and len(set(samples.index)) > 2
+    np.testing.assert_allclose(load_left(samples, on_left), np.interp(passed, np.arange(len(on_left)), on_left))

@@ -29,7 +29,15 @@ def begun(stand, edges, gait=WALK):
 def told(step):
     return (
         *(step.number, step.ordinal, step.stride, step.course, step.climb, step.lift, step.hardest, step.support),
-        *(step.stop, step.lift_off, step.single, step.double, step.roll, step.place.foot, step.place.yaw),
+        *(
+            step.stop,
+            step.lift_off,
+            step.single_support,
+            step.double_support,
+            step.roll,
+            step.place.foot,
+            step.place.yaw,
+        ),
         *(step.place.position.tolist(), step.place.normal.tolist(), step.room.tolist(), step.path.middle.tolist()),
     )
 

@@ -91,5 +91,5 @@ def test_a_record_that_cannot_be_read_is_refused(cut_off):
 def test_who_judges_sets_nothing_up():
     code = "import sys, surefoot.scenarios.judge.inspection; print(*sys.modules)"
     loaded = subprocess.run([sys.executable, "-c", code], capture_output=True, text=True, check=True).stdout.split()
-    above = tuple(f"surefoot.scenarios.{room}" for room in ("setup", "run", "show", "study", "apps"))
+    above = tuple(f"surefoot.scenarios.{room}" for room in ("setup", "run", "show", "check", "cli"))
     assert [name for name in loaded if name.startswith(above)] == []

@@ -7,12 +7,12 @@ import numpy as np
 import pytest
 
 import surefoot
-from surefoot.scenarios.apps.bridge.host import Care, Host
-from surefoot.scenarios.apps.bridge.line import Disturbance
-from surefoot.scenarios.apps.bridge.remote import Remote, RemotePlant
-from surefoot.scenarios.apps.bridge.serve import Server
-from surefoot.scenarios.apps.bridge.shadow import walk_in_shadow
-from surefoot.scenarios.apps.bridge.walk import walk_on
+from surefoot.apps.bridge.host import Care, Host
+from surefoot.apps.bridge.line import Disturbance
+from surefoot.apps.bridge.remote import Remote, RemotePlant
+from surefoot.apps.bridge.serve import Server
+from surefoot.apps.bridge.shadow import walk_in_shadow
+from surefoot.apps.bridge.walk import walk_on
 from surefoot.scenarios.errors import LogError
 from surefoot.scenarios.judge.verdict import judge
 from surefoot.scenarios.record.provenance import BEGUN_RECORD, PUSH_RECORD, AskedPush, asked_pushes

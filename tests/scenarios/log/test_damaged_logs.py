@@ -8,7 +8,7 @@ import pytest
 from mcap.writer import Writer
 from typer.testing import CliRunner
 
-from surefoot.scenarios.apps.cli import app
+from surefoot.scenarios.cli.program import app
 from surefoot.scenarios.errors import LogError
 from surefoot.scenarios.log import read
 from surefoot.scenarios.record.foxglove.views import EventLog

@@ -98,7 +98,7 @@ def test_check_and_sweep_in_two_processes_make_equal_bits(scenario, stander, sam
 
 
 def test_a_robot_under_a_policy_is_driven_and_commanded(scenario, stander, tmp_path):
-    from surefoot.scenarios.apps.drive.picture import Pictures
+    from surefoot.apps.drive.picture import Pictures
 
     with surefoot.Simulation(str(scenario(stander)), log=tmp_path / "log.mcap") as simulation:
         pictures = Pictures(simulation.walk)

@@ -190,7 +190,7 @@ def test_a_full_disk(tmp_path):
     limited = "import resource, signal, sys; signal.signal(signal.SIGXFSZ, signal.SIG_IGN)\n"
     limited += "resource.setrlimit(resource.RLIMIT_FSIZE, (300_000, 300_000))\n"
     limited += "sys.argv = ['surefoot', 'run', 'stand', '--out', sys.argv[1]]\n"
-    limited += "from surefoot.scenarios.apps.cli import main\nmain()"
+    limited += "from surefoot.scenarios.cli.program import program\nprogram()"
     done = subprocess.run([sys.executable, "-c", limited, str(tmp_path)], capture_output=True, text=True)
     assert done.returncode == 2
     assert "cannot be written on, file too large; what was written is kept in log.mcap.incomplete" in done.stderr

@@ -6,8 +6,8 @@ import pytest
 
 import surefoot
 from surefoot.scenarios.setup.load import read_scenario
-from surefoot.scenarios.study.campaigns.campaign import read_campaign
-from surefoot.scenarios.study.campaigns.points import cells
+from surefoot.studies.campaigns.campaign import read_campaign
+from surefoot.studies.campaigns.points import cells
 
 pytestmark = pytest.mark.physics
 

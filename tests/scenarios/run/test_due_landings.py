@@ -6,13 +6,13 @@ import numpy as np
 import pytest
 
 from surefoot.planner.types import Foot
-from surefoot.scenarios.run.controller import Controller
+from surefoot.scenarios.run.controller import comes_down
 
 pytestmark = pytest.mark.unit
 
 
-def coming(touchdown: float, speed: float) -> SimpleNamespace:
-    """A controller at 1 s whose left foot is 1 cm above the ground."""
+def coming(touchdown: float, speed: float) -> tuple[SimpleNamespace, SimpleNamespace]:
+    """Plan and terms of a robot whose left foot is 1 cm above the ground."""
     plan = SimpleNamespace(
         swing=SimpleNamespace(foot=Foot.LEFT, touchdown_time=touchdown),
         footsteps=[SimpleNamespace(position=np.zeros(3))],
@@ -22,7 +22,7 @@ def coming(touchdown: float, speed: float) -> SimpleNamespace:
         sole_rotation=np.tile(np.eye(3), (2, 1, 1)),
         sole_velocity=np.full((2, 6), speed),
     )
-    return SimpleNamespace(_now=1.0, planning=SimpleNamespace(plan=plan), terms=terms)
+    return plan, terms
 
 
 @pytest.mark.parametrize(
@@ -30,6 +30,6 @@ def coming(touchdown: float, speed: float) -> SimpleNamespace:
     [(1.5, -0.5, True, True), (1.03, -0.1, False, True), (1.05, -0.1, False, False), (1.5, 0.5, False, False)],
 )
 def test_a_foot_lands_that_falls_so_fast_or_is_due_by_then(touchdown, speed, lands, due):
-    controller = coming(touchdown, speed)
-    assert Controller._comes_down(controller, 0.04) == (lands, False)
-    assert Controller._comes_down(controller, 0.04, due=True) == (due, False)
+    now, left = 1.0, 0.04
+    assert comes_down(*coming(touchdown, speed), now, left) == (lands, False)
+    assert comes_down(*coming(touchdown, speed), now, left, due=True) == (due, False)

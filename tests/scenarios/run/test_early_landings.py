@@ -18,6 +18,13 @@ PUSHES = [
 """Share of the third single support, impulse and direction [-, N·s/kg, rad]."""
 
 
+class Unfelt(Controller):
+    """No foot stands before it is felt."""
+
+    def _touching(self):
+        return NONE_TOUCHES
+
+
 def pushed(fraction, impulse, direction):
     """A walk that is pushed so; arguments as in `PUSHES`."""
     push = {"step": 3, "phase": "single", "fraction": fraction, "duration": 0.1}
@@ -67,5 +74,5 @@ def test_a_foot_that_the_planner_takes_as_landed_is_held_at_once():
 
 def test_of_what_nobody_tells_the_foot_is_held_once_it_is_felt(monkeypatch):
     """Negative control."""
-    monkeypatch.setattr(Controller, "_touching", lambda _: NONE_TOUCHES)
+    monkeypatch.setattr("surefoot.scenarios.run.full.Controller", Unfelt)
     assert not all(all(feet) for feet in ended_early())

@@ -6,7 +6,7 @@ import pytest
 from typer.testing import CliRunner
 
 import surefoot
-from surefoot.scenarios.apps.cli import app
+from surefoot.scenarios.cli.program import app
 from surefoot.scenarios.judge.inspection import inspect
 
 pytestmark = pytest.mark.physics

@@ -3,7 +3,7 @@
 import pytest
 
 import surefoot
-from surefoot.scenarios.study.campaigns.campaign import read_campaign
+from surefoot.studies.campaigns.campaign import read_campaign
 
 pytestmark = pytest.mark.physics
 

@@ -8,7 +8,7 @@ import numpy as np
 import pytest
 
 import surefoot
-from surefoot.scenarios.study.campaigns.campaign import read_campaign
+from surefoot.studies.campaigns.campaign import read_campaign
 
 pytestmark = pytest.mark.physics
 

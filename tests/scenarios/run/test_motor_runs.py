@@ -8,8 +8,8 @@ import surefoot
 from surefoot.scenarios.judge.scenario import scenario_of
 from surefoot.scenarios.log import read
 from surefoot.scenarios.record.provenance import SCENARIO_FILE, WORLD_FILE
+from surefoot.scenarios.run.processes import processes
 from surefoot.scenarios.setup.load import _UNSAID
-from surefoot.scenarios.study.campaigns.engine import processes
 
 pytestmark = pytest.mark.unit
 

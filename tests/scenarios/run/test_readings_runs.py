@@ -8,8 +8,8 @@ from surefoot.scenarios.errors import SetupError
 from surefoot.scenarios.file.registries import SOURCES
 from surefoot.scenarios.judge.scenario import scenario_of
 from surefoot.scenarios.log import read
+from surefoot.scenarios.run.processes import processes
 from surefoot.scenarios.run.sensing import TrueState
-from surefoot.scenarios.study.campaigns.engine import processes
 from surefoot.sim.sensor_errors import CHEAP, GOOD
 
 pytestmark = pytest.mark.unit

@@ -11,8 +11,8 @@ from surefoot.planner.rules import ends, may_end
 from surefoot.planner.steps import adaptation
 from surefoot.planner.track import ended
 from surefoot.planner.types import PhaseKind
-from surefoot.scenarios.study.campaigns.campaign import read_campaign
-from surefoot.scenarios.study.campaigns.points import cells
+from surefoot.studies.campaigns.campaign import read_campaign
+from surefoot.studies.campaigns.points import cells
 
 pytestmark = pytest.mark.physics
 

@@ -7,7 +7,7 @@ import pytest
 import surefoot
 from surefoot.models import registry
 from surefoot.scenarios.run.planning import RunFault
-from surefoot.scenarios.study.campaigns.campaign import read_campaign
+from surefoot.studies.campaigns.campaign import read_campaign
 
 pytestmark = pytest.mark.physics
 

@@ -9,8 +9,8 @@ import pytest
 import surefoot
 from surefoot.readings import Readings
 from surefoot.scenarios.log import NoLog, read
+from surefoot.scenarios.run.ekf import sensed_state, sensor_noise
 from surefoot.scenarios.run.run import closed_loop
-from surefoot.scenarios.run.sensed import sensed_state, sensor_noise
 from surefoot.scenarios.setup.walk import resolve
 from surefoot.sim.sensor_errors import CHEAP, GOOD, PERFECT
 from surefoot.wbc import controller

@@ -7,7 +7,7 @@ import numpy as np
 import pytest
 from mcap.writer import Writer
 
-from surefoot.scenarios.apps import cli
+from surefoot.scenarios.cli import program as cli
 from surefoot.scenarios.errors import LogError
 from surefoot.scenarios.log import AttachedFile, ChannelSpec, LogWriter, read
 from surefoot.scenarios.record import channels
@@ -42,7 +42,7 @@ def logs(tmp_path_factory):
 def command(capsys):
     def run(*arguments):
         with pytest.raises(SystemExit) as ended:
-            cli.main([*map(str, arguments)])
+            cli.program([*map(str, arguments)])
         captured = capsys.readouterr()
         return ended.value.code or 0, captured.out, captured.err
 

@@ -7,7 +7,7 @@ import pinocchio as pin
 import pytest
 
 from surefoot.wbc.estimation.parameters import SensorNoise
-from surefoot.wbc.estimation.torques import TorqueWrench
+from surefoot.wbc.estimation.torques import LARGEST, TorqueWrench
 from surefoot.wbc.types import RobotState
 
 pytestmark = pytest.mark.unit
@@ -136,3 +136,11 @@ def test_of_a_state_that_is_not_finite_nothing_is_known(robot, lost):
     assert np.isfinite(found.update(RobotState(**state), torque)).all()
     state[lost][8] = np.nan
     assert np.isnan(found.update(RobotState(**state), torque)).all()
+
+
+def test_by_torques_that_are_worth_nothing_a_force_may_be_as_large_as_any_is(robot):
+    _, torque = balanced(robot, robot.standing, 0.5)
+    found = TorqueWrench(robot.model, robot.frames.soles, PERIOD, SensorNoise(joint_torque=1e8))
+    seen = found.update(RobotState(robot.standing, np.zeros(robot.nv)), torque)
+    assert np.isfinite(seen).all()
+    assert 0.5 * LARGEST < found.deviation[0] <= LARGEST

@@ -7,7 +7,7 @@ from typing import ClassVar
 import pytest
 from typer.testing import CliRunner
 
-from surefoot.scenarios.apps.cli import app
+from surefoot.scenarios.cli.program import app
 from surefoot.scenarios.errors import LogError
 from surefoot.scenarios.run.skeleton import Progress
 from surefoot.scenarios.show.replay import beside

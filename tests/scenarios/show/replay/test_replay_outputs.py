@@ -13,7 +13,7 @@ import pytest
 from needs import OPENGL
 
 from surefoot.scenarios import errors
-from surefoot.scenarios.apps import cli
+from surefoot.scenarios.cli import program as cli
 from surefoot.scenarios.errors import LogError
 from surefoot.scenarios.log import read
 from surefoot.scenarios.output import write_whole
@@ -34,7 +34,7 @@ def surefoot(capsys):
 
     def command(*arguments):
         with pytest.raises(SystemExit) as ended:
-            cli.main([*map(str, arguments)])
+            cli.program([*map(str, arguments)])
         captured = capsys.readouterr()
         return ended.value.code or 0, captured.out, captured.err
 

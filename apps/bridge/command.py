@@ -1,0 +1,190 @@
+"""``surefoot serve`` and ``surefoot walk``: a simulated robot and its controller in processes of their own."""
+
+import json
+import math
+from dataclasses import dataclass
+from functools import partial
+from pathlib import Path
+from typing import TYPE_CHECKING, Annotated
+
+import typer
+
+from surefoot.lazy import importing
+from surefoot.scenarios.errors import ScenarioError, SetupError
+from surefoot.scenarios.show.options import (
+    INTERRUPTED,
+    MISSED,
+    AsJson,
+    SeatOf,
+    Seed,
+    Settings,
+    overrides,
+    scenarios_from,
+    with_options,
+)
+
+if TYPE_CHECKING:
+    from surefoot.scenarios.run.run import Result
+
+DEFAULT_SCENARIO = "walk"
+
+SOFT_START = 0.3
+"""Time in which joints go over from being held to what they are told, in real time [s]."""
+
+_Scenario = typer.Argument(help="Catalogue name, scenario file or log.", autocompletion=scenarios_from)
+
+
+@dataclass(frozen=True, slots=True)
+class ServeOptions:
+    """What `surefoot serve` is told."""
+
+    scenario: Annotated[str | None, _Scenario] = None
+    robot: Annotated[str | None, typer.Option(help="Robot, for which the scenario is scaled.")] = None
+    set_: Settings = None
+    seed: Seed = None
+    port: Annotated[int, typer.Option(min=0, max=65535, help="That is listened at; 0: any free one.")] = 7447
+    bind: Annotated[
+        str, typer.Option(metavar="HOST", help="Address of this machine; all but the default lets others in.")
+    ] = "127.0.0.1"
+    real_time: Annotated[
+        bool, typer.Option("--real-time", help="Go by the wall clock and wait for nobody; else in lockstep.")
+    ] = False
+    delay: Annotated[float, typer.Option(help="By which every command comes later [s].")] = 0.0
+    jitter: Annotated[float, typer.Option(help="Most of what is added to that, by chance [s].")] = 0.0
+    drop: Annotated[float, typer.Option(help="Share of states, and of commands, that get lost.")] = 0.0
+    pause: Annotated[float, typer.Option(help="How long the controller hears nothing, once a second [s].")] = 0.0
+    watchdog: Annotated[float, typer.Option(help="Without a new command for so long joints are damped [s].")] = 0.1
+    soft_start: Annotated[
+        float | None,
+        typer.Option(help="Of joints that were held [s]; by default 0.3 in real time, else 0."),
+    ] = None
+
+
+@with_options(ServeOptions)
+def serve(told: ServeOptions) -> None:
+    """Serve the simulated robot to a controller in another process."""
+    with importing():
+        from surefoot.apps.bridge.host import Care
+        from surefoot.apps.bridge.limits import TORQUE_RATE
+        from surefoot.apps.bridge.line import Disturbance
+        from surefoot.apps.bridge.serve import Server
+        from surefoot.scenarios.run.interrupts import held_back
+        from surefoot.scenarios.run.run import one_thread
+        from surefoot.scenarios.run.skeleton import refusing
+        from surefoot.scenarios.setup.load import load, locate
+        from surefoot.scenarios.setup.walk import resolve
+
+    reference = told.scenario or DEFAULT_SCENARIO
+    asked = overrides(told.set_, told.seed)
+    if told.robot is not None:
+        written = load(reference)
+        asked = [f"sized_for={written.sized_for or written.robot}", f"robot={told.robot}", *asked]
+    loaded = load(reference, asked)
+    try:
+        with refusing():
+            found = resolve(loaded)
+            disturbance = Disturbance(told.delay, told.jitter, told.drop, told.pause, found.seed)
+            apart = told.real_time or not disturbance.none
+            soft = (SOFT_START if told.real_time else 0.0) if told.soft_start is None else told.soft_start
+            care = Care(disturbance, told.watchdog, soft, TORQUE_RATE if apart else math.inf)
+            server = Server(found, told.bind, told.port, _say, care, told.real_time)
+    except SetupError as refusal:
+        raise locate(reference, asked, refusal) from None
+    typer.echo(
+        f"{server.address} serves {loaded.name} on {loaded.robot}; walk it with: surefoot walk --on {server.address}"
+    )
+    with held_back() as interrupts, one_thread():
+        served = server.run(lambda: interrupts.count > 0)
+    _say(f"ended at {served.time:.3f} s, {served.said}")
+    if served.late:
+        _say(f"too slow for real time: the plant's clock was put back by {served.late:.3f} s in all")
+    if interrupts.count:
+        raise typer.Exit(INTERRUPTED)
+    raise typer.Exit(0 if served.in_order else MISSED)
+
+
+def _say(sentence: str) -> None:
+    typer.echo(sentence, err=True)
+
+
+@dataclass(frozen=True, slots=True)
+class WalkOptions:
+    """What `surefoot walk` is told."""
+
+    scenario: Annotated[str | None, _Scenario] = None
+    on: Annotated[str | None, typer.Option(metavar="ADDRESS", help="Of the plant, as surefoot serve says it.")] = None
+    shadow: Annotated[Path | None, typer.Option(metavar="LOG", help="Hear what this log holds, and move nothing.")] = (
+        None
+    )
+    policy: SeatOf = None
+    set_: Settings = None
+    seed: Seed = None
+    out: Annotated[Path, typer.Option(help="Directory that gets the run's own folder.")] = Path("runs")
+    as_json: AsJson = False
+
+
+@with_options(WalkOptions)
+def walk(told: WalkOptions) -> None:
+    """Walk a robot that another process serves, or a log's shadow."""
+    if told.on is not None and told.shadow is None:
+        walked = partial(_on, told.on)
+    elif told.shadow is not None and told.on is None:
+        walked = partial(_in_shadow, told.shadow)
+    else:
+        raise typer.BadParameter("give one of --on ADDRESS and --shadow LOG")
+    with importing():
+        from surefoot.scenarios.setup.load import locate
+        from surefoot.scenarios.show.console import print_result
+
+    asked = overrides(told.set_, told.seed, told.policy)
+    reference = told.scenario or (None if told.shadow is None else str(told.shadow))
+    try:
+        name, result = walked(told, asked)
+    except SetupError as refusal:
+        if reference is None:
+            raise ScenarioError([str(refusal)]) from None
+        raise locate(reference, asked, refusal) from None
+    if told.as_json:
+        typer.echo(json.dumps({**result.verdict.to_json(), "log": str(result.log)}, allow_nan=False))
+    else:
+        print_result(name, result.verdict, result.log)
+    if result.interrupted:
+        typer.echo(f"interrupted; the log up to here is whole: {result.log}", err=True)
+        raise typer.Exit(INTERRUPTED)
+    raise typer.Exit(0 if result.verdict.passed else MISSED)
+
+
+def _on(address: str, told: WalkOptions, asked: list[str]) -> "tuple[str, Result]":
+    """Walk on the plant at an address: the user's scenario, else that of the plant."""
+    from surefoot.apps.bridge.remote import Remote
+    from surefoot.apps.bridge.walk import walk_on
+    from surefoot.scenarios.setup.load import load, read_scenario
+    from surefoot.scenarios.show.console import ProgressLine
+
+    loaded = None if told.scenario is None else load(told.scenario, asked)
+    hello = {} if loaded is None else {"robot": loaded.robot, "rate": loaded.rates.control}
+    remote = Remote(address, hello)
+    ended = "refused"
+    try:
+        said = remote.welcome
+        scenario = loaded or read_scenario(said.scenario, f"scenario served as {said.name}", said.name, asked)
+        progress = ProgressLine(scenario.name)
+        with progress:
+            result = walk_on(remote, scenario, told.out, progress)
+        ended = "interrupted"  # else the plant has been told that the walk is over
+    finally:
+        remote.close(ended)
+    return scenario.name, result
+
+
+def _in_shadow(log: Path, told: WalkOptions, asked: list[str]) -> "tuple[str, Result]":
+    """Walk in the shadow of a log: the user's scenario, else that of the log."""
+    from surefoot.apps.bridge.shadow import walk_in_shadow
+    from surefoot.scenarios.setup.load import load
+    from surefoot.scenarios.show.console import ProgressLine
+
+    scenario = load(told.scenario or str(log), asked)
+    progress = ProgressLine(scenario.name)
+    with progress:
+        result = walk_in_shadow(log, scenario, told.out, progress)
+    return scenario.name, result

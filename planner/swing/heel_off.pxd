@@ -1,0 +1,11 @@
+cimport cython
+from surefoot.algebra cimport vector3
+
+@cython.locals(w=double, tilt=double)
+cpdef vector3 bump(double s) noexcept nogil
+
+cdef class FootRoll:
+    cdef readonly object foot
+    cdef readonly double start, end, angle, toe
+    cdef readonly object scaling
+    cdef readonly double told

@@ -1,0 +1,59 @@
+"""``surefoot check``: holds scenarios against their baselines."""
+
+from dataclasses import dataclass
+from pathlib import Path
+from typing import Annotated
+
+import typer
+
+from surefoot.lazy import importing
+from surefoot.scenarios.show.options import INTERRUPTED, Jobs, Replace, SeatOf, Settings, overrides, with_options
+
+app = typer.Typer()
+
+
+@dataclass(frozen=True, slots=True)
+class CheckOptions:
+    """What `surefoot check` is told."""
+
+    scenarios: Annotated[
+        list[str] | None, typer.Argument(help="Catalogue names, files or folders; all of the catalogue by default.")
+    ] = None
+    update: Annotated[bool, typer.Option("--update", help="Write the baselines anew, and show the change.")] = False
+    baselines: Annotated[
+        Path | None, typer.Option(help="Directory of the baselines; beside the scenario files by default.")
+    ] = None
+    policy: SeatOf = None
+    set_: Settings = None
+    jobs: Jobs = None
+    out: Annotated[Path, typer.Option(help="Directory of the logs.")] = Path("runs/check")
+    junit: Annotated[Path | None, typer.Option(help="Also write JUnit XML to this file.")] = None
+    markdown: Annotated[Path | None, typer.Option(help="Also write a summary for a CI page to this file.")] = None
+    force: Replace = False
+
+
+@app.command()
+@with_options(CheckOptions)
+def check(told: CheckOptions) -> None:
+    """Hold scenarios against their baselines."""
+    with importing():
+        from surefoot.scenarios.check import check as checking
+        from surefoot.scenarios.check import report
+        from surefoot.scenarios.output import refuse_existing
+        from surefoot.scenarios.run.processes import cores
+
+    for report_file in (told.junit, told.markdown):
+        if report_file is not None:
+            refuse_existing(report_file, told.force)
+    chosen = checking.cases(told.scenarios or (), told.baselines, overrides(told.set_, policy=told.policy))
+    try:
+        found = checking.check(chosen, told.out, told.jobs or cores(), report.print_checked, told.update)
+    except KeyboardInterrupt:
+        typer.echo("interrupted", err=True)
+        raise typer.Exit(INTERRUPTED) from None
+    if told.junit is not None:
+        report.write(told.junit, report.junit(found), told.force)
+    if told.markdown is not None:
+        report.write(told.markdown, report.markdown(found).encode(), told.force)
+    typer.echo(report.summary(found))
+    raise typer.Exit(checking.exit_code(found))

@@ -1,0 +1,125 @@
+"""The pytest plugin: a file ``*.scenario.yaml`` in a folder of tests is a test.
+
+The scenario is run; the test passes when it meets its criteria and, where ``baselines/<name>.baseline.yaml`` lies
+beside it, is no worse than that. One without a baseline fails where a baseline lies there that is of no scenario, for
+then one of the two has a wrong name; so it does where ``baselines`` is no folder. The log of a failure is kept in
+``runs/pytest`` below the root of pytest. Nothing of Surefoot is imported before such a file is met.
+
+Letters of the ending may be great or small, and ``.yml`` is one too. What is named so and is no file, as a folder or a
+link to nothing, is a test that fails.
+"""
+
+import os
+import shutil
+from collections.abc import Generator, Iterator
+from pathlib import Path
+from typing import Any
+
+import pytest
+
+ENDINGS = (".scenario.yaml", ".scenario.yml")
+
+
+def is_scenario(path: Path) -> bool:
+    """Whether a path is named as a scenario that is a test."""
+    return path.name.lower().endswith(ENDINGS)
+
+
+def pytest_collect_file(file_path: Path, parent: pytest.Collector) -> "ScenarioFile | None":
+    """Take a scenario file as a file of tests."""
+    return ScenarioFile.from_parent(parent, path=file_path) if is_scenario(file_path) else None
+
+
+@pytest.hookimpl(wrapper=True, optionalhook=True)
+def pytest_collect_directory(path: Path) -> "Generator[None, pytest.Collector | None, pytest.Collector | None]":
+    """Add to what is found in a folder what is named as a scenario there and is no file, which pytest passes by."""
+    found = yield
+    if found is not None and (strange := _strange(path)):
+        collect, folder = found.collect, found
+        found.collect = lambda: [*collect(), *(_astray(folder, one) for one in strange)]  # type: ignore[method-assign]
+    return found
+
+
+def _strange(folder: Path) -> list[Path]:
+    """What is named as a scenario in a folder and is no regular file."""
+    try:
+        return sorted(path for path in folder.iterdir() if is_scenario(path) and not path.is_file())
+    except OSError:  # told by pytest
+        return []
+
+
+def _astray(folder: pytest.Collector, path: Path) -> "StrayTest":
+    return StrayTest.from_parent(folder, name=path.name, path=path)
+
+
+class StrayTest(pytest.Item):
+    """Something that is named as a scenario and is none."""
+
+    def runtest(self) -> None:
+        """Say so.
+
+        Raises:
+            MissedError: always.
+        """
+        what = "a link to nothing" if not os.path.exists(self.path) else "no regular file"  # noqa: PTH110
+        raise MissedError(f"{self.path}: is named as a scenario and is {what}; make it a file, or rename or remove it")
+
+    def repr_failure(self, excinfo: pytest.ExceptionInfo[BaseException], style: Any = None) -> str:
+        """What it is, without a traceback."""
+        return str(excinfo.value)
+
+    def reportinfo(self) -> tuple[Path, int, str]:
+        """Where it is."""
+        return self.path, 0, f"scenario {self.name}"
+
+
+class ScenarioFile(pytest.File):
+    """A scenario file."""
+
+    def collect(self) -> Iterator["ScenarioTest"]:
+        """Its one test."""
+        ending = next(ending for ending in ENDINGS if self.path.name.lower().endswith(ending))
+        yield ScenarioTest.from_parent(self, name=self.path.name[: -len(ending)])
+
+
+class MissedError(Exception):
+    """A scenario did not do what it should; says what."""
+
+
+class ScenarioTest(pytest.Item):
+    """The run of a scenario."""
+
+    def runtest(self) -> None:
+        """Run it.
+
+        Raises:
+            MissedError: it missed its criteria, is worse than its baseline, or has one of another name.
+        """
+        from surefoot.scenarios.check.check import cases, run_case, strays
+        from surefoot.scenarios.check.report import lines_of
+
+        out = self.config.rootpath / "runs" / "pytest"
+        (case,) = cases([str(self.path)])
+        checked = run_case(case, out)
+        astray = strays(case) if checked.status == "without baseline" else ()
+        if astray:
+            what = f"{astray[0]}: is of no scenario beside it; name it {case.baseline.name}, or remove it"
+            if astray[0] == case.baseline.parent:
+                what = f"{astray[0]}: is no folder of baselines; make it one, or remove it"
+            raise MissedError("\n".join([checked.status, what]))
+        if not checked.passed and checked.status != "without baseline":
+            raise MissedError("\n".join([checked.status, *lines_of(checked)]))
+        if checked.log is not None:
+            shutil.rmtree(checked.log.parent)
+
+    def repr_failure(self, excinfo: pytest.ExceptionInfo[BaseException], style: Any = None) -> str:
+        """What was missed, without a traceback, unless it is a defect."""
+        from surefoot.scenarios.errors import ScenarioError
+
+        if isinstance(excinfo.value, MissedError | ScenarioError):
+            return str(excinfo.value)
+        return str(super().repr_failure(excinfo, style))
+
+    def reportinfo(self) -> tuple[Path, int, str]:
+        """Where it is."""
+        return self.path, 0, f"scenario {self.name}"

@@ -1,0 +1,120 @@
+"""What a check found, for a person, for a CI page and for a CI server."""
+
+import math
+from collections.abc import Sequence
+from pathlib import Path
+from xml.etree import ElementTree as Xml
+
+import typer
+
+from surefoot.scenarios.check.baseline import Move
+from surefoot.scenarios.check.check import Checked, CheckStatus
+from surefoot.scenarios.check.signs import FAR, Parting
+from surefoot.scenarios.judge.verdict import shown_unit, value_text
+from surefoot.scenarios.output import write_whole
+
+_SHOWN_MOVES = 12
+"""Moves of a run that are named; the others are counted."""
+
+_REMEDIES: dict[CheckStatus, str] = {
+    "other scenario": "{} is of other settings; --update writes it anew",
+    "incomplete baseline": "{} does not hold all that is compared; --update writes it anew",
+    "without baseline": "no baseline at {}; --update writes it",
+    "written": "written: {}",
+}
+"""What is to be said of a baseline, by the status of its run."""
+
+_ERRORS: tuple[CheckStatus, ...] = ("could not run", "could not write")
+
+_LEAST_WINDOW = 0.2
+"""Least time that a figure is asked to show [s]."""
+
+
+def move_text(move: Move) -> str:
+    """One move: from where to where, how it is meant, and what would have been allowed."""
+    name = move.name.partition("[")[0]
+    unit = shown_unit(name)
+    before, now = (value_text(name, value) for value in (move.before, move.now))
+    allowed = "" if not move.allowed else f", {value_text(name, move.allowed)} {unit} is allowed".replace("  ", " ")
+    direction = "" if move.direction == "other" else f", {move.direction}"
+    direction += f" by more than {FAR:g} tolerances" if move.far else ""
+    return f"{move.name}: {before} -> {now} {unit}".rstrip() + direction + allowed
+
+
+def lines_of(checked: Checked) -> list[str]:
+    """What is to be known of one run, worst first: why it failed, in what it parts, what moved, where to look."""
+    order = {"worse": 0, "other": 1, "better": 2}
+    moves = [move_text(move) for move in sorted(checked.moves, key=lambda move: order[move.direction])]
+    partings = zip(("first", "most"), checked.partings, strict=False)
+    lines = [*checked.reasons, *(f"parts {when}: {one.text}" for when, one in partings), *moves[:_SHOWN_MOVES]]
+    if len(moves) > _SHOWN_MOVES:
+        lines.append(f"and {len(moves) - _SHOWN_MOVES} metrics more")
+    if checked.status in _REMEDIES:
+        lines.append(_REMEDIES[checked.status].format(checked.case.baseline))
+    if checked.log is not None and checked.status in ("failed", "moved", "better"):
+        lines += [f"look at: surefoot plot {checked.log}{where}" for where in _figures(checked.partings)]
+    return lines
+
+
+def _figures(partings: Sequence[Parting]) -> list[str]:
+    """Options by which `surefoot plot` shows each; none of them for the page of all figures."""
+    shown = []
+    for parting in partings:
+        until = f" --to {max(parting.end, parting.begin + _LEAST_WINDOW):g}" if math.isfinite(parting.end) else ""
+        shown.append(f" --what {parting.figure} --from {parting.begin:g}{until}")
+    return list(dict.fromkeys(shown)) or [""]
+
+
+def print_checked(checked: Checked) -> None:
+    """Print one run as soon as it is done."""
+    status = typer.style(checked.status, fg="green" if checked.passed else "red", bold=True)
+    typer.echo(f"{checked.case.scenario.name}: {status}")
+    for line in lines_of(checked):
+        typer.echo(f"  - {line}")
+
+
+def summary(checked: Sequence[Checked]) -> str:
+    """All in a sentence."""
+    counts = {
+        status: sum(one.status == status for one in checked) for status in dict.fromkeys(c.status for c in checked)
+    }
+    return f"{len(checked)} scenario{'s' if len(checked) != 1 else ''}: " + ", ".join(
+        f"{count} {status}" for status, count in counts.items()
+    )
+
+
+def markdown(checked: Sequence[Checked]) -> str:
+    """A summary for the page of a CI run."""
+    rows = ["| scenario | result | what |", "|---|---|---|"]
+    for one in checked:
+        what = "<br>".join(line.replace("|", "\\|") for line in lines_of(one))
+        rows.append(f"| {one.case.scenario.name} | {'✅' if one.passed else '❌'} {one.status} | {what} |")
+    return "\n".join([f"### surefoot check: {summary(checked)}", "", *rows, ""])
+
+
+def junit(checked: Sequence[Checked]) -> bytes:
+    """JUnit XML: a test case for each scenario, with the time that it took on the wall's clock."""
+    errors = sum(one.status in _ERRORS for one in checked)
+    failures = sum(not one.passed for one in checked) - errors
+    numbers = {"tests": str(len(checked)), "failures": str(failures), "errors": str(errors)}
+    suite = Xml.Element("testsuite", {"name": "surefoot check", **numbers})
+    for one in checked:
+        name, time = one.case.scenario.name, f"{one.took:.3f}"
+        case = Xml.SubElement(suite, "testcase", classname="surefoot", name=name, time=time)
+        text = "\n".join(lines_of(one))
+        if not one.passed:
+            kind = "error" if one.status in _ERRORS else "failure"
+            Xml.SubElement(case, kind, message=one.status).text = text
+        elif text:
+            Xml.SubElement(case, "system-out").text = text
+    return bytes(Xml.tostring(suite, encoding="utf-8", xml_declaration=True))
+
+
+def write(path: Path, content: bytes, replace: bool = False) -> None:
+    """Write a report.
+
+    Raises:
+        LogError: the file exists, and shall not be replaced, or cannot be written.
+    """
+    with write_whole(path, replace) as temporary:
+        temporary.write_bytes(content)

@@ -1,0 +1,1 @@
+# Its classes stay Python's, since what thins a channel is made of them.

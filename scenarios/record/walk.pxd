@@ -1,0 +1,20 @@
+from surefoot.planner.types cimport CentroidalState
+
+cdef class PlannerState:
+    cdef readonly CentroidalState measured
+    cdef readonly object measured_zmp
+    cdef readonly CentroidalState given
+    cdef readonly object acceleration, innovation
+
+cdef class RunRecorder:
+    cdef object _footstep, _command, _timing, _process, _writer
+    cdef long long _begun, _looked
+
+    cpdef timing(self, time_ns, timing)
+
+cdef class WalkRecorder(RunRecorder):
+    cdef object _reference, _state, _plan, _footsteps, _support
+    cdef bytes _polygon
+    cdef bint _rolls
+
+    cpdef reference(self, time_ns, plan, sample)

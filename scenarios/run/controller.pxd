@@ -1,0 +1,21 @@
+from surefoot.joints cimport JointCommand
+from surefoot.readings cimport Reading, Readings
+from surefoot.scenarios.run.sensed cimport Senses
+from surefoot.wbc.estimation.estimate cimport Estimate
+
+cdef class Controller:
+    cdef readonly object walk, body, whole_body, planning, posture, state, report, terms, wrench, sample, spent
+    cdef readonly Senses senses
+    cdef readonly Estimate estimate
+    cdef object _parts, _leg, _faults, _output, _giving_way, _landed, _arriving, _load, _landing, _torques
+    cdef JointCommand _command
+    cdef double _period, _next, _toe, _begin, _now
+    cdef bint _estimates, _stands
+
+    cdef _stand(self, q)
+    cpdef step(self, readings, command=*, driven_joints=*)
+    cdef _observe(self, readings, double now)
+    cpdef _touching(self)
+    cdef _tell(self, driven, JointCommand told)
+    cdef _inferred(self, readings, state, double passed)
+    cdef _lasting(self)

@@ -1,0 +1,2 @@
+cdef class TrueState:
+    cdef object _state

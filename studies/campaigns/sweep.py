@@ -1,0 +1,310 @@
+"""``surefoot sweep``: runs a campaign and writes its tables and its page."""
+
+import queue
+import threading
+from collections.abc import Callable, Iterable, Iterator, Sequence
+from contextlib import suppress
+from dataclasses import dataclass
+from functools import partial
+from pathlib import Path
+from typing import TYPE_CHECKING, Any, Literal, get_args
+
+import yaml
+
+from surefoot.scenarios.errors import install_command
+from surefoot.scenarios.output import write_whole
+from surefoot.scenarios.run.processes import interrupts_ignored
+from surefoot.scenarios.show.console import TerminalLine
+from surefoot.studies.campaigns.campaign import Campaign
+from surefoot.studies.campaigns.engine import Worker, cluster_workers, local_workers
+from surefoot.studies.campaigns.journal import Journal, outcome_of
+from surefoot.studies.campaigns.points import Outcome, Point, Record, Runs, RunStatus, Searched, cells, facts
+from surefoot.studies.campaigns.table import (
+    has_parquet,
+    runs_table,
+    thresholds_table,
+    thresholds_told,
+    wilson,
+    write_table,
+)
+
+if TYPE_CHECKING:
+    from rich.progress import ProgressColumn
+
+SPEC_FILE, PAGE, RUNS_TABLE, THRESHOLDS_TABLE = "campaign.yaml", "report.html", "table", "thresholds"
+STATUSES: tuple[RunStatus, ...] = get_args(RunStatus)
+
+
+class CampaignBar(TerminalLine):
+    """How far a campaign is: how many are done, how many failed, how long the rest takes.
+
+    Args:
+        total: number of cells.
+        what: they are called.
+    """
+
+    def __init__(self, total: int, what: str = "runs") -> None:
+        super().__init__(partial(_columns, what), total, "")
+        self._counts = dict.fromkeys(("fail", "refused", "broken"), 0)
+        self._runs = 0
+
+    def run(self, record: Record) -> None:
+        """Count a run."""
+        self._runs += 1
+        if record.status in self._counts:
+            self._counts[record.status] += 1
+        counts = ", ".join(f"{count} {status}" for status, count in self._counts.items() if count)
+        self.update(state=f"{self._runs} runs" + (f", {counts}" if counts else ""))
+
+    def cell(self) -> None:
+        """Count a cell."""
+        self.update(advance=1)
+
+
+def _columns(what: str) -> "Iterable[ProgressColumn]":
+    from rich.progress import BarColumn, MofNCompleteColumn, TextColumn, TimeElapsedColumn, TimeRemainingColumn
+
+    done = (TextColumn(what), BarColumn(), MofNCompleteColumn(), TextColumn("{task.fields[state]}"))
+    return *done, TimeElapsedColumn(), TextColumn("left"), TimeRemainingColumn()
+
+
+class InterruptedRunsError(Exception):
+    """The user stopped the campaign; what was done is kept."""
+
+
+def run_cells(
+    cells: Iterable[Searched],
+    journal: Journal,
+    workers: Sequence[Worker],
+    on_run: Callable[[Record], None] = lambda _: None,
+    on_cell: Callable[[], None] = lambda: None,
+) -> None:
+    """Run what has no result yet; one that fails does not stop the others.
+
+    Args:
+        cells: to run.
+        journal: gets every result.
+        workers: that make the runs.
+        on_run: is told each new result.
+        on_cell: is told that a cell is done.
+
+    Raises:
+        InterruptedRunsError: Ctrl-C; runs under way were brought to their end first, unless it came twice.
+        LogError: a result could not be written down.
+    """
+    told: queue.SimpleQueue[_News] = queue.SimpleQueue()
+    left: queue.SimpleQueue[Searched] = queue.SimpleQueue()
+    for cell in cells:
+        left.put(cell)
+    stop = threading.Event()
+    slots = [
+        threading.Thread(target=_slot, args=(worker, left, journal, told, stop), daemon=True) for worker in workers
+    ]
+    running = len(slots)
+    try:
+        for slot in slots:
+            slot.start()
+        while running:
+            news = told.get()
+            if isinstance(news, Exception):
+                raise news
+            if isinstance(news, Record):
+                on_run(news)
+            elif news == "cell":
+                on_cell()
+            else:
+                running -= 1
+    except KeyboardInterrupt:
+        stop.set()
+        with suppress(KeyboardInterrupt):
+            for slot in slots:
+                slot.join()
+        raise InterruptedRunsError from None
+    finally:
+        stop.set()
+        with interrupts_ignored():
+            for worker in workers:
+                worker.close()
+
+
+_News = Record | Exception | Literal["cell", "end"]
+"""What a slot tells: a result, what went wrong, that a cell is done, that it has nothing more to do."""
+
+
+def _slot(
+    worker: Worker,
+    left: "queue.SimpleQueue[Searched]",
+    journal: Journal,
+    told: "queue.SimpleQueue[_News]",
+    stop: threading.Event,
+) -> None:
+    """Take one cell after the other that is left, and have what has no result run."""
+
+    def made(point: Point) -> bool:
+        if journal.get(point) is None:
+            if stop.is_set():
+                return False
+            record = worker(point)
+            journal.add(point, record)
+            told.put(record)
+        found = journal.said(point)
+        return found is not None and found.status != "broken"
+
+    try:
+        while not stop.is_set():
+            outcome_of(left.get_nowait(), journal, made)
+            told.put("cell")
+    except queue.Empty:
+        pass
+    except Exception as error:
+        told.put(error)
+    finally:
+        told.put("end")
+
+
+@dataclass(frozen=True, slots=True)
+class Swept:
+    """A campaign that was run.
+
+    Attributes:
+        campaign: its specification.
+        folder: where its results are.
+        outcomes: of its cells, in order.
+        stale: results of other versions that were made anew.
+    """
+
+    campaign: Campaign
+    folder: Path
+    outcomes: tuple[Outcome, ...]
+    stale: int = 0
+
+    @property
+    def runs(self) -> Runs:
+        """Every run with what became of it."""
+        return tuple(run for outcome in self.outcomes for run in outcome.runs)
+
+    @property
+    def facts(self) -> Runs:
+        """Every run but those that only repeat another."""
+        return facts(self.runs)
+
+    @property
+    def records(self) -> tuple[Record, ...]:
+        """What became of every run."""
+        return tuple(record for _, record in self.runs)
+
+    def count(self, status: str) -> int:
+        """How many runs ended so."""
+        return sum(record.status == status for record in self.records)
+
+    @property
+    def complete(self) -> bool:
+        """Whether every cell has a result."""
+        return all(outcome.complete for outcome in self.outcomes)
+
+    @property
+    def ran(self) -> bool:
+        """Whether any run was accepted."""
+        return self.count("pass") + self.count("fail") > 0
+
+    @property
+    def files(self) -> tuple[Path, ...]:
+        """The page and the tables."""
+        tables = (f"{name}{ending}" for name in (THRESHOLDS_TABLE, RUNS_TABLE) for ending in (".csv", ".parquet"))
+        return tuple(path for path in (self.folder / name for name in (PAGE, *tables)) if path.exists())
+
+    def repeats(self) -> Iterator[str]:
+        """What is to be known of runs that only repeat another, a sentence if there are any."""
+        runs, facts = len(self.runs), len(self.facts)
+        if facts < runs:
+            then = "they count once" if self.campaign.spec.bisect is None else "more seeds find no other threshold"
+            alike = f"{runs - facts} of {runs} runs are those of another seed to the digit"
+            yield f"{alike}, since nothing in them is random; {then}"
+
+    def notes(self) -> Iterator[str]:
+        """What is to be known beside the result, a sentence each."""
+        yield from self.repeats()
+        if self.stale:
+            others = "of another robot, another code or other versions, or lacked their log"
+            yield f"{self.stale} results were {others}, and were not taken over"
+        if not has_parquet():
+            yield f"no parquet is written; install it with: {install_command('parquet')}"
+        broken = (reason for record in self.records if record.status == "broken" for reason in record.reasons)
+        yield from (f"a run gave no result: {reason}" for reason in dict.fromkeys(broken))
+        if not self.ran:
+            refused = next((record.reasons for record in self.records if record.status == "refused"), ())
+            yield from (f"every run was refused, the first since {reason}" for reason in refused)
+
+    def lines(self) -> Iterator[str]:
+        """The result for a person."""
+        runs = len(self.records)
+        counts = ", ".join(f"{n} {status}" for status in STATUSES if (n := self.count(status)))
+        yield f"{self.campaign.spec.name}: {runs} runs" + (f", {counts}" if counts else "")
+        if self.campaign.spec.bisect is None and self.ran:
+            judged = [record.status for _, record in self.facts if record.status in ("pass", "fail")]
+            rate = wilson(judged.count("pass"), len(judged))
+            yield f"success rate {100 * rate.rate:.1f} %, 95 % interval {rate.between} %"
+        yield from thresholds_told(self.outcomes)
+        yield from map(str, reversed(self.files))
+
+    def to_json(self) -> dict[str, Any]:
+        """The result as one JSON object."""
+        counts: dict[str, Any] = {status: self.count(status) for status in STATUSES}
+        files = [path.name for path in self.files]
+        name, runs = self.campaign.spec.name, len(self.records)
+        counts["repeated"] = runs - len(self.facts)
+        return {"campaign": name, "runs": runs, **counts, "out": str(self.folder), "files": files}
+
+
+def sweep(campaign: Campaign, out: Path, jobs: int, cluster: str | None = None) -> Swept:
+    """Run what has no result yet, and write tables and page.
+
+    Args:
+        campaign: to run.
+        out: its directory.
+        jobs: runs at once on this machine.
+        cluster: address of a dask scheduler, to run there.
+
+    Raises:
+        LogError: something cannot be written.
+        ScenarioError: the cluster cannot be reached or used.
+        InterruptedRunsError: the user stopped it; tables and page are of what was done.
+    """
+    keep_all, every = campaign.spec.keep == "all", tuple(cells(campaign))
+    workers = _workers(out, jobs, cluster, keep_all)
+    with Journal(out, keep_all) as journal:
+        stopped: InterruptedRunsError | None = None
+        try:
+            with CampaignBar(len(every), "searches" if campaign.spec.bisect else "runs") as bar:
+                run_cells(every, journal, workers, bar.run, bar.cell)
+        except InterruptedRunsError as error:
+            stopped = error
+        swept = Swept(campaign, out, tuple(outcome_of(cell, journal) for cell in every), journal.stale)
+        write(swept)
+    if stopped is not None:
+        raise stopped
+    return swept
+
+
+def _workers(out: Path, jobs: int, cluster: str | None, keep_all: bool) -> Sequence[Worker]:
+    if cluster is None:
+        return local_workers(out, jobs, keep_all)
+    return cluster_workers(cluster, out, keep_all)
+
+
+def write(swept: Swept) -> None:
+    """Write what a campaign found; files of an earlier time are replaced.
+
+    Raises:
+        LogError: one cannot be written.
+    """
+    from surefoot.studies.campaigns.report import page
+
+    spec = swept.campaign.spec.model_dump(mode="json", exclude_defaults=True)
+    with write_whole(swept.folder / SPEC_FILE, replace=True) as temporary:
+        temporary.write_text(yaml.safe_dump(spec, sort_keys=False), encoding="utf-8")
+    write_table(runs_table(swept.outcomes), swept.folder / RUNS_TABLE)
+    if swept.campaign.spec.bisect is not None:
+        write_table(thresholds_table(swept.outcomes), swept.folder / THRESHOLDS_TABLE)
+    with write_whole(swept.folder / PAGE, replace=True) as temporary:
+        temporary.write_text(page(swept), encoding="utf-8")

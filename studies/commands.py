@@ -1,0 +1,181 @@
+"""The commands that make many runs: sweep, bench and paper."""
+
+import json
+from dataclasses import dataclass
+from pathlib import Path
+from typing import Annotated
+
+import typer
+
+from surefoot.lazy import importing
+from surefoot.scenarios.show.options import (
+    INTERRUPTED,
+    MISSED,
+    AsJson,
+    Jobs,
+    SeatOf,
+    overrides,
+    settings,
+    with_options,
+)
+
+
+def _campaigns_from(incomplete: str) -> list[str]:
+    """Campaigns that begin so."""
+    from surefoot.studies.campaigns.shipped import shipped
+
+    return [name for name in shipped() if name.startswith(incomplete)]
+
+
+def _interrupted(folder: Path) -> typer.Exit:
+    """Say how to go on."""
+    typer.echo(f"interrupted; finished runs are kept in {folder}, the same command goes on from there", err=True)
+    return typer.Exit(INTERRUPTED)
+
+
+def sweep(
+    spec: Annotated[
+        str,
+        typer.Argument(help="A campaign's name, or its specification, a YAML file.", autocompletion=_campaigns_from),
+    ],
+    policy: SeatOf = None,
+    set_: Annotated[list[str] | None, settings("Fix a key, even one that varies")] = None,
+    seeds: Annotated[int | None, typer.Option(min=1, help="Runs of each, over those of the campaign.")] = None,
+    jobs: Jobs = None,
+    cluster: Annotated[
+        str | None, typer.Option(metavar="ADDRESS", help="Run on the cluster of this dask scheduler instead.")
+    ] = None,
+    out: Annotated[Path | None, typer.Option(help="Directory of the results; runs/NAME by default.")] = None,
+    against: Annotated[
+        str | None,
+        typer.Option(
+            metavar="TABLE", help="Hold the thresholds against this table of them; `baseline` for the stored one."
+        ),
+    ] = None,
+    as_json: AsJson = False,
+) -> None:
+    """Run a campaign: a grid, samples or thresholds over any key.
+
+    Begun again, it goes on where it stopped.
+    """
+    with importing():
+        from surefoot.scenarios.run.processes import cores
+        from surefoot.studies.campaigns import against as holding
+        from surefoot.studies.campaigns.campaign import read_campaign
+        from surefoot.studies.campaigns.journal import overlooked
+        from surefoot.studies.campaigns.sweep import InterruptedRunsError
+        from surefoot.studies.campaigns.sweep import sweep as run_sweep
+
+    if jobs is not None and cluster is not None:
+        raise typer.BadParameter("--jobs is of this machine; give it without --cluster")
+    campaign = read_campaign(spec, overrides(set_, policy=policy), seeds)
+    before = None if against is None else holding.table(campaign, against)
+    folder = out or Path("runs") / campaign.spec.name
+    for text in overlooked(campaign):
+        typer.echo(text, err=True)
+    try:
+        swept = run_sweep(campaign, folder, jobs or cores(), cluster)
+    except InterruptedRunsError:
+        raise _interrupted(folder) from None
+    for text in swept.notes():
+        typer.echo(text, err=True)
+    if as_json:
+        typer.echo(json.dumps(swept.to_json(), allow_nan=False))
+    else:
+        typer.echo("\n".join(swept.lines()))
+    good = swept.complete and swept.ran
+    if before is not None and good:
+        held = before.against(swept.outcomes)
+        typer.echo("\n".join(held.lines()), err=as_json)
+        good = not held.worse
+    raise typer.Exit(0 if good else MISSED)
+
+
+BENCHES = ("g1-tour",)
+"""Benchmarks, by name."""
+
+
+def _benches_from(incomplete: str) -> list[str]:
+    """Benchmarks that begin so."""
+    return [name for name in BENCHES if name.startswith(incomplete)]
+
+
+def _rows_from(incomplete: str) -> list[str]:
+    """Rows of the tour that begin so."""
+    from surefoot.studies.tour.rows import ROWS
+
+    return [name for name in ROWS if name.startswith(incomplete)]
+
+
+@dataclass(frozen=True, slots=True)
+class BenchOptions:
+    """What `surefoot bench` is told."""
+
+    name: Annotated[str, typer.Argument(help="Of the benchmark: g1-tour.", autocompletion=_benches_from)]
+    row: Annotated[
+        list[str] | None, typer.Option(help="This row alone; repeatable, all by default.", autocompletion=_rows_from)
+    ] = None
+    seeds: Annotated[int, typer.Option(min=1, max=100_000, help="Tours of each row.")] = 24
+    seconds: Annotated[float, typer.Option(min=1.0, max=90.0, help="After which a tour is over.")] = 90.0
+    workers: Jobs = None
+    out: Annotated[Path, typer.Option(help="Directory that keeps every tour.")] = Path("runs/g1-tour")
+    as_json: AsJson = False
+
+
+@with_options(BenchOptions)
+def bench(told: BenchOptions) -> None:
+    """Send a walker through the tour of a public benchmark, many times.
+
+    Begun again, it goes on where it stopped.
+    """
+    with importing():
+        from surefoot.scenarios.errors import ScenarioError, nearest
+        from surefoot.scenarios.run.processes import cores
+        from surefoot.studies.campaigns.sweep import CampaignBar
+        from surefoot.studies.tour.bench import Bench, lines
+        from surefoot.studies.tour.rows import ROWS
+
+    if told.name not in BENCHES:
+        raise ScenarioError([f"there is no benchmark '{told.name}'; {nearest(told.name, BENCHES)}"])
+    for name in told.row or ():
+        if name not in ROWS:
+            raise ScenarioError([f"{told.name}: no row '{name}'; {nearest(name, ROWS)}"])
+    rows = [name for name in ROWS if name in (told.row or ROWS)]
+    tours = Bench(rows, told.seeds, told.out, told.seconds)
+    try:
+        with CampaignBar(len(tours.left()), "tours") as bar:
+            tours.run(told.workers or cores(), lambda _: bar.cell())
+    except KeyboardInterrupt:
+        raise _interrupted(told.out) from None
+    tours.write()
+    found = tours.to_json()
+    typer.echo(json.dumps(found, allow_nan=False) if told.as_json else "\n".join(lines(found)))
+    raise typer.Exit(MISSED if tours.left() else 0)
+
+
+def paper(
+    out: Annotated[Path, typer.Option(help="Directory for the page and its runs.")] = Path("runs/paper"),
+    jobs: Jobs = None,
+    force: Annotated[bool, typer.Option("--force", "-f", help="Replace the page of an earlier time.")] = False,
+) -> None:
+    """Run the paper's experiments; write what holds as an HTML page.
+
+    Begun again, it goes on where it stopped.
+    """
+    with importing():
+        from surefoot.scenarios.run.processes import cores
+        from surefoot.studies.campaigns.sweep import InterruptedRunsError
+        from surefoot.studies.paper.page import judged, tally
+        from surefoot.studies.paper.page import paper as run_paper
+
+    try:
+        page, results = run_paper(out, jobs or cores(), force)
+    except InterruptedRunsError:
+        raise _interrupted(out) from None
+    for failure in results.failures:
+        typer.echo(f"could not run: {failure.experiment.folder}", err=True)
+    verdicts = ", ".join(f"{verdict}: {count}" for verdict, count in tally(judged(results)).items() if count)
+    typer.echo(f"{len(results.outcomes)} runs, {results.falls} falls, {len(results.failures)} could not run")
+    typer.echo(f"claims: {verdicts}")
+    typer.echo(str(page))
+    raise typer.Exit(MISSED if results.failures else 0)

@@ -1,0 +1,249 @@
+"""One tour: the harness around a controller, and what is written down of it."""
+
+import math
+from dataclasses import dataclass, replace
+
+import numpy as np
+from numpy.typing import NDArray
+
+from surefoot.joints import JointCommand, Servo
+from surefoot.planner.geometry import wrap_angle
+from surefoot.planner.types import PhaseKind
+from surefoot.scenarios.run.planning import RunFault
+from surefoot.studies.tour.robot import ARM_JOINTS, TourRobot, tour_robot
+from surefoot.studies.tour.rows import COMMAND_RATE, ROWS, Row, command_to
+from surefoot.studies.tour.rules import DURATION, LOWEST, SLOT, ArmWalk, Punch, drawn
+from surefoot.studies.tour.world import RATE, TourWorld
+
+Array = NDArray[np.float64]
+
+
+@dataclass(frozen=True, slots=True)
+class PunchTaken:
+    """What was so when a punch began, and what became of it.
+
+    Attributes:
+        time: of its beginning [s].
+        joint: name of the joint whose link it hit.
+        impulse: over the robot's mass [N·s/kg].
+        level: its level part alone [N·s/kg].
+        direction: in the frame of the pelvis' heading: forward, left, up, of length 1.
+        phase: double or single.
+        stance: left or right in single support, else none.
+        fraction: elapsed share of the phase [-].
+        survived: whether the robot had not fallen when the next one came, or the tour was over.
+    """
+
+    time: float
+    joint: str
+    impulse: float
+    level: float
+    direction: tuple[float, float, float]
+    phase: str
+    stance: str
+    fraction: float
+    survived: bool
+
+
+@dataclass(frozen=True, slots=True)
+class TourResult:
+    """What became of a tour.
+
+    Attributes:
+        row: whose it was.
+        seed: of the tour.
+        survival: until the fall, or of the whole tour [s].
+        completed: whether there was none.
+        position_errors: distance from each place when its time was over [m].
+        heading_errors: likewise of the heading [rad].
+        energy: magnitude of the joints' power over the slots that were brought to their end, each [J].
+        punches: in order; the one that came last before a fall was not survived.
+        fault: what ended the controller's work, in words; else empty.
+        unsolved: control ticks before the fall whose QP had no solution [-].
+        warned: how long before the fall the planner was sure of it; nan where it never was [s].
+    """
+
+    row: str
+    seed: int
+    survival: float
+    completed: bool
+    position_errors: tuple[float, ...]
+    heading_errors: tuple[float, ...]
+    energy: tuple[float, ...]
+    punches: tuple[PunchTaken, ...]
+    fault: str
+    unsolved: int
+    warned: float | None
+
+
+class Ride:
+    """A tour that goes on control tick by control tick.
+
+    Args:
+        row: that takes part.
+        seed: of the tour.
+
+    Attributes:
+        tour: what was drawn.
+        world: that is simulated.
+        controller: that walks.
+    """
+
+    def __init__(self, row: Row, seed: int) -> None:
+        self.row, robot = row, tour_robot()
+        self.controller = row.controller()
+        description = self.controller.walk.robot
+        self._names, self._mass = description.joint_names, float(description.mass)
+        self.world, self.tour = TourWorld(description, robot), drawn(seed, len(self._names))
+        self._arms = _Arms(robot, self.world, self._names, seed) if row.drives_arms else None
+        q = self.controller.posture.copy()
+        if self._arms is not None:
+            q[7:][self._arms.joints] = self._arms.start
+        self.world.reset(q)
+        self.controller.reset(q)
+        self._anchor = (*self.world.pelvis[:2].tolist(), self.world.heading)
+        self._punches: list[PunchTaken] = []
+        self._errors: list[tuple[float, float]] = []
+        self._energy: list[float] = []
+        self._fault, self._unsolved, self._warned = "", 0, math.nan
+        self._tick = 0
+
+    def run(self, duration: float = DURATION) -> TourResult:
+        """Go on until the robot falls, or so long [s]."""
+        ticks = round(duration * self.row.rate)
+        while self._tick < ticks and self.world.pelvis[2] >= LOWEST:
+            self.step()
+        time, fell = self._tick / self.row.rate, bool(self.world.pelvis[2] < LOWEST)
+        if not fell:
+            self._close_slots(time)
+        if fell and self._punches:
+            self._punches[-1] = replace(self._punches[-1], survived=False)
+        return TourResult(
+            row=self.row.name,
+            seed=self.tour.seed,
+            survival=time,
+            completed=not fell,
+            position_errors=tuple(position for position, _ in self._errors),
+            heading_errors=tuple(heading for _, heading in self._errors),
+            energy=tuple(self._energy),
+            punches=tuple(self._punches),
+            fault=self._fault,
+            unsolved=self._unsolved,
+            warned=time - self._warned if fell and math.isfinite(self._warned) else None,
+        )
+
+    def step(self) -> None:
+        """Go through one tick of the controller's clock."""
+        time, rate = self._tick / self.row.rate, self.row.rate
+        self._close_slots(time)
+        arms = None if self._arms is None else self._arms.command(time)
+        command = self._controlled(time, arms)
+        for k in range(RATE // rate):
+            punch = self.tour.punch(time + k / RATE)
+            if punch is not None and len(self._punches) <= self.tour.slot(time):
+                self._punches.append(self._described(punch))
+            self.world.advance(command, 1.0 / RATE, punch)
+        self._tick += 1
+
+    def _controlled(self, time: float, arms: JointCommand | None) -> JointCommand:
+        """What the joints are given; nothing but damping once the controller has given up."""
+        controller, joints = self.controller, len(self._names)
+        if self._fault:
+            return JointCommand(-self.world.data.qvel[6:].copy())
+        orders = None
+        if self._tick % (self.row.rate // COMMAND_RATE) == 0:
+            orders = command_to(*self._way(time))
+        try:
+            seen = self.world.contracted() if self.row.contract else self.world.measure()
+            command = controller.step(seen, orders, arms)
+        except RunFault as fault:
+            self._fault = str(fault)
+            return JointCommand(np.zeros(joints))
+        self._unsolved += int(controller.report.status) > 1
+        if not controller.planning.plan.status.falling:
+            self._warned = math.nan
+        elif math.isnan(self._warned):
+            self._warned = time
+        return command if arms is None or self._arms is None else command.with_joints(self._arms.joints, arms)
+
+    def _place(self, time: float) -> tuple[float, float, float]:
+        """Where to go at an instant, in the world [m, m, rad]."""
+        x, y, yaw = self.tour.places[self.tour.slot(time)].tolist()
+        x0, y0, yaw0 = self._anchor
+        cos, sin = math.cos(yaw0), math.sin(yaw0)
+        return x0 + cos * x - sin * y, y0 + sin * x + cos * y, yaw0 + yaw
+
+    def _way(self, time: float) -> tuple[tuple[float, float], float]:
+        """To that place, in the frame of the pelvis' heading [m], and to its heading [rad]."""
+        x, y, yaw = self._place(time)
+        dx, dy = (np.array([x, y]) - self.world.pelvis[:2]).tolist()
+        heading = self.world.heading
+        cos, sin = math.cos(heading), math.sin(heading)
+        return (cos * dx + sin * dy, cos * dy - sin * dx), float(wrap_angle(yaw - heading))
+
+    def _close_slots(self, time: float) -> None:
+        """Write down how far from its place the robot is when a slot is over."""
+        ended = int((time + 1e-6) / SLOT)
+        if ended > len(self._errors):
+            (x, y), turn = self._way((len(self._errors) + 0.5) * SLOT)
+            self._errors.append((math.hypot(x, y), abs(turn)))
+            self._energy.append(float(self.world.energy.sum()) - sum(self._energy))
+
+    def _described(self, punch: Punch) -> PunchTaken:
+        """What is so as a punch begins, which counts as survived until the robot falls."""
+        heading, phase = self.world.heading, self.controller.planning.plan.phase
+        cos, sin = math.cos(heading), math.sin(heading)
+        x, y, z = self.world.direction(punch).tolist()
+        impulse, single = punch.impulse / self._mass, phase.kind is PhaseKind.SINGLE
+        fraction = phase.elapsed / phase.duration if math.isfinite(phase.duration) else 0.0
+        return PunchTaken(
+            time=punch.time,
+            joint=self._names[punch.joint],
+            impulse=impulse,
+            level=impulse * math.hypot(x, y),
+            direction=(cos * x + sin * y, cos * y - sin * x, z),
+            phase="single" if single else "double",
+            stance=phase.stance.name.lower() if single and phase.stance is not None else "none",
+            fraction=min(max(fraction, 0.0), 1.0),
+            survived=True,
+        )
+
+
+class _Arms:
+    """Drives the arms as the harness does."""
+
+    def __init__(self, robot: TourRobot, world: TourWorld, names: tuple[str, ...], seed: int) -> None:
+        arm = np.array(["shoulder" in name or "elbow" in name or "wrist" in name for name in names])
+        left, right = (np.flatnonzero(arm & [name.startswith(side) for name in names]) for side in ("left", "right"))
+        assert len(left) == len(right) == ARM_JOINTS
+        self.joints, self._left, self._right = arm, left, right
+        self._mirror = np.array(robot.arm_mirror)
+        model = world.model
+        gains = np.array([robot.arm_gains(float(armature)) for armature in model.dof_armature[6:]])
+        self._stiffness, self._damping = np.where(arm, gains[:, 0], 0.0), np.where(arm, gains[:, 1], 0.0)
+        stance = np.array(robot.arm_stance)
+        self._target = np.zeros(len(names))
+        lower, upper = model.jnt_range[1:][left].T
+        self._walk = ArmWalk(seed, stance, lower, upper, world.hands_allowed(robot, left, right))
+        self.start = self._both(stance)[arm]
+
+    def _both(self, left: Array) -> Array:
+        self._target[self._left], self._target[self._right] = left, self._mirror * left
+        return self._target.copy()
+
+    def command(self, time: float) -> JointCommand:
+        """What they are given at an instant [s]."""
+        target = self._both(self._walk.angles(time))
+        still = np.zeros_like(target)
+        return JointCommand(still, Servo(target, still, self._stiffness, self._damping))
+
+
+def run_tour(row: str, seed: int, duration: float = DURATION) -> TourResult:
+    """A tour from its beginning.
+
+    Args:
+        row: name of the row.
+        seed: of the tour.
+        duration: after which it is over, shorter than a whole one in tests [s].
+    """
+    return Ride(ROWS[row], seed).run(duration)

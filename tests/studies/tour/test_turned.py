@@ -1,0 +1,74 @@
+"""A walk whose limp arm is punched turns, in place of jumping off its stance foot, and steps as far as it must."""
+
+from dataclasses import replace
+
+import numpy as np
+import pytest
+
+from surefoot.planner.swing import leg_reach
+from surefoot.studies.tour import ride, rows, rules
+from surefoot.wbc.tasks.parameters import TaskWeights
+
+pytestmark = pytest.mark.physics
+
+SEED = 1084
+"""Of a tour whose first punch hits the right upper arm as the left foot swings."""
+
+
+UPRIGHT = (("wbc.weights.upright_catching", 1.0), ("wbc.balance.beyond_catching", 0.0))
+"""Keys of a trunk that takes no part, so that what is looked at is all that catches the body."""
+
+
+def walk_with(monkeypatch, *keys):
+    """Let the robot of the row walk with these keys and a trunk that takes no part."""
+    arms = rows.ROWS["arms"]
+    monkeypatch.setitem(rows.ROWS, "arms", replace(arms, keys=(*arms.keys, *UPRIGHT, *keys)))
+    rows._scenario.cache_clear()
+
+
+def highest(monkeypatch, weight):
+    """Greatest height of the CoM over its plan until the foot that was swung has landed [m], and when that is [s]."""
+    monkeypatch.setattr(rules, "STRONGEST", 375.0)
+    monkeypatch.setattr(rules, "WEAKEST", 1.0)
+    walk_with(monkeypatch, ("wbc.weights.turning_catching", weight))
+    tour = ride.Ride(rows.ROWS["arms"], SEED)
+    controller, most = tour.controller, -np.inf
+    while True:
+        tour.step()
+        plan, time = controller.planning.plan, tour._tick / tour.row.rate
+        if plan.phase.landed > 0 or time > 1.0:
+            return most, time
+        most = max(most, float(controller.terms.com[2] - plan.com[0, 2]))
+
+
+@pytest.fixture(autouse=True)
+def forget():
+    """Let no other test walk a scenario of this one."""
+    yield
+    rows._scenario.cache_clear()
+
+
+def test_a_punch_on_a_limp_arm_does_not_lift_it_off_its_stance_foot(monkeypatch):
+    """Held to its heading as in the walk it jumps by centimetres, and its foot comes too late."""
+    (turning, soon), (stiff, late) = (highest(monkeypatch, weight) for weight in (TaskWeights().turning_catching, 1.0))
+    assert turning < 0.01 < 0.02 < stiff
+    assert soon < late - 0.04
+
+
+def fallen(monkeypatch, stride):
+    """Of four punches backward on a shoulder, of 410 to 440 N at most, those after which it falls within 3.5 s."""
+    monkeypatch.setattr(rules, "WEAKEST", 1.0)
+    monkeypatch.setattr(leg_reach, "STRIDE", stride)
+    # So it stands, when the second punch comes, where these forces tell both strides apart.
+    monkeypatch.setattr(rows, "FASTEST", (0.4, 0.2, 0.8))
+    walk_with(monkeypatch)
+    falls = 0
+    for force in (410.0, 420.0, 425.0, 440.0):
+        monkeypatch.setattr(rules, "STRONGEST", force)
+        falls += not ride.Ride(rows.ROWS["arms"], 8).run(8.6).completed
+    return falls
+
+
+def test_a_body_that_runs_backward_is_caught_by_steps_as_far_as_its_own_leg_reaches(monkeypatch):
+    """With steps no farther than both legs span flat, each lands short of the DCM by as much as the one before."""
+    assert fallen(monkeypatch, leg_reach.STRIDE) <= 1 < 2 <= fallen(monkeypatch, 2.0)

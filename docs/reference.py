@@ -39,6 +39,9 @@ from surefoot.scenarios.judge.metric import LITTLE, SHARE, Metric
 from surefoot.scenarios.judge.metrics import OWN
 from surefoot.scenarios.log.spec import ChannelSpec
 from surefoot.scenarios.log.writer import CHUNK_PERIOD_NS
+from surefoot.scenarios.policy.contract import Contract, Recurrent, Term
+from surefoot.scenarios.policy.terms import OWN as TERMS
+from surefoot.scenarios.policy.terms import meaning
 from surefoot.scenarios.record import channels
 from surefoot.scenarios.record.channels import Sizes
 from surefoot.sim.sensor_errors import PRESETS, SensorErrors
@@ -62,6 +65,8 @@ CHANNELS = (
         channels.point_truth,
         channels.estimate,
         channels.contact,
+        channels.felt_contact,
+        channels.gait,
     ),
     *(
         channels.planner_state,
@@ -89,6 +94,8 @@ _LISTS: dict[str, type[BaseModel]] = {
     "gait.waypoints": PlaceSettings,
     "commands": CommandSettings,
     "errors.ground": GroundError,
+    "observations": Term,
+    "recurrent": Recurrent,
 }
 
 
@@ -206,6 +213,16 @@ def benchmark_tables() -> str:
     return markdown(json.loads((FOLDER / "benchmark-g1.json").read_text(encoding="utf-8")))
 
 
+def policy_keys_table() -> str:
+    """Every key of a policy's contract with its default and meaning."""
+    return table(("key", "default", "meaning"), _key_rows("", Contract))
+
+
+def policy_terms_table() -> str:
+    """Every observation term with its meaning."""
+    return table(("term", "what it tells, how many numbers [unit]"), ([f"`{name}`", meaning(name)] for name in TERMS))
+
+
 CATALOGUE = (
     ("meets every criterion", "met"),
     ("goes to the end, misses a criterion", "missed"),
@@ -243,6 +260,8 @@ TABLES: dict[str, tuple[str, Callable[[], str]]] = {
     "urdf-elements": ("robot-files.md", elements.urdf_table),
     "sensors": ("sensors.md", sensors_table),
     "sensed": ("sensors.md", sensed_table),
+    "policy-keys": ("policies.md", policy_keys_table),
+    "policy-terms": ("policies.md", policy_terms_table),
     "standing": ("standing.md", standing.table),
     "field": ("standing.md", field_table),
     "engines": ("other-simulator.md", engines_table),

@@ -355,6 +355,7 @@ TABLES: dict[str, tuple[str, Callable[[], str]]] = {
         for name, page in (
             ("foreign", "sensors.md"),
             ("poor-line", "serve.md"),
+            ("policy-faults", "policies.md"),
             ("sabotage", "checking.md"),
             ("criteria", "scenarios.md"),
             ("public-humanoids", "robots.md"),

@@ -13,6 +13,8 @@ from surefoot.scenarios.show.options import (
     MISSED,
     AsJson,
     Jobs,
+    SeatOf,
+    overrides,
     settings,
     with_options,
 )
@@ -36,6 +38,7 @@ def sweep(
         str,
         typer.Argument(help="A campaign's name, or its specification, a YAML file.", autocompletion=_campaigns_from),
     ],
+    policy: SeatOf = None,
     set_: Annotated[list[str] | None, settings("Fix a key, even one that varies")] = None,
     seeds: Annotated[int | None, typer.Option(min=1, help="Runs of each, over those of the campaign.")] = None,
     jobs: Jobs = None,
@@ -65,7 +68,7 @@ def sweep(
 
     if jobs is not None and cluster is not None:
         raise typer.BadParameter("--jobs is of this machine; give it without --cluster")
-    campaign = read_campaign(spec, set_ or (), seeds)
+    campaign = read_campaign(spec, overrides(set_, policy=policy), seeds)
     before = None if against is None else holding.table(campaign, against)
     folder = out or Path("runs") / campaign.spec.name
     for text in overlooked(campaign):

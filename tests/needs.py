@@ -142,6 +142,11 @@ SITE = Need(
 AXE = Need("axe-core", "a package of npm, which looks at the site of the documentation", _lacks_axe)
 MJLAB = Need("the package mjlab", "a package of others, which has one MJCF", _lacks_mjlab)
 RERUN = Need("the package rerun", "a viewer of others, whose format changes with each version", _lacks_rerun)
+POLICY = Need(
+    "onnxruntime",
+    "it is the extra policy, which runs networks",
+    lambda: _lacks_modules("pip install 'surefoot[policy]' onnx", "onnxruntime", "onnx"),
+)
 LINUX = Need("Linux", "other systems do not tell it", _lacks_linux)
 
-NEEDS = (BROWSER, OPENGL, COMPILER, COMPILED, SITE, AXE, MJLAB, RERUN, LINUX)
+NEEDS = (BROWSER, OPENGL, COMPILER, COMPILED, SITE, AXE, MJLAB, RERUN, POLICY, LINUX)

@@ -15,6 +15,7 @@ from surefoot.scenarios.show.options import (
     INTERRUPTED,
     MISSED,
     AsJson,
+    SeatOf,
     Seed,
     Settings,
     overrides,
@@ -115,6 +116,7 @@ class WalkOptions:
     shadow: Annotated[Path | None, typer.Option(metavar="LOG", help="Hear what this log holds, and move nothing.")] = (
         None
     )
+    policy: SeatOf = None
     set_: Settings = None
     seed: Seed = None
     out: Annotated[Path, typer.Option(help="Directory that gets the run's own folder.")] = Path("runs")
@@ -134,7 +136,7 @@ def walk(told: WalkOptions) -> None:
         from surefoot.scenarios.setup.load import locate
         from surefoot.scenarios.show.console import print_result
 
-    asked = overrides(told.set_, told.seed)
+    asked = overrides(told.set_, told.seed, told.policy)
     reference = told.scenario or (None if told.shadow is None else str(told.shadow))
     try:
         name, result = walked(told, asked)

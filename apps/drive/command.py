@@ -9,7 +9,7 @@ from typing import TYPE_CHECKING, Annotated
 import typer
 
 from surefoot.scenarios.errors import LogError
-from surefoot.scenarios.show.options import INTERRUPTED, Seed, Settings, overrides, scenarios_from
+from surefoot.scenarios.show.options import INTERRUPTED, SeatOf, Seed, Settings, overrides, scenarios_from
 
 if TYPE_CHECKING:
     from surefoot.scenarios.file.schema import Scenario
@@ -27,6 +27,7 @@ def drive(
         str | None,
         typer.Argument(help="Catalogue name, scenario file or log; stands by default.", autocompletion=scenarios_from),
     ] = None,
+    policy: SeatOf = None,
     set_: Settings = None,
     seed: Seed = None,
     out: Annotated[Path, typer.Option(help="Directory that gets a folder for each run.")] = Path("runs"),
@@ -40,7 +41,7 @@ def drive(
 
     require("viser", "replay", "surefoot drive")
     reference = scenario or str(OWN)
-    asked = [LONGEST, *overrides(set_, seed)]
+    asked = [LONGEST, *overrides(set_, seed, policy)]
     loaded = load(reference, asked)
     try:
         drive_scenario(loaded, out, port, typer.echo)

@@ -11,9 +11,8 @@ from scipy.spatial.transform import Rotation
 from surefoot.apps.drive.session import PUSH_TIME, PushInput
 from surefoot.engine import mujoco
 from surefoot.models.pinocchio import pinocchio_model
-from surefoot.planner.geometry import points_seen_from
-from surefoot.planner.plan import WalkPlan
-from surefoot.planner.types import Foot, Footstep
+from surefoot.planner.geometry import headings, points_seen_from
+from surefoot.planner.types import Foot, Footstep, PhaseKind
 from surefoot.scenarios import palette
 from surefoot.scenarios.run.simulation import Tick
 from surefoot.scenarios.setup.stance import frames_of
@@ -34,6 +33,7 @@ FOOTPRINTS = 12
 
 _NOWHERE = np.full((4, 3), np.nan)
 _NO_STEP = (math.nan,) * 4
+_NO_POINT, _NO_POLYGON = np.full(3, np.nan), np.full((8, 2), np.nan)
 
 
 @dataclass(frozen=True, slots=True)
@@ -77,6 +77,8 @@ class Pictures:
         self._taken: tuple[deque[Array], deque[Array]] = (deque(maxlen=FOOTPRINTS), deque(maxlen=FOOTPRINTS))
         self._stood: list[Footstep | None] = [None, None]
         self._alone: Foot | None = None
+        self._placed = [Footstep(foot, np.zeros(3), 0.0) for foot in Foot]
+        self._on_ground = (False, False)
 
     def pushed(self, push: PushInput, time: float) -> None:
         """Show a push that begins at a simulated time [s]."""
@@ -90,7 +92,7 @@ class Pictures:
         self._terms.update(measurement.q, measurement.v)
         position = np.vstack([np.zeros(3), self._poses.position])
         self._follow(position[1], tick.time)
-        self._note_footprints(tick.plan)
+        self._note_footprints(self._footholds(tick))
         return Picture(
             title=self.walk.name,
             frame_rate=1.0,
@@ -111,14 +113,19 @@ class Pictures:
 
         After `picture` of the same tick.
         """
-        plan, now, measurement = tick.plan, tick.reference, tick.measurement
+        measurement = tick.measurement
         assert measurement is not None
-        points = np.array([tick.zmp, tick.com[:2], _dcm(tick), now.zmp, now.com[:2], now.dcm])
-        if plan.phase.stance is not None:
-            self._alone = plan.phase.stance
-        feet = plan.footholds if self._alone is None else (plan.footholds[self._alone],)
+        points, margins = np.full((6, 2), np.nan), [math.nan, math.nan]
+        points[:2] = tick.zmp, tick.com[:2]
+        if tick.planned is not None:
+            plan, now = tick.planned
+            points[2:] = _dcm(tick), now.zmp, now.com[:2], now.dcm
+            margins = [plan.balance.planned, plan.balance.movable]
+        if tick.phase.stance is not None:
+            self._alone = tick.phase.stance
+        stands = self._footholds(tick)
+        feet = stands if self._alone is None else (stands[self._alone],)
         ahead, left = points_seen_from(np.mean([_pose(foot) for foot in feet], axis=0), points).T
-        margins = [plan.balance.planned, plan.balance.movable]
         return ahead.tolist(), left.tolist(), margins, measurement.wrench[:, 2].tolist()
 
     @property
@@ -128,11 +135,12 @@ class Pictures:
 
     def _tracks(self, tick: Tick) -> Iterator[Track]:
         """Marks as in a replay, and the footprints, which come and go here."""
-        measurement, plan, now, terms = tick.measurement, tick.plan, tick.reference, self._terms
+        measurement, terms = tick.measurement, self._terms
         assert measurement is not None
+        planned = tick.planned
         zmp = measured_zmp(measurement.wrench, terms.sole_position, terms.sole_rotation)
         cop = [centre_of_pressure(wrench) for wrench in measurement.wrench]
-        steps = plan.footsteps
+        steps = () if planned is None else planned[0].footsteps
         free = 3 - len(steps)
         push, pushed = self._push_at(tick.time)
         yield from tracks(
@@ -140,11 +148,11 @@ class Pictures:
                 com=tick.com[None],
                 dcm=_dcm(tick)[None],
                 zmp=np.array([zmp]),
-                planned_com=now.com[None],
-                planned_dcm=now.dcm[None],
-                planned_zmp=now.zmp[None],
-                polygon=_eight(plan.support_polygon)[None],
-                contacts=np.array([now.contacts]),
+                planned_com=_NO_POINT[None] if planned is None else planned[1].com[None],
+                planned_dcm=_NO_POINT[None, :2] if planned is None else planned[1].dcm[None],
+                planned_zmp=_NO_POINT[None, :2] if planned is None else planned[1].zmp[None],
+                polygon=_NO_POLYGON[None] if planned is None else _eight(planned[0].support_polygon)[None],
+                contacts=np.array([_contacts(tick)]),
                 soles=terms.sole_pose[None],
                 cop=np.array([cop]),
                 force=measurement.wrench[None, :, :3],
@@ -175,9 +183,21 @@ class Pictures:
         share = 1.0 - math.exp(-(time - self._time) / FOLLOW_TIME)
         self._look_at, self._time = self._look_at + share * (base - self._look_at), time
 
-    def _note_footprints(self, plan: WalkPlan) -> None:
+    def _footholds(self, tick: Tick) -> tuple[Footstep, ...]:
+        """Where the feet stand by the plan, or, without one, where they stand that have come to the ground."""
+        if tick.planned is not None:
+            return tuple(tick.planned[0].footholds)
+        contacts = _contacts(tick)
+        for foot in Foot:
+            if contacts[foot] and (not self._on_ground[foot] or self._stood[foot] is None):
+                x, y, z, *turned = self._terms.sole_pose[foot].tolist()
+                self._placed[foot] = Footstep(foot, np.array([x, y, z]), float(headings(np.array(turned))))
+        self._on_ground = contacts
+        return tuple(self._placed)
+
+    def _note_footprints(self, footholds: Sequence[Footstep]) -> None:
         """Note where a foot stands that stood elsewhere before."""
-        for foot, stands in enumerate(plan.footholds):
+        for foot, stands in enumerate(footholds):
             before = self._stood[foot]
             if before is None or not np.allclose(_pose(stands), _pose(before), atol=1e-3):
                 self._taken[foot].append(sole_corners(np.array([_pose(stands)]), self.sole)[0])
@@ -185,7 +205,20 @@ class Pictures:
 
 
 def _dcm(tick: Tick) -> Array:
-    return np.asarray(tick.com[:2] + tick.com_velocity[:2] / tick.reference.omega)
+    """The DCM, which is nowhere to be seen without the plan's pendulum, shape (2,) [m]."""
+    if tick.planned is None:
+        return np.full(2, np.nan)
+    return np.asarray(tick.com[:2] + tick.com_velocity[:2] / tick.planned[1].omega)
+
+
+def _contacts(tick: Tick) -> tuple[bool, bool]:
+    """Feet on the ground, as planned, or as felt without a plan, (left, right)."""
+    if tick.planned is not None:
+        return tick.planned[1].contacts
+    phase = tick.phase
+    if phase.kind is not PhaseKind.SINGLE:
+        return True, True
+    return phase.stance is Foot.LEFT, phase.stance is Foot.RIGHT
 
 
 def _pose(step: Footstep) -> tuple[float, ...]:

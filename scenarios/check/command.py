@@ -7,7 +7,7 @@ from typing import Annotated
 import typer
 
 from surefoot.lazy import importing
-from surefoot.scenarios.show.options import INTERRUPTED, Jobs, Replace, Settings, with_options
+from surefoot.scenarios.show.options import INTERRUPTED, Jobs, Replace, SeatOf, Settings, overrides, with_options
 
 app = typer.Typer()
 
@@ -23,6 +23,7 @@ class CheckOptions:
     baselines: Annotated[
         Path | None, typer.Option(help="Directory of the baselines; beside the scenario files by default.")
     ] = None
+    policy: SeatOf = None
     set_: Settings = None
     jobs: Jobs = None
     out: Annotated[Path, typer.Option(help="Directory of the logs.")] = Path("runs/check")
@@ -44,7 +45,7 @@ def check(told: CheckOptions) -> None:
     for report_file in (told.junit, told.markdown):
         if report_file is not None:
             refuse_existing(report_file, told.force)
-    chosen = checking.cases(told.scenarios or (), told.baselines, told.set_ or ())
+    chosen = checking.cases(told.scenarios or (), told.baselines, overrides(told.set_, policy=told.policy))
     try:
         found = checking.check(chosen, told.out, told.jobs or cores(), report.print_checked, told.update)
     except KeyboardInterrupt:

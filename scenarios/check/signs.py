@@ -15,7 +15,7 @@ from surefoot.planner.geometry import frame_rotation, headings
 from surefoot.planner.types import GRAVITY
 from surefoot.scenarios.columns import Reads
 from surefoot.scenarios.judge.body import leg
-from surefoot.scenarios.judge.digest import CONTROL_TOPICS, Array, RunView, Window
+from surefoot.scenarios.judge.digest import CONTROL_TOPICS, GAIT, Array, RunView, Window
 from surefoot.scenarios.judge.feet import stance_slips
 from surefoot.scenarios.judge.walking import runs_of
 from surefoot.scenarios.log import Log
@@ -59,7 +59,7 @@ def stages(run: RunView) -> list[Stage]:
     """The stages of a run in order, none of them empty."""
     if not run.ticks:
         return []
-    stance = run.field("/reference", "stance")
+    stance = run.field(GAIT, "stance")
     swings = sorted((*swing, foot) for foot in (0, 1) for swing in runs_of(run.single_support & (stance == 1 - foot)))
     ends = [*(begin for begin, _, _ in swings), run.ticks]
     steps = [
@@ -87,6 +87,7 @@ class Sign:
         measure: it.
         body: whether it is of joints and real feet, which a pendulum has not got.
         peak: whether it parts only above the greatest value of all stages.
+        planned: whether it is held against a plan.
     """
 
     columns: tuple[str, ...]
@@ -98,6 +99,7 @@ class Sign:
     measure: Measure
     body: bool = False
     peak: bool = False
+    planned: bool = False
 
     @property
     def scale(self) -> float:
@@ -219,7 +221,7 @@ def _leg(side: str) -> Sign:
 def _grip(side: str) -> Sign:
     used = _each(partial(_friction, side=side))
     words = f"largest force along the ground over normal force that the controller plans for the {side} foot {{stage}}"
-    return Sign((f"friction_{side}",), 3, (0.1, 0.0), "", "grip", words, used, body=True, peak=True)
+    return Sign((f"friction_{side}",), 3, (0.1, 0.0), "", "grip", words, used, body=True, peak=True, planned=True)
 
 
 def _pressed(side: str) -> Sign:
@@ -236,15 +238,15 @@ def _slid(foot: int) -> Sign:
 
 SIGNS: tuple[Sign, ...] = (
     Sign(("time",), 3, (0.011, 0.0), "s", "feet", "begin of {label}", _times),
-    Sign(("lag",), 4, (1e-3, 0.0), "ms", "feet", _LAG, _lag, body=True),
+    Sign(("lag",), 4, (1e-3, 0.0), "ms", "feet", _LAG, _lag, body=True, planned=True),
     *map(_grip, FOOT_NAMES),
     Sign(("sole_x", "sole_y", "sole_z"), 4, (1e-3, 0.0), "mm", "soles", _SOLE, _landings),
     Sign(("sole_yaw",), 4, (5e-3, 0.0), "deg", "top-view", _YAW, _landing_yaw),
-    Sign(("swing",), 5, (5e-5, 0.05), "mm", "feet", _SWING, _swing_error),
+    Sign(("swing",), 5, (5e-5, 0.05), "mm", "feet", _SWING, _swing_error, planned=True),
     *map(_slid, (0, 1)),
     *map(_leg, FOOT_NAMES),
-    Sign(("zmp",), 4, (5e-3, 0.05), "mm", "balance", _ZMP, _each(_zmp_error)),
-    Sign(("sway",), 5, (2e-4, 0.05), "mm", "balance", _BALANCE, _each(_sway)),
+    Sign(("zmp",), 4, (5e-3, 0.05), "mm", "balance", _ZMP, _each(_zmp_error), planned=True),
+    Sign(("sway",), 5, (2e-4, 0.05), "mm", "balance", _BALANCE, _each(_sway), planned=True),
     Sign(("tilt",), 4, (2e-3, 0.05), "deg", "balance", "largest tilt of the torso {stage}", _each(_TILT), body=True),
     *map(_pressed, FOOT_NAMES),
     Sign(("com_x", "com_y", "com_z"), 4, (2e-3, 0.0), "mm", "balance", "CoM at the end of {label}", _com),
@@ -285,6 +287,7 @@ class Parting:
 _WRENCHES = tuple(f"wrench_{side}" for side in FOOT_NAMES)
 _READS: Reads = {
     **dict.fromkeys(CONTROL_TOPICS, ()),
+    GAIT: ("phase", "stance"),
     "/truth": ("com", "torso_tilt", "left_sole", "right_sole"),
     "/reference": ("com", "phase", "stance", "swing_position", "zmp_reference"),
     "/measurement": _WRENCHES,
@@ -293,6 +296,11 @@ _READS: Reads = {
     "/torque": ("command",),
 }
 """Fields of which the signs are made, read in one pass."""
+
+
+def _told(sign: Sign, walker: str) -> bool:
+    """Whether runs of a kind of walker tell a sign."""
+    return not (sign.body and walker == "pendulum") and not (sign.planned and walker == "seat")
 
 
 @dataclass(frozen=True, slots=True)
@@ -316,7 +324,7 @@ class Trace:
         parts = stages(run)
         values: dict[str, Array] = {}
         for sign in SIGNS if parts else ():
-            if not (sign.body and run.constants.fidelity == "pendulum"):
+            if _told(sign, run.constants.walker):
                 values |= dict(zip(sign.columns, sign.measure(run, parts).T, strict=True))
         return cls(tuple(one.label for one in parts), tuple((*FOOT_NAMES, "both")[one.foot] for one in parts), values)
 

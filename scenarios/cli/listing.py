@@ -10,7 +10,7 @@ from surefoot.plugins import OWN_PACKAGE, Declared, Registry
 from surefoot.scenarios import catalogue
 from surefoot.scenarios.cli import texts
 from surefoot.scenarios.cli.files import brought, first_line
-from surefoot.scenarios.file.registries import PLANT_NAMES, SOURCES, TERRAIN_KINDS
+from surefoot.scenarios.file.registries import CONTROLLERS, PLANT_NAMES, SOURCES, TERRAIN_KINDS
 from surefoot.scenarios.judge.names import METRICS
 from surefoot.wbc.tasks.registry import TASKS
 
@@ -19,6 +19,7 @@ _REGISTRIES: Mapping[str, Registry[Any]] = {
     "profile": PROFILES,
     "terrain": TERRAIN_KINDS,
     "estimator": SOURCES,
+    "controller": CONTROLLERS,
     "plant": PLANT_NAMES,
     "task": TASKS,
     "metric": METRICS,
@@ -31,7 +32,8 @@ class Entry:
     """Something that can be run, or that a scenario can name.
 
     Attributes:
-        kind: scenario, control, robot, profile, terrain, estimator, plant, task, metric, or one of files as campaign.
+        kind: scenario, control, robot, profile, terrain, estimator, controller, plant, task, metric, or one of files as
+            campaign.
         name: its name.
         package: what brings it.
         doc: what it is, in one line; empty where nothing says so.
@@ -83,7 +85,7 @@ def lines() -> Iterator[str]:
     for entry in shown:
         origin = "" if entry.own else f"[{entry.package}]"
         words = " ".join(word for word in (entry.doc, origin) if word)
-        yield f"{entry.kind:<10}{entry.name:<{width}} {words}".rstrip()
+        yield f"{entry.kind:<11}{entry.name:<{width}} {words}".rstrip()
 
 
 def to_json() -> dict[str, list[dict[str, str]]]:

@@ -27,6 +27,7 @@ from surefoot.scenarios.show.options import (
     INTERRUPTED,
     MISSED,
     AsJson,
+    SeatOf,
     Seed,
     Settings,
     overrides,
@@ -107,6 +108,7 @@ class RunOptions:
     scenario: Annotated[
         str, typer.Argument(help="Catalogue name, scenario file, or a log to run again.", autocompletion=scenarios_from)
     ]
+    policy: SeatOf = None
     set_: Settings = None
     seed: Seed = None
     out: Annotated[Path, typer.Option(help="Directory that gets the run's own folder.")] = Path("runs")
@@ -127,7 +129,7 @@ def run(told: RunOptions) -> None:
         from surefoot.scenarios.show.console import ProgressLine, print_result
         from surefoot.scenarios.show.replay.beside import LiveView, check
 
-    asked = overrides(told.set_, told.seed)
+    asked = overrides(told.set_, told.seed, told.policy)
     loaded = load(told.scenario, asked)
     if told.video or told.view:
         check(loaded.fidelity, video=told.video, view=told.view, replace=told.force)

@@ -21,6 +21,20 @@ class PlantSettings(Group):
     options: dict[str, Any] | None = key(None, "given to it by name, null: none")
 
 
+class SeatSettings(Group):
+    """What has the seat of planner and whole-body controller: a policy, or a controller that a package brings."""
+
+    policy: str | None = key(
+        None, "file of a policy's contract, or its folder, or what its trainer has exported, null: none"
+    )
+    name: Annotated[str, OneOf("controller", "name")] | None = key(None, "a controller by name, null: policy")
+    options: dict[str, Any] | None = key(None, "given to it by name, null: none")
+    digest: str | None = key(None, "of the policy's files, which must be those of a log to run again, null: any")
+    left_out: Annotated[tuple[str, ...], BeforeValidator(as_tuple)] = key(
+        (), "criteria of the scenario that need a planner, and so are not asked"
+    )
+
+
 class ControlSettings(Group):
     """What the joints are given; `surefoot.Controller` takes the same keys."""
 

@@ -34,7 +34,21 @@ PLANT_NAMES: Declared[Any] = Declared(
 )
 """Of ``plant.name``; what moves the robot, `surefoot.scenarios.run.plant` brings."""
 
-DEFAULTS = {"terrain": "flat", "planner": "default", "sensing": "truth", "plant": "mujoco", "robot": "humanoid100"}
+CONTROLLERS: Declared[Any] = Declared(
+    "surefoot.controllers",
+    {"policy": "A network that a contract tells what it observes and what its outputs mean"},
+    "surefoot.scenarios.policy.controller",
+)
+"""Of ``controller.name``; what takes the seat of planner and whole-body controller."""
+
+DEFAULTS = {
+    "terrain": "flat",
+    "planner": "default",
+    "sensing": "truth",
+    "plant": "mujoco",
+    "robot": "humanoid100",
+    "controller": "policy",
+}
 """Names that are always there, by the group of the key."""
 
 REGISTRIES: dict[Key, Registry[Any]] = {
@@ -44,5 +58,6 @@ REGISTRIES: dict[Key, Registry[Any]] = {
     ("sensing", "source"): SOURCES,
     ("wbc", "tasks"): TASKS,
     ("plant", "name"): PLANT_NAMES,
+    ("controller", "name"): CONTROLLERS,
 }
 """By the key that names a part, or several."""

@@ -10,7 +10,7 @@ from typing import Annotated, Any, Literal
 from pydantic import BaseModel, BeforeValidator, Field, SerializeAsAny
 
 from surefoot.plugins import PluginError
-from surefoot.scenarios.file.control import ControlSettings, PlantSettings
+from surefoot.scenarios.file.control import ControlSettings, PlantSettings, SeatSettings
 from surefoot.scenarios.file.criteria import Bound, standing_walk
 from surefoot.scenarios.file.group import WHOLE, ControllerSettings, Group, Many, RecoverySettings, as_tuple, key
 from surefoot.scenarios.file.names import OneOf
@@ -344,6 +344,9 @@ class Scenario(Group):
     plant: PlantSettings | None = key(None, "what moves the robot, null: the simulated world")
     control: ControlSettings | None = key(None, "what the joints are given, null: torques, each control tick")
     wbc: ControllerSettings | None = key(None, "the whole-body controller, null: as it is")
+    controller: SeatSettings | None = key(
+        None, "what has the seat of planner and whole-body controller, null: they have it"
+    )
     log: LogSettings | None = key(None, "how much of the run its log holds, null: all of it")
     pendulum: PendulumSettings = key(PendulumSettings.model_construct(), "the plant of fidelity pendulum")
     pushes: Many[PushSettings] = key((), "disturbances")
@@ -351,3 +354,13 @@ class Scenario(Group):
     faults: Many[Fault] = key((), "injected faults")
     rates: Rates = key(Rates.model_construct(), "the clock")
     criteria: dict[str, Bound] = Field(default_factory=standing_walk, description="bounds on metrics")
+
+    @property
+    def walker(self) -> str:
+        """Kind of what walks: full, pendulum, or seat, of a robot whose controller is none of Surefoot's own."""
+        return self.fidelity if self.controller is None else "seat"
+
+    @property
+    def left_out(self) -> tuple[str, ...]:
+        """Criteria that are not asked of what has the seat."""
+        return () if self.controller is None else self.controller.left_out

@@ -78,6 +78,8 @@ def idle_commands(run: RunView, commands: Sequence[CommandSettings]) -> Iterator
     Where to walk, and how long supports last, acts on a robot that steps before another command supersedes it; a swing
     height on the next step that is not yet begun. One that asks to stand, or for what holds anyway, asks for no change.
     """
+    if run.constants.walker == "seat":
+        yield from _unheard(run, commands)
     if not commands or not run.has("/plan", "/reference", "/truth"):
         return
     gait = _Gait.of(run)
@@ -86,6 +88,15 @@ def idle_commands(run: RunView, commands: Sequence[CommandSettings]) -> Iterator
         command, later = commands[index], [commands[other] for other in order[place + 1 :]]
         if not command.live and (run.kept is None or command.time > run.kept.begin):
             yield from _idle(f"commands.{index}", command, [other for other in later if not other.live], gait)
+
+
+def _unheard(run: RunView, commands: Sequence[CommandSettings]) -> Iterator[str]:
+    """Say which promised commands a controller without a planner has not heard in what the log has."""
+    heard, near = run.log["/command"].time if run.has("/command") else np.zeros(0), 1.5 / run.constants.control_rate
+    for index, command in enumerate(commands):
+        seen = run.kept is None or command.time > run.kept.begin
+        if not command.live and seen and not (np.abs(heard - command.time) < near).any():
+            yield f"commands.{index} came at {command.time:g} s and never acted: the controller did not hear it"
 
 
 def _idle(name: str, command: CommandSettings, later: Sequence[CommandSettings], gait: _Gait) -> Iterator[str]:

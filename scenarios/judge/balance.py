@@ -4,7 +4,7 @@ import numpy as np
 
 from surefoot.scenarios.columns import Reads
 from surefoot.scenarios.judge.body import feet_lean
-from surefoot.scenarios.judge.digest import SENSED, Array, Mask, Rows, RunView
+from surefoot.scenarios.judge.digest import GAIT, SENSED, Array, Mask, Rows, RunView
 from surefoot.scenarios.judge.metric import MM, OF_HALF_THE_FOOT, OF_THE_TIME, SHARE, metric, reduction
 from surefoot.scenarios.judge.placed import to_truth
 
@@ -14,7 +14,7 @@ MARGIN = 0.9
 PREDICTION = 0.2
 """Age of the plan that the true state is compared with [s]."""
 
-_COP_READS: Reads = {"/contact": ("cop_left", "cop_right"), "/reference": ("phase", "stance")}
+_COP_READS: Reads = {"/contact": ("cop_left", "cop_right"), GAIT: ("phase", "stance")}
 _ZMP_READS: Reads = {"/contact": ("zmp",), "/reference": ("zmp_reference",)}
 
 
@@ -61,7 +61,7 @@ def cop_ratios(run: RunView) -> Array:
     Of a foot that leans, the axis ahead: sideways it stands on an edge.
     """
     size = np.array([run.constants.foot_length, run.constants.foot_width]) / 2
-    stance = run.field("/reference", "stance")
+    stance = run.field(GAIT, "stance")
     cops = np.where((stance == 0)[:, None], run.field("/contact", "cop_left"), run.field("/contact", "cop_right"))
     axes = slice(0, 1 if feet_lean(run.constants.roles) else 2)
     ratios = np.max(np.abs(cops[run.single_support & (stance >= 0), axes]) / size[axes], axis=1)

@@ -49,7 +49,15 @@ def dcm_estimation_error_rms(run: RunView) -> list[float] | None:
     return rms(position + velocity / omega)
 
 
-@metric(unit="s", shown=(1e3, "ms"), parts=tuple(_SPREAD), reads={"/timing": ("planner",)}, repeatable=False, least=0.0)
+@metric(
+    unit="s",
+    shown=(1e3, "ms"),
+    parts=tuple(_SPREAD),
+    needs=("/timing", "/plan"),
+    reads={"/timing": ("planner",)},
+    repeatable=False,
+    least=0.0,
+)
 def planner_time(run: RunView) -> dict[str, float] | None:
     """Wall-clock time of a plan: median and 99th percentile [s]."""
     spent = run.field("/timing", "planner")
@@ -60,6 +68,7 @@ def planner_time(run: RunView) -> dict[str, float] | None:
     unit="s",
     shown=(1e3, "ms"),
     parts=tuple(_SPREAD),
+    needs=("/timing", "/wbc"),
     reads={"/timing": ("wbc_build", "wbc_solve")},
     body=True,
     repeatable=False,

@@ -26,19 +26,29 @@ CONTROL_TOPICS = ("/measurement", "/truth", "/estimate", "/contact", "/reference
 SENSED = "/estimation"
 """Likewise of runs whose estimator senses."""
 
+GAIT = "/gait"
+"""Likewise of runs of a seat: the gait as feet feel it. Of other runs the fields ``phase`` and ``stance`` of
+``/reference``, the gait as planned, are found under this name."""
+
+PLANNED = ("/reference", "/plan", "/planner_state", "/footsteps", "/wbc", "/estimate")
+"""Topics of planner and whole-body controller, which a run has not with another controller in their seat."""
+
 HELD: Reads = {
     **dict.fromkeys((*CONTROL_TOPICS, SENSED, "/planner_state", "/plan", "/footstep"), ()),
     "/truth": ("left_sole", "right_sole"),
-    "/reference": ("phase",),
+    GAIT: ("phase",),
 }
 """Topics whose times every digest holds, and the fields that `RunView` itself reads."""
 
 
-def always(fidelity: str) -> tuple[str, ...]:
-    """Topics that every run of a fidelity writes."""
-    body = ("/measurement", "/estimate", "/wbc", "/torque")
-    topics = (*CONTROL_TOPICS, "/planner_state", "/plan", "/footstep")
-    return topics if fidelity == "full" else tuple(topic for topic in topics if topic not in body)
+_LACKING = {"full": (GAIT,), "pendulum": ("/measurement", "/estimate", "/wbc", "/torque", GAIT), "seat": PLANNED}
+"""Topics that runs of a kind of walker never have."""
+
+
+def always(walker: str) -> tuple[str, ...]:
+    """Topics that every run of a kind of walker writes; see `RunConstants.walker`."""
+    topics = (*CONTROL_TOPICS, GAIT, "/planner_state", "/plan", "/footstep")
+    return tuple(topic for topic in topics if topic not in _LACKING[walker])
 
 
 Channel: TypeAlias = "ChannelData | KeptChannel"
@@ -101,7 +111,7 @@ class Digest(Window):
 
     def __init__(self, log: "Log", constants: RunConstants, reads: Iterable[Reads], reduce: Reduce) -> None:
         """Go through the log once, reducing every part and holding narrow fields; its damage is then known."""
-        held, self.constants = _united((HELD, *reads)), constants
+        held, self.constants = _found_under_gait(_united((HELD, *reads)), log), constants
         topics = [topic for topic in held if topic in log.numeric]
         kept, self.reduced = Columns(), Columns()
         for number, channels in enumerate(_in_step(log.windows(topics))):
@@ -122,7 +132,7 @@ def _in_step(windows: Iterable[dict[str, "ChannelData"]]) -> Iterator[dict[str, 
     rest: dict[str, ChannelData] = {}
     for channels in windows:
         joined = {topic: rest[topic].joined(channel) if rest else channel for topic, channel in channels.items()}
-        control = (topic for topic in (*CONTROL_TOPICS, SENSED) if topic in joined)
+        control = (topic for topic in (*CONTROL_TOPICS, SENSED, GAIT) if topic in joined)
         clocks = [joined[topic].time_ns for topic in control if len(joined[topic])]
         ends = [int(times[-1]) for times in clocks]
         # No sound channel lags by more than a tick; one that does must not hold up all others.
@@ -130,6 +140,14 @@ def _in_step(windows: Iterable[dict[str, "ChannelData"]]) -> Iterator[dict[str, 
         rest = {topic: channel.between(last + 1, np.iinfo(np.int64).max - 1) for topic, channel in joined.items()}
         yield {topic: channel.between(np.iinfo(np.int64).min, last) for topic, channel in joined.items()}
     yield rest
+
+
+def _found_under_gait(held: dict[str, list[str]], log: "Log") -> dict[str, list[str]]:
+    """The same fields by topic, those of the gait where this log has them."""
+    if GAIT in log.numeric:
+        return held
+    clock = held.pop(GAIT)
+    return {**held, "/reference": list(dict.fromkeys((*held["/reference"], *clock)))}
 
 
 def _united(reads: Iterable[Reads]) -> dict[str, list[str]]:
@@ -143,7 +161,7 @@ def _united(reads: Iterable[Reads]) -> dict[str, list[str]]:
 
 
 SINGLE_SUPPORT = 2
-"""Value of ``/reference.phase`` in single support."""
+"""Value of the gait's ``phase`` in single support."""
 
 Array = NDArray[np.float64]
 Mask = NDArray[np.bool_]
@@ -173,12 +191,17 @@ class RunView:
 
     def _has(self, topic: str) -> bool:
         if topic not in self._there:
-            self._there[topic] = topic in self.log and len(self.log[topic]) > 0
+            found = self._found(topic)
+            self._there[topic] = found in self.log and len(self.log[found]) > 0
         return self._there[topic]
+
+    def _found(self, topic: str) -> str:
+        """The topic of a log under which it has another; that of the gait is a part of the reference of a plan."""
+        return "/reference" if topic == GAIT and GAIT not in self.log else topic
 
     def field(self, topic: str, name: str) -> Array:
         """A field of a control-rate channel on the common ticks, shape (n, *field shape)."""
-        return self.log[topic].field(name)[: self.ticks]
+        return self.log[self._found(topic)].field(name)[: self.ticks]
 
     def reduced(self, reduce: "Callable[[RunView], Array]") -> Array:
         """What a function makes of each tick or message: out of the digest if it holds that."""
@@ -200,8 +223,8 @@ class RunView:
     @cached_property
     def ticks(self) -> int:
         """Number of common control ticks."""
-        control = (*CONTROL_TOPICS, SENSED)
-        return min((len(self.log[topic]) for topic in control if self.has(topic)), default=0)
+        control = (*CONTROL_TOPICS, SENSED, GAIT)
+        return min((len(self.log[self._found(topic)]) for topic in control if self.has(topic)), default=0)
 
     @cached_property
     def time(self) -> Array:
@@ -210,8 +233,8 @@ class RunView:
 
     @cached_property
     def single_support(self) -> Mask:
-        """Ticks in planned single support, shape (n,)."""
-        return np.asarray(self.field("/reference", "phase") == SINGLE_SUPPORT)
+        """Ticks in single support, as planned, or as felt where nothing is planned, shape (n,)."""
+        return np.asarray(self.field(GAIT, "phase") == SINGLE_SUPPORT)
 
     @cached_property
     def walking(self) -> slice:

@@ -3,7 +3,7 @@
 import numpy as np
 
 from surefoot.planner.types import GRAVITY
-from surefoot.scenarios.judge.digest import Array, RunView
+from surefoot.scenarios.judge.digest import GAIT, Array, RunView
 from surefoot.scenarios.judge.metric import DEG, MM, OF_THE_TIME, metric, reduction
 
 AT_LIMIT = 0.999
@@ -68,9 +68,7 @@ def torque_ratio_max(run: RunView) -> float:
     return float(run.reduced(torque_ratio)[:, 0].max())
 
 
-@metric(
-    unit="N m", reads={"/reference": ()}, reduces=(knee_torque_squared,), body=True, least=0.0, tolerance=(0.5, 0.01)
-)
+@metric(unit="N m", reads={GAIT: ()}, reduces=(knee_torque_squared,), body=True, least=0.0, tolerance=(0.5, 0.01))
 def knee_torque_rms(run: RunView) -> float | None:
     """Commanded knee torque, RMS over both knees from the first lift-off to the last touchdown, or the run [N m]."""
     squared = run.reduced(knee_torque_squared)[: run.ticks]
@@ -103,7 +101,7 @@ def joint_speed_ratio_max(run: RunView) -> float:
     return float(run.reduced(joint_speed_ratio)[:, 0].max())
 
 
-@metric(unit="rad", shown=DEG, reads={"/reference": ()}, reduces=(knee_flexion,), body=True, tolerance=(0.005, 0.0))
+@metric(unit="rad", shown=DEG, reads={GAIT: ()}, reduces=(knee_flexion,), body=True, tolerance=(0.005, 0.0))
 def knee_angle_mean(run: RunView) -> float | None:
     """Mean flexion of both knees while walking, or over the whole run when no foot was lifted [rad]."""
     if not run.knees:
@@ -122,7 +120,7 @@ def cost_of_transport(run: RunView) -> float | None:
     return work / (run.constants.mass * GRAVITY * way)
 
 
-@metric(unit="m/s", reads={"/truth": ("com",), "/reference": ("phase",)}, least=0.0, tolerance=(0.002, 0.005))
+@metric(unit="m/s", reads={"/truth": ("com",), GAIT: ("phase",)}, least=0.0, tolerance=(0.002, 0.005))
 def speed_mean(run: RunView) -> float | None:
     """Horizontal way of the CoM from the first lift-off to the last touchdown over the time it took [m/s]."""
     if not run.walking.stop:

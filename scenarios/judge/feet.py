@@ -9,7 +9,7 @@ from surefoot.planner.ground.terrain import Box, Terrain
 from surefoot.planner.types import GRAVITY, Foot, Footstep
 from surefoot.scenarios.columns import Reads
 from surefoot.scenarios.judge.body import feet_lean
-from surefoot.scenarios.judge.digest import SENSED, Array, Mask, Rows, RunView
+from surefoot.scenarios.judge.digest import GAIT, SENSED, Array, Mask, Rows, RunView
 from surefoot.scenarios.judge.metric import DEG, MM, metric
 from surefoot.scenarios.judge.placed import to_truth
 from surefoot.scenarios.judge.walking import FALL_READS, fall_time, runs_of
@@ -37,7 +37,14 @@ def landed(run: RunView) -> Array:
     return np.column_stack((places, headings(poses[:, 3:])))
 
 
-@metric(unit="m", shown=MM, reads={"/truth": (), "/footstep": ("planned", "foot")}, body=True, least=0.0)
+@metric(
+    unit="m",
+    shown=MM,
+    needs=("/truth", "/footstep", "/reference"),
+    reads={"/truth": (), "/footstep": ("planned", "foot")},
+    body=True,
+    least=0.0,
+)
 def footstep_error_max(run: RunView) -> float | None:
     """Largest distance of a sole at touchdown from its footstep as last planned before it [m]."""
     steps = run.log["/footstep"]
@@ -62,10 +69,10 @@ def stair_edge_margin_min(run: RunView) -> float | None:
     return float(terrain.edge_margins(poses[:, :2], placed).min())
 
 
-@metric(unit="m", shown=MM, reads={"/truth": (), "/reference": ("phase", "stance")}, body=True, tolerance=(0.001, 0.0))
+@metric(unit="m", shown=MM, reads={"/truth": (), GAIT: ("phase", "stance")}, body=True, tolerance=(0.001, 0.0))
 def swing_clearance_min(run: RunView) -> float | None:
     """Least height of a swing sole's corner over the ground, but for the first and last quarter of each swing [m]."""
-    stance, least = run.field("/reference", "stance"), []
+    stance, least = run.field(GAIT, "stance"), []
     for foot in range(2):
         sole = run.sole(foot)
         for start, end in runs_of(run.single_support & (stance == 1 - foot)):
@@ -118,11 +125,15 @@ def stances(run: RunView, until: int | None = None) -> list[Stance]:
     """Every stance that carried load, up to a tick.
 
     A foot that touches down before its time, in the second half of its swing, stands from then on; a load that it loses
-    for longer than a dropout, and not as a contact that the controller holds, was a graze of the swing.
+    for longer than a dropout, and not as a contact that the controller holds, was a graze of the swing. Where nothing
+    is planned, a stance is a load without a longer dropout in it.
     """
-    load, planned = loaded(run)[:until], run.field("/contact", "planned")[:until] != 0
-    released = np.cumsum(run.field("/contact", "active")[:until] == 0, axis=0)
+    load = loaded(run)[:until]
     gap, found = DROPOUT * run.constants.similarity.time * run.constants.control_rate, []
+    if not run.has("/reference"):
+        return [Stance(foot, ticks) for foot in range(2) for ticks in _spells(load[:, foot], gap)]
+    planned = run.field("/contact", "planned")[:until] != 0
+    released = np.cumsum(run.field("/contact", "active")[:until] == 0, axis=0)
     for foot in range(2):
         lift = 0
         for start, end in runs_of(planned[:, foot]):
@@ -134,6 +145,13 @@ def stances(run: RunView, until: int | None = None) -> list[Stance]:
             if len(ticks) and ticks[-1] >= start:
                 found.append(Stance(foot, ticks))
     return found
+
+
+def _spells(load: Mask, gap: float) -> list[Rows]:
+    """Ticks of each load, between two of which it may be lost for so many ticks."""
+    ticks = np.flatnonzero(load)
+    parts = np.split(ticks, np.flatnonzero(np.diff(ticks) > gap) + 1)
+    return [part for part in parts if len(part)]
 
 
 @dataclass(frozen=True, slots=True)
@@ -198,14 +216,24 @@ def stance_twist_max(run: RunView) -> float | None:
     return max((float(np.abs(yaw - yaw[0]).max()) for yaw in yaws), default=None)
 
 
-@metric(unit="rad", shown=DEG, reads={**_STANCE_READS, "/reference": ("roll",)}, body=True, least=0.0)
+@metric(
+    unit="rad",
+    shown=DEG,
+    needs=tuple(_STANCE_READS),
+    reads={**_STANCE_READS, "/reference": ("roll",)},
+    body=True,
+    least=0.0,
+)
 def stance_tilt_max(run: RunView) -> float | None:
     """Largest angle of a loaded stance sole to the ground under it [rad].
 
     Only sideways while it is planned to roll; only ahead of a foot that no joint rolls, which leans as its leg does.
     """
     leaning = feet_lean(run.constants.roles)
-    rolling, terrain = run.field("/reference", "roll") != 0.0, run.once(terrain_of)
+    terrain = run.once(terrain_of)
+    rolling = np.zeros((run.ticks, 2), dtype=np.bool_)
+    if run.has("/reference"):
+        rolling = run.field("/reference", "roll") != 0.0
     largest = []
     for stance in run.once(stances):
         poses = run.sole(stance.foot)[stance.ticks]
@@ -224,7 +252,7 @@ def contact_force_peak(run: RunView) -> float:
     return float(run.field("/contact", "normal_force").sum(axis=1).max() / (run.constants.mass * GRAVITY))
 
 
-@metric(unit="s", reads=_STANCE_READS, body=True, least=0.0)
+@metric(unit="s", needs=(*_STANCE_READS, "/reference"), reads=_STANCE_READS, body=True, least=0.0)
 def unplanned_flight_time(run: RunView) -> float:
     """How long, after the first load, no foot carried load though one was planned in contact [s]."""
     standing, planned = loaded(run).any(axis=1), (run.field("/contact", "planned") != 0).any(axis=1)

@@ -18,7 +18,7 @@ from typing import Any, Generic, TypeVar, Union, get_args, get_origin, get_type_
 from surefoot.documented import doc_of
 from surefoot.errors import ParameterError
 from surefoot.scenarios.columns import Reads
-from surefoot.scenarios.judge.digest import Array, RunView
+from surefoot.scenarios.judge.digest import PLANNED, Array, RunView
 
 __all__ = ["RESERVED", "TRUTH", "Metric", "Reads", "Reduction", "RunView", "metric", "reduction"]
 
@@ -115,6 +115,7 @@ class Metric(Generic[T]):
         tolerance: by how much two runs may differ that count as the same, in its unit and as a share of its value;
             None for what its unit and kind say.
         at_end: whether it follows from the end of the run alone, of which a flight recorder keeps more.
+        planned: whether it is of a plan, or needs a topic of planner or whole-body controller.
     """
 
     name: str
@@ -133,6 +134,7 @@ class Metric(Generic[T]):
     most: float | None = None
     tolerance: tuple[float, float] | None = None
     at_end: bool = False
+    planned: bool = False
 
     def __call__(self, run: RunView) -> T:
         """Its value for a run."""
@@ -168,9 +170,11 @@ class Metric(Generic[T]):
         """What its function gives; what cannot be told counts as None."""
         return _given(self.function)
 
-    def applies(self, fidelity: str) -> bool:
-        """Whether runs of a fidelity have it."""
-        return fidelity != "pendulum" or not self.body
+    def applies(self, walker: str) -> bool:
+        """Whether runs of a kind of walker have it: full, pendulum, or seat, where nothing is planned."""
+        if walker == "seat":
+            return not self.planned
+        return walker != "pendulum" or not self.body
 
     def allowed(self, value: float | None) -> float:
         """How far from this value another run may be that counts as the same; counts may not differ, unless it says."""
@@ -221,6 +225,7 @@ def metric(
     most: float | None = None,
     tolerance: tuple[float, float] | None = None,
     at_end: bool = False,
+    planned: bool = False,
 ) -> Callable[[Callable[[RunView], T]], Metric[T]]:
     """Make a function of a run a metric of its name; the first line of its documentation says what it is.
 
@@ -240,7 +245,7 @@ def metric(
         topics = tuple(dict.fromkeys((*fields, *reduced))) if needs is None else needs
         found = Metric(
             name, function, unit, scale, shown_unit, size, parts, topics, fields, reduces, body, repeatable, least,
-            most, tolerance, at_end,
+            most, tolerance, at_end, planned or any(topic in PLANNED for topic in topics),
         )  # fmt: skip
         _check(found)
         return found

@@ -27,7 +27,7 @@ from surefoot.scenarios.judge import (
     sensed,
     walking,
 )
-from surefoot.scenarios.judge.digest import CONTROL_TOPICS, HELD, SENSED, Digest, RunView, Source
+from surefoot.scenarios.judge.digest import CONTROL_TOPICS, GAIT, HELD, SENSED, Digest, RunView, Source
 from surefoot.scenarios.judge.metric import Metric, Reduction
 from surefoot.scenarios.judge.placed import PLACED
 
@@ -166,7 +166,7 @@ def _foreign_value(run: RunView, name: str, notes: list[str]) -> Any:
 
 
 def _value(run: RunView, metric: Metric[Any]) -> Any:
-    if not metric.applies(run.constants.fidelity) or not run.has(*metric.needs):
+    if not metric.applies(run.constants.walker) or not run.has(*metric.needs):
         return None
     if run.kept is not None and not metric.at_end:
         return None  # of a part of the run it would be another number
@@ -190,7 +190,7 @@ def judged_topics() -> frozenset[str]:
     """Topics that a verdict or a health check needs, by metrics of ours and of other packages."""
     metrics = [metric for metric in map(known, METRICS) if metric is not None]
     fields = (HELD, *_reads(metrics))
-    topics = (*CONTROL_TOPICS, SENSED, *health.TOPICS, *(topic for metric in metrics for topic in metric.needs))
+    topics = (*CONTROL_TOPICS, GAIT, SENSED, *health.TOPICS, *(topic for metric in metrics for topic in metric.needs))
     reduced = (topic for metric in metrics for one in metric.reductions for topic in one.needs)
     return frozenset((*topics, *reduced, *(topic for reads in fields for topic in reads)))
 

@@ -84,10 +84,20 @@ def _number(name: str, shown: float) -> str:
     return f"{shown:.0f}" if abs(shown) >= 1000 else f"{shown:.3g}"
 
 
-def asked(criteria: Mapping[str, Bound], fidelity: str) -> dict[str, Bound]:
-    """The criteria on metrics that a fidelity has; the others are in the notes."""
-    metrics = {name: known(name) for name in criteria}
-    return {name: criteria[name] for name, metric in metrics.items() if metric is None or metric.applies(fidelity)}
+_WALKERS = {"full": "a body", "pendulum": "a pendulum", "seat": "a controller without a planner"}
+"""Kinds of walkers in words."""
+
+
+def asked(criteria: Mapping[str, Bound], walker: str) -> dict[str, Bound]:
+    """The criteria on metrics that a kind of walker has; the others are in the notes."""
+    return {name: bound for name, bound in criteria.items() if applies(name, bound, walker)}
+
+
+def applies(name: str, bound: Bound, walker: str) -> bool:
+    """Whether a kind of walker has the metric of a criterion, and that which it is compared with, as far as known."""
+    others = (bound.equals,) if isinstance(bound.equals, str) else ()
+    metrics = (known(one) for one in (name, *others))
+    return all(metric is None or metric.applies(walker) for metric in metrics)
 
 
 def _degraded(metrics: Mapping[str, Any], added: int) -> Iterator[str]:
@@ -207,10 +217,10 @@ def judge(log: Log, gathered: Digest | None = None, strict: bool = False) -> Ver
     """
     (scenario, absent), gathered = known_part(log), gathered or digest(log)
     measured = measure(gathered)
-    criteria = asked(scenario.criteria, scenario.fidelity)
+    criteria = asked(scenario.criteria, scenario.walker)
     run = RunView(gathered)
     size = run.constants.similarity
-    without = [f"it has no topic {topic}" for topic in always(scenario.fidelity) if topic not in log]
+    without = [f"it has no topic {topic}" for topic in always(scenario.walker) if topic not in log]
     unproven = _listed("the log is not proven to be whole", (*log.unproven(), *without))
     untrue = (*_unfinished(log), *_incomplete(log), *(unproven if strict else ())) or contradictions(run)
     agenda = agenda_of(log, scenario)
@@ -226,9 +236,9 @@ def judge(log: Log, gathered: Digest | None = None, strict: bool = False) -> Ver
     told = {name: bound for name, bound in criteria.items() if seen or is_measured(name)}
     lacking = _lacking(run, [name for name in told if _lookup(measured.values, name) is None])
     reasons = (*untrue, *lacking, *_few(map(str, told_once(absent))), *undone, *missed(measured.values, told))
-    skipped = [name for name in scenario.criteria if name not in criteria]
+    skipped = [*(name for name in scenario.criteria if name not in criteria), *scenario.left_out]
     idle_keys = [note for note in agenda.notes if note not in agenda.standing or not run.has("/command")]
-    unasked = (f"criterion {name} is not asked: a pendulum has no such metric" for name in skipped)
+    unasked = (f"criterion {name} is not asked: {_WALKERS[scenario.walker]} has no such metric" for name in skipped)
     part = () if run.kept is None else (kept_note(run.kept),)
     beside = (*part, *(() if strict else unproven), *unasked, *idle_keys, *bent_commands(run))
     said = (*beside, *_degraded(measured.values, steps_added(run)), *measured.notes)

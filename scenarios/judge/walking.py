@@ -4,7 +4,7 @@ import numpy as np
 
 from surefoot.scenarios.columns import Reads
 from surefoot.scenarios.judge.body import lies, lost
-from surefoot.scenarios.judge.digest import Mask, RunView
+from surefoot.scenarios.judge.digest import GAIT, Mask, RunView
 from surefoot.scenarios.judge.metric import MM, metric
 
 STILL_SPEED = 0.02
@@ -58,7 +58,12 @@ def duration(run: RunView) -> float:
     return float(run.time[-1] - run.time[0]) + 1 / run.constants.control_rate
 
 
-@metric(needs=(), reads={"/command": ("yaw_rate", "heading"), "/reference": ("step", "phase")}, least=0.0)
+@metric(
+    needs=(),
+    reads={"/command": ("yaw_rate", "heading"), "/reference": ("step", "phase")},
+    least=0.0,
+    planned=True,
+)
 def steps_planned(run: RunView) -> int:
     """Footsteps asked for, with those that a recovery added; those begun of a walk that is told where to go."""
     return _begun(run) if _led(run) else max(run.constants.steps_planned, _begun(run))
@@ -179,7 +184,7 @@ def standing_time_final(run: RunView) -> float:
     return (run.ticks - int(first)) / run.constants.control_rate
 
 
-@metric(unit="s", reads={**_STILL_READS, "/reference": ()}, least=0.0, tolerance=(0.05, 0.0))
+@metric(unit="s", reads={**_STILL_READS, GAIT: ()}, least=0.0, tolerance=(0.05, 0.0))
 def standing_time_between(run: RunView) -> float:
     """Longest time between two steps with the CoM still and both feet loaded, 0 when the walk never stops [s]."""
     return (

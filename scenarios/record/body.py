@@ -100,8 +100,8 @@ class Recorder:
         )  # fmt: skip
 
 
-class BodyRows:
-    """What of the body's rows follows from the rest, such as ZMP, centres of pressure and DCM.
+class RobotRows:
+    """What of a robot's rows follows from the rest: ZMP, centres of pressure, the torso's tilt, the largest torque.
 
     Args:
         table: of the rows.
@@ -117,23 +117,14 @@ class BodyRows:
         self._sole_rotation = table["sole_rotation"].reshape(count, 2, 3, 3)
         self._zmp, self._normal_force = table["/contact", "zmp"], table["/contact", "normal_force"]
         self._cop = table.span(("/contact", "cop_left"), ("/contact", "cop_right")).reshape(count, 2, 2)
-        self._status, self._solver = table["/wbc", "status"], table["/wbc", "solver"]
-        self._fallback = table["/wbc", "fallback"]
         self._upright, self._tilt = table["upright"], table["/truth", "torso_tilt"]
-        self._com, self._com_velocity = table["/estimate", "com"], table["/estimate", "com_velocity"]
-        self._omega, self._dcm = table["omega"], table["/estimate", "dcm"]
-        self._q, self._v = table["given_q"], table["given_v"]
-        self._base_position = table["/estimate", "base_position"]
-        self._base_velocity = table["/estimate", "base_velocity"]
         self._command, self._limit_ratio = table["/torque", "command"], table["/torque", "limit_ratio_max"]
 
     def derive(self, rows: int) -> None:
         """See `Derived`."""
         for n in range(rows):
             self._feel(n)
-            self._estimate(n)
-            self._solver[n, 0] = 1.0 if self._status[n, 0] == _SECOND else 0.0
-            self._fallback[n, 0] = 1.0 if self._status[n, 0] >= _FALLBACK else 0.0
+            self._follow(n)
             self._tilt[n, 0] = math.acos(algebra.clamp(self._upright[n, 0], -1.0, 1.0))
             self._limit_ratio[n, 0] = self._largest_ratio(n)
 
@@ -146,14 +137,8 @@ class BodyRows:
             self._normal_force[n, foot] = wrench[foot, 2]
             self._cop[n, foot, 0], self._cop[n, foot, 1] = zmp.centre_of_pressure(wrench[foot])
 
-    def _estimate(self, n: int) -> None:
-        """DCM and base in the state that the controller was given."""
-        for axis in range(2):
-            self._dcm[n, axis] = self._com[n, axis] + self._com_velocity[n, axis] / self._omega[n, 0]
-        for k in range(3):
-            self._base_position[n, k] = self._q[n, k]
-        for k in range(6):
-            self._base_velocity[n, k] = self._v[n, k]
+    def _follow(self, n: int) -> None:
+        """What follows of more than is logged of every robot."""
 
     def _largest_ratio(self, n: int) -> float:
         """Largest torque over its limit; NaN where one is."""
@@ -165,3 +150,33 @@ class BodyRows:
             if most != most:
                 break
         return most
+
+
+class BodyRows(RobotRows):
+    """The same under a whole-body controller, and what follows of it and of the state that it was given, such as DCM.
+
+    Args:
+        table: of the rows.
+        inverse_limit: of the joints' torques, shape (nj,) [1/(N·m)].
+    """
+
+    def __init__(self, table: Table, inverse_limit: Array) -> None:
+        super().__init__(table, inverse_limit)
+        self._status, self._solver = table["/wbc", "status"], table["/wbc", "solver"]
+        self._fallback = table["/wbc", "fallback"]
+        self._com, self._com_velocity = table["/estimate", "com"], table["/estimate", "com_velocity"]
+        self._omega, self._dcm = table["omega"], table["/estimate", "dcm"]
+        self._q, self._v = table["given_q"], table["given_v"]
+        self._base_position = table["/estimate", "base_position"]
+        self._base_velocity = table["/estimate", "base_velocity"]
+
+    def _follow(self, n: int) -> None:
+        """DCM and base in the state that the controller was given, and what kind of solution it has found."""
+        self._solver[n, 0] = 1.0 if self._status[n, 0] == _SECOND else 0.0
+        self._fallback[n, 0] = 1.0 if self._status[n, 0] >= _FALLBACK else 0.0
+        for axis in range(2):
+            self._dcm[n, axis] = self._com[n, axis] + self._com_velocity[n, axis] / self._omega[n, 0]
+        for k in range(3):
+            self._base_position[n, k] = self._q[n, k]
+        for k in range(6):
+            self._base_velocity[n, k] = self._v[n, k]

@@ -188,6 +188,29 @@ def contact(_: Sizes) -> ChannelSpec:
     return ChannelSpec("/contact", "Contact", fields, doc_of(contact))
 
 
+def felt_contact(_: Sizes) -> ChannelSpec:
+    """Contacts felt, every control tick; of a run whose controller has no plan."""
+    fields = (
+        _real("zmp", 3, "m", "world", f"from contact forces {_STEP}; NaN in flight"),
+        _real("normal_force", 2, "N", "", f"left, right {_STEP}"),
+        _int("felt", "contact by force: left, right", 2),
+        _real("cop_left", 2, "m", "left sole", "centre of pressure; NaN when unloaded"),
+        _real("cop_right", 2, "m", "right sole", "centre of pressure; NaN when unloaded"),
+    )
+    return ChannelSpec("/contact", "FeltContact", fields, doc_of(felt_contact))
+
+
+def gait(_: Sizes) -> ChannelSpec:
+    """The gait as feet feel it, every control tick; of a run whose controller has no plan."""
+    fields = (
+        _int("phase", "0 standing, 1 double support, 2 single support, or flight where no foot is the stance foot"),
+        _int("stance", "stance foot: 0 left, 1 right, -1 both or none"),
+        _int("step", "footsteps begun"),
+        _scalar("phase_time", "s", "since the phase began"),
+    )
+    return ChannelSpec("/gait", "Gait", fields, doc_of(gait))
+
+
 def reference(_: Sizes) -> ChannelSpec:
     """The whole-body reference and the gait's clock, every control tick."""
     fields = (

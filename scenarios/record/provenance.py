@@ -51,6 +51,9 @@ COMMAND_RECORD = "command "
 AGENDA_RECORD = "agenda"
 """Metadata record of what was to happen in a run, and when; logs of earlier versions have none."""
 
+SEAT_RECORD = "controller"
+"""Metadata record of what has the seat of planner and whole-body controller: its name and its parameters, as JSON."""
+
 PARTS_RECORD = "parts"
 """Metadata record of what a user's program put in place of a part, which a log cannot carry."""
 
@@ -99,6 +102,7 @@ class RunConstants:
             scenario that has put them there; a log has it where there are any.
         waypoints: places to go to one after another, as x, y [m] and heading [rad] in the world; likewise.
         size: length and mass of the robot over the reference's; a log has it where they are not 1 [-].
+        controller: name of what has the seat of planner and whole-body controller; a log has it where something has.
     """
 
     scenario: str
@@ -126,6 +130,12 @@ class RunConstants:
     knee_turn: tuple[float, ...] = ()
     unforeseen: Mapping[str, tuple[int, ...]] = field(default_factory=dict)
     waypoints: tuple[tuple[float, float, float], ...] = ()
+    controller: str = ""
+
+    @property
+    def walker(self) -> str:
+        """Kind of what walks: full, pendulum, or seat, of a robot whose controller is none of Surefoot's own."""
+        return "seat" if self.controller else self.fidelity
 
     @property
     def similarity(self) -> Similarity:
@@ -139,7 +149,7 @@ class RunConstants:
             del written["plane"]
         if self.size == (1.0, 1.0):
             del written["size"]
-        for name in ("knee_straight", "knee_turn", "unforeseen", "waypoints"):
+        for name in ("knee_straight", "knee_turn", "unforeseen", "waypoints", "controller"):
             if not written[name]:
                 del written[name]
         return {name: json.dumps(value) for name, value in written.items()}

@@ -6,11 +6,15 @@ cdef class PlannerState:
     cdef readonly CentroidalState given
     cdef readonly object acceleration, innovation
 
-cdef class WalkRecorder:
-    cdef object _reference, _state, _plan, _footsteps, _footstep, _command, _timing, _process, _writer, _support
+cdef class RunRecorder:
+    cdef object _footstep, _command, _timing, _process, _writer
     cdef long long _begun, _looked
+
+    cpdef timing(self, time_ns, timing)
+
+cdef class WalkRecorder(RunRecorder):
+    cdef object _reference, _state, _plan, _footsteps, _support
     cdef bytes _polygon
     cdef bint _rolls
 
     cpdef reference(self, time_ns, plan, sample)
-    cpdef timing(self, time_ns, timing)

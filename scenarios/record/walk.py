@@ -81,7 +81,58 @@ class PlannerState:
     innovation: Array
 
 
-class WalkRecorder:
+class RunRecorder:
+    """The channels of every run: its clock, what it is told, and footsteps taken.
+
+    Args:
+        writer: of the log.
+        sizes: of the channels.
+    """
+
+    def __init__(self, writer: LogWriter, sizes: Sizes) -> None:
+        self._footstep = writer.channel(channels.footstep(sizes))
+        self._command = writer.channel(channels.command(sizes))
+        timing = writer.channel(channels.timing(sizes))
+        self._timing = writer.rows(RowLayout((), ((timing, [field.name for field in timing.spec.fields]),)))
+        self._process = writer.channel(channels.process(sizes))
+        self._writer, self._begun = writer, 0
+        self._looked = -1
+
+    def touchdown(self, time_ns: int, planned: Footstep, feet: FeetState) -> None:
+        """A footstep taken: as last planned, and where the sole is."""
+        foot = planned.foot
+        actual = np.append(feet.position[foot], feet.yaw[foot])
+        self._footstep.put(time_ns, index=planned.step, foot=int(foot), planned=_pose(planned), actual=actual)
+
+    def begun(self, push: Push, live: bool) -> None:
+        """A push that has waited for its point of the gait; ``live`` if it was once given by hand."""
+        self._begun += 1
+        self._writer.add_metadata(f"{BEGUN_RECORD}{self._begun}", AskedPush.of(push, live).to_metadata())
+
+    def command(self, time_ns: int, orders: Command) -> None:
+        """What the walk is told from now on."""
+        place = orders.places[-1] if orders.places else None
+        numbers = ((math.nan,) * 3 if twist is None else twist[:3] for twist in (place, orders.twist, orders.followed))
+        (*place_xy, heading), (*velocity, yaw_rate), (*followed, followed_rate) = numbers
+        self._command.put(
+            time_ns, orders, velocity=velocity, yaw_rate=yaw_rate, followed_velocity=followed,
+            followed_yaw_rate=followed_rate, place=place_xy, heading=heading,
+        )  # fmt: skip
+
+    def timing(self, time_ns: int, timing: TickTiming) -> None:
+        """Wall-clock times of the tick, and once a simulated second the state of the process."""
+        state, build, solve, plan, physics, log, tick, busy = timing
+        self._timing.append(
+            time_ns,
+            (1e6 * state, 1e6 * build, 1e6 * solve, 1e6 * plan, 1e6 * physics, 1e6 * log, 1e6 * tick, 1e6 * busy),
+        )
+        second = time_ns // 1_000_000_000
+        if second != self._looked:
+            self._looked = second
+            self._process.append(time_ns, resident_memory())
+
+
+class WalkRecorder(RunRecorder):
     """The channels of planner and clock."""
 
     def __init__(self, writer: LogWriter, sizes: Sizes) -> None:
@@ -93,13 +144,7 @@ class WalkRecorder:
         self._state = writer.channel(channels.planner_state(sizes)).filler(_STATE)
         self._plan = writer.channel(channels.plan(sizes)).filler(_PLAN, ("slack", "held", "capture_margin"))
         self._footsteps = writer.channel(channels.footsteps(sizes)).filler({}, _FOOTSTEPS)
-        self._footstep = writer.channel(channels.footstep(sizes))
-        self._command = writer.channel(channels.command(sizes))
-        timing = writer.channel(channels.timing(sizes))
-        self._timing = writer.rows(RowLayout((), ((timing, [field.name for field in timing.spec.fields]),)))
-        self._process = writer.channel(channels.process(sizes))
-        self._writer, self._begun = writer, 0
-        self._looked = -1
+        super().__init__(writer, sizes)
         self._support = np.zeros(2 * SUPPORT_VERTICES)
         self._polygon = b""
         self._rolls = sizes.nj > 0  # the ideal feet of a point mass stay level
@@ -131,27 +176,6 @@ class WalkRecorder:
             support[len(vertices) :] = vertices[-1]
             self._support = support.ravel()  # a new one, since rows of the reference have kept the last
 
-    def touchdown(self, time_ns: int, planned: Footstep, feet: FeetState) -> None:
-        """A footstep taken: as last planned, and where the sole is."""
-        foot = planned.foot
-        actual = np.append(feet.position[foot], feet.yaw[foot])
-        self._footstep.put(time_ns, index=planned.step, foot=int(foot), planned=_pose(planned), actual=actual)
-
-    def begun(self, push: Push, live: bool) -> None:
-        """A push that has waited for its point of the gait; ``live`` if it was once given by hand."""
-        self._begun += 1
-        self._writer.add_metadata(f"{BEGUN_RECORD}{self._begun}", AskedPush.of(push, live).to_metadata())
-
-    def command(self, time_ns: int, orders: Command) -> None:
-        """What the walk is told from now on."""
-        place = orders.places[-1] if orders.places else None
-        numbers = ((math.nan,) * 3 if twist is None else twist[:3] for twist in (place, orders.twist, orders.followed))
-        (*place_xy, heading), (*velocity, yaw_rate), (*followed, followed_rate) = numbers
-        self._command.put(
-            time_ns, orders, velocity=velocity, yaw_rate=yaw_rate, followed_velocity=followed,
-            followed_yaw_rate=followed_rate, place=place_xy, heading=heading,
-        )  # fmt: skip
-
     def reference(self, time_ns: int, plan: WalkPlan, sample: PlanSample) -> None:
         """The reference of a control tick and the gait's clock; the swing foot's sole is where its roll takes it."""
         phase, roll = plan.phase, plan.roll if self._rolls else None
@@ -166,18 +190,6 @@ class WalkRecorder:
             point = point.copy()
             roll_sole(point[_LEVEL], point[_RATES], roll.toe, pitch, rate, point[_POSITION], point[_VELOCITY])
         self._reference.append(time_ns, numbers, point, self._support)
-
-    def timing(self, time_ns: int, timing: TickTiming) -> None:
-        """Wall-clock times of the tick, and once a simulated second the state of the process."""
-        state, build, solve, plan, physics, log, tick, busy = timing
-        self._timing.append(
-            time_ns,
-            (1e6 * state, 1e6 * build, 1e6 * solve, 1e6 * plan, 1e6 * physics, 1e6 * log, 1e6 * tick, 1e6 * busy),
-        )
-        second = time_ns // 1_000_000_000
-        if second != self._looked:
-            self._looked = second
-            self._process.append(time_ns, resident_memory())
 
 
 def resident_memory() -> float:

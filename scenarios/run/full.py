@@ -1,23 +1,19 @@
 """The closed loop in full physics: a simulated robot under its controller, and the log around it."""
 
-import math
-from typing import TYPE_CHECKING, cast
+from typing import TYPE_CHECKING
 
 import numpy as np
 from numpy.typing import NDArray
 
 from surefoot.errors import ParameterError
-from surefoot.forces import Push
 from surefoot.guard import Guard
 from surefoot.joints import JointCommand
-from surefoot.models.pinocchio import pinocchio_model
 from surefoot.planner.plan import WalkPlan
 from surefoot.planner.sample import PlanSample
 from surefoot.plugins import Registry
 from surefoot.readings import Readings
 from surefoot.scenarios.file.control import PlantSettings
 from surefoot.scenarios.file.registries import DEFAULTS, PLANT_NAMES
-from surefoot.scenarios.judge.body import lies
 from surefoot.scenarios.log import AttachedFile, LogWriter
 from surefoot.scenarios.record.body import Recorder
 from surefoot.scenarios.record.foxglove.views import BodyView
@@ -26,19 +22,16 @@ from surefoot.scenarios.record.walk import WalkRecorder
 from surefoot.scenarios.run.assembly import Parts
 from surefoot.scenarios.run.controller import Controller
 from surefoot.scenarios.run.driven import Somebody
-from surefoot.scenarios.run.planning import FaultSchedule, Planning, RunFault
-from surefoot.scenarios.run.plant import Plant, PlantMaker, Sensors, completed, made, measured_tick, push_plant
+from surefoot.scenarios.run.moved import Moved, coupling_of, sensors_of
+from surefoot.scenarios.run.planning import Planned, Planning
+from surefoot.scenarios.run.plant import Plant, PlantMaker, Sensors, completed, made, push_plant
 from surefoot.scenarios.run.skeleton import ClosedLoop
 from surefoot.scenarios.run.tick import Look, Spent
-from surefoot.scenarios.setup.hardware import refuse_unread
-from surefoot.scenarios.setup.stance import as_told, disturbed, frames_of, pressed
+from surefoot.scenarios.setup.stance import as_told, disturbed, pressed
 from surefoot.scenarios.setup.walk import Walk
 from surefoot.sim.drives import IDEAL, Drives
-from surefoot.sim.errors import SimulationDiverged
-from surefoot.sim.measurement import Measurement
 from surefoot.sim.world import World
 from surefoot.wbc.controller import WholeBodyController
-from surefoot.wbc.model import RobotTerms
 from surefoot.wbc.statics import LEVER, standing_torque
 from surefoot.wbc.zmp import measured_zmp
 
@@ -67,7 +60,7 @@ def full_loop(walk: Walk, writer: LogWriter, parts: Parts | None = None) -> Clos
     body = controller.body
     q = pressed(disturbed(controller.posture, walk, body), walk.size.length)
     world = simulated(walk)
-    plant = _plant(walk, world, parts or Parts(), controller.senses.reads)
+    plant = plant_of(walk, world, parts or Parts(), controller.senses.reads)
     torque = standing_torque(body.model, body.frames, q, LEVER * walk.size.length, data=body.scratch.data)
     world.reset(q, torque=torque)
     if not isinstance(plant, World):
@@ -77,31 +70,17 @@ def full_loop(walk: Walk, writer: LogWriter, parts: Parts | None = None) -> Clos
     controller.reset(as_told(q, walk, body) if controller.senses.reads else q)
     sizes = controller.sizes
     writer.attach(AttachedFile(WORLD_FILE, "application/xml", world.mjcf().encode()))
-    sensors = _sensors(walk, world, plant) if controller.senses.reads else None
-    if sensors is None:
-        refuse_unread(walk.sensing)
+    sensors, sensed = sensors_of(walk, plant, controller.senses.reads), None
     body_recorder, recorder = Recorder(writer, sizes, walk.robot.torque_limit), WalkRecorder(writer, sizes)
     view = BodyView(writer, world, walk.robot, walk.rates.control)
-    sensed, coupled = None, None
     if sensors is not None:
         from surefoot.scenarios.record.estimation import EstimationRecorder
 
         sensed = EstimationRecorder(writer, sizes)
-    if isinstance(plant, World) and sizes.nf:
-        from surefoot.scenarios.record.coupling import CouplingRecorder
-
-        coupled = CouplingRecorder(writer, sizes, plant)
+    controller.planning.recorder = recorder
+    coupled = coupling_of(writer, sizes, plant)
     walker = WholeBody(controller, plant, sensors, body_recorder, view, sensed, coupled)
     return ClosedLoop.of(walk, walker, recorder)
-
-
-def _sensors(walk: Walk, world: World, plant: Plant) -> "SensorSuite | Sensors":
-    """The sensors of a plant; a run whose estimator reads none does not import them."""
-    if not isinstance(plant, World):
-        return cast("Sensors", plant)
-    from surefoot.sim.readings import SensorSuite
-
-    return SensorSuite(world, walk.hardware.sensors, walk.rates.control, walk.seed)
 
 
 def simulated(walk: Walk) -> World:
@@ -116,7 +95,7 @@ PLANTS: Registry[PlantMaker] = PLANT_NAMES.filled(None, {"mujoco": simulated})
 """What makes a plant of a walk and of ``plant.options`` by name, by the value of ``plant.name``."""
 
 
-def _plant(walk: Walk, world: World, parts: Parts, senses: bool) -> Plant:
+def plant_of(walk: Walk, world: World, parts: Parts, senses: bool) -> Plant:
     """The plant that a program hands over, else that which the scenario names, else the simulated world."""
     keys = walk.keys.plant or PlantSettings()
     name, options = keys.name or DEFAULTS["plant"], keys.options or {}
@@ -130,7 +109,7 @@ def _plant(walk: Walk, world: World, parts: Parts, senses: bool) -> Plant:
     return world
 
 
-class WholeBody:
+class WholeBody(Moved, Planned):
     """A robot under its controller; a `Walker`.
 
     Args:
@@ -144,8 +123,6 @@ class WholeBody:
 
     Attributes:
         mind: its controller.
-        plant: what moves it.
-        measurement: of this tick; its arrays are overwritten by the next.
     """
 
     def __init__(
@@ -158,26 +135,19 @@ class WholeBody:
         sensed: "EstimationRecorder | None" = None,
         coupled: "CouplingRecorder | None" = None,
     ) -> None:
-        self.mind, self.plant, self._sensors = mind, plant, sensors
-        self._foreign = not isinstance(plant, World)
-        self._says_tick = self._foreign and hasattr(plant, "control_tick")
-        self._recorder, self._view, self._sensed, self._coupled = recorder, view, sensed, coupled
         walk = mind.walk
         # The controller's terms are those of the true robot in its true state where nothing is believed or estimated.
-        known = mind.senses.is_truth and walk.true_robot is walk.robot
-        self._own_truth = None if known else RobotTerms(pinocchio_model(walk.true_robot), frames_of(walk.robot))
-        self._faults = FaultSchedule(walk.faults, walk.rates.control) if walk.faults else None
-        self._period = 1.0 / walk.rates.control
+        super().__init__(walk, plant, sensors, known=mind.senses.is_truth and walk.true_robot is walk.robot)
+        self.mind = mind
+        self._recorder, self._view, self._sensed, self._coupled = recorder, view, sensed, coupled
         keys, self._somebody = walk.control, None
-        if keys.driven_joints and not self._foreign:
+        if keys.driven_joints and not self.foreign:
             self._somebody = Somebody(keys, walk.robot, mind.posture[7:], walk.seed)
         self._told = keys.driven_told is not False
-        self._nominal_height = walk.true_com_height
         self._no_torque = JointCommand(np.zeros(mind.whole_body.layout.joints))
-        self.measurement: Measurement
 
     @property
-    def planning(self) -> Planning:
+    def planning(self) -> Planning:  # type: ignore[override]
         """See `Walker`."""
         return self.mind.planning
 
@@ -185,16 +155,6 @@ class WholeBody:
     def controller(self) -> WholeBodyController:
         """See `Walker`."""
         return self.mind.whole_body
-
-    def sense(self, tick: int, now: float) -> int:
-        """See `Walker`; of a plant that says at which tick it measured, that."""
-        self.measurement = measurement = self.plant.measure()
-        self._readings = measurement if self._sensors is None else self._sensors.read(measurement, tick)
-        if self._own_truth is not None:
-            self._own_truth.place(measurement.q, measurement.v)
-        if not self._says_tick:
-            return tick
-        return measured_tick(self.plant.control_tick, tick, self.mind.walk.rates.control)  # type: ignore[attr-defined]
 
     def control(self, tick: int, now: float) -> tuple[PlanSample, Spent]:
         """See `Walker`."""
@@ -209,7 +169,7 @@ class WholeBody:
         self._truth = self._own_truth or mind.terms
         lost = self._faults is not None and self._faults.active("torque_loss", tick)
         self._command = self._no_torque if lost else command
-        if self._foreign:
+        if self.foreign:
             self.measurement = completed(self.measurement, mind.wrench, self._command.torque)
         return mind.sample, mind.spent
 
@@ -223,25 +183,10 @@ class WholeBody:
             forces = self.measurement.wrench[:, 2]
             self._sensed.tick(now_ns, self._readings, mind.estimate, mind.wrench, terms, truth, forces)
 
-    def fallen(self, sample: PlanSample) -> bool:
-        """See `Walker`."""
-        terms = self._truth
-        soles = terms.sole_position
-        height = terms.com.item(2) - min(soles.item(2), soles.item(5))
-        tilt = math.acos(min(terms.torso_rotation.item(2, 2), 1.0))
-        return bool(lies(height, self._nominal_height, tilt, self.measurement.nonfoot_contact))
-
     def draw(self, tick: int, now_ns: int, plan: WalkPlan, sample: PlanSample, fallen: bool) -> None:
         """See `Walker`."""
         self._view.events(now_ns, self.measurement, self.mind.report, plan, fallen)
         self._view.picture(tick, now_ns, self.measurement, self._truth, plan, sample)
-
-    def advance(self, now: float) -> None:
-        """See `Walker`."""
-        try:
-            self.plant.act(self._command, self._period)
-        except SimulationDiverged as fault:
-            raise RunFault(str(fault)) from None
 
     def look(self) -> Look:
         """See `Walker`."""
@@ -249,7 +194,3 @@ class WholeBody:
         zmp = measured_zmp(self.measurement.wrench, truth.sole_position, truth.sole_rotation)
         com, velocity = truth.com.copy(), truth.com_velocity.copy()
         return Look(com, velocity, np.array(zmp[:2]), self.mind.state, self.mind.report, self.measurement)
-
-    def push(self, push: Push) -> None:
-        """See `Walker`."""
-        push_plant(self.plant, push)

@@ -23,7 +23,7 @@ from surefoot.scenarios.log import LogWriter
 from surefoot.scenarios.record.channels import Sizes
 from surefoot.scenarios.record.foxglove.views import PointView
 from surefoot.scenarios.record.walk import PendulumRecorder, WalkRecorder
-from surefoot.scenarios.run.planning import FaultSchedule, Measured, Planning, RunFault
+from surefoot.scenarios.run.planning import FaultSchedule, Measured, Planned, Planning, RunFault
 from surefoot.scenarios.run.skeleton import ClosedLoop
 from surefoot.scenarios.run.tick import Look, Spent
 from surefoot.scenarios.setup.walk import Walk
@@ -133,10 +133,12 @@ def pendulum_loop(walk: Walk, writer: LogWriter) -> ClosedLoop:
     sizes = Sizes(nj=0, nq=0, nv=0, horizon=planner.parameters.horizon)
     point_recorder, recorder = PendulumRecorder(writer, sizes, walk.true_mass), WalkRecorder(writer, sizes)
     view = PointView(writer, walk.sole, walk.rates.control)
-    return ClosedLoop.of(walk, PointMass(walk, Planning.of(walk, planner), point_recorder, view), recorder)
+    planning = Planning.of(walk, planner)
+    planning.recorder = recorder
+    return ClosedLoop.of(walk, PointMass(walk, planning, point_recorder, view), recorder)
 
 
-class PointMass:
+class PointMass(Planned):
     """A point mass on ideal feet; a `Walker`.
 
     The plant's true height is the planned one less the error of the CoM height.

@@ -15,7 +15,7 @@ from surefoot.guard import OWN_GUARD, Guard
 from surefoot.planner.plan import Planner, WalkPlan
 from surefoot.planner.sampling import PlanSampler
 from surefoot.planner.steps.commands import Command
-from surefoot.planner.types import CentroidalState, FeetState, Foot, Footstep, PhaseKind
+from surefoot.planner.types import CentroidalState, FeetState, Foot, Footstep, PhaseInfo, PhaseKind
 from surefoot.scenarios.file.schema import Fault, Rates
 from surefoot.scenarios.record.walk import WalkRecorder
 from surefoot.scenarios.run.sensing import PlannerSensing
@@ -51,6 +51,32 @@ class CommandedPlanner(Planner, Protocol):
         Raises:
             ParameterError: it cannot do this.
         """
+
+
+class Planned:
+    """A walker whose gait is that of a plan, and which is commanded by its planner.
+
+    Attributes:
+        planning: its planner, on its own clock.
+    """
+
+    __slots__ = ()  # as a base beside a compiled one needs
+    planning: "Planning"
+
+    @property
+    def gait(self) -> tuple[float, PhaseInfo]:
+        """See `surefoot.scenarios.run.skeleton.Walker`."""
+        plan = self.planning.plan
+        return plan.time, plan.phase
+
+    @property
+    def orders(self) -> Command:
+        """See `surefoot.scenarios.run.skeleton.Walker`."""
+        return self.planning.orders
+
+    def command(self, command: Command, now: float) -> None:
+        """See `surefoot.scenarios.run.skeleton.Walker`."""
+        self.planning.command(command, now)
 
 
 class FaultSchedule:

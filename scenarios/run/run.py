@@ -18,6 +18,7 @@ from surefoot.models.mjcf import without_looks
 from surefoot.native import modules
 from surefoot.planner.laws.profiles import Profile
 from surefoot.scenarios.errors import LogError, ScenarioError, SetupError
+from surefoot.scenarios.file.registries import DEFAULTS
 from surefoot.scenarios.file.schema import Scenario
 from surefoot.scenarios.judge.metrics import judged_topics
 from surefoot.scenarios.judge.verdict import Verdict, judge
@@ -205,7 +206,7 @@ def closed_loop(walk: Walk, writer: LogWriter, parts: "Parts | None" = None) -> 
         SetupError: a part refuses the walk.
     """
     with refusing():
-        loop = _LOOPS[walk.fidelity](walk, writer, parts)
+        loop = _LOOPS[walk.keys.walker](walk, writer, parts)
     # What was made for it is looked through for garbage here: in a tick that would take a millisecond.
     gc.collect(_YOUNG)
     return loop
@@ -223,8 +224,14 @@ def _pendulum(walk: Walk, writer: LogWriter, _: "Parts | None") -> ClosedLoop:
     return pendulum_loop(walk, writer)
 
 
-_LOOPS = {"full": _full, "pendulum": _pendulum}
-"""What makes the loop of a fidelity."""
+def _seat(walk: Walk, writer: LogWriter, parts: "Parts | None") -> ClosedLoop:
+    from surefoot.scenarios.run.seat import seat_loop
+
+    return seat_loop(walk, writer, parts)
+
+
+_LOOPS = {"full": _full, "pendulum": _pendulum, "seat": _seat}
+"""What makes the loop of a kind of walker."""
 
 
 def note_parts(writer: LogWriter, given: Mapping[str, object]) -> None:
@@ -290,6 +297,7 @@ def run_constants(walk: Walk) -> RunConstants:
         knee_turn=knees_turn(robot),
         unforeseen=walk.unforeseen,
         waypoints=tuple(place[:3] for place in walk.waypoints),
+        controller="" if walk.seat is None else walk.seat.name or DEFAULTS["controller"],
     )
 
 

@@ -74,7 +74,14 @@ class Senses:
     def told(self, reference: WbcReference, report: WbcReport) -> None:
         """Tell the estimator what was decided, if it wants to know."""
         if self._told is not None:
-            self._told(Planned(report.acceleration.copy(), report.torque.copy(), report.active, reference.rolling_foot))
+            self.decided(
+                Planned(report.acceleration.copy(), report.torque.copy(), report.active, reference.rolling_foot)
+            )
+
+    def decided(self, planned: Planned) -> None:
+        """Tell the estimator what somebody else has decided, if it wants to know."""
+        if self._told is not None:
+            self._told(planned)
 
 
 def foot_sensing(

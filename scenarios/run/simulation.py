@@ -16,7 +16,6 @@ from surefoot.errors import ParameterError
 from surefoot.forces import Push
 from surefoot.planner.laws.profiles import Profile
 from surefoot.planner.plan import Planner
-from surefoot.planner.sample import PlanSample
 from surefoot.planner.steps.commands import Command
 from surefoot.scenarios.errors import LogError, nearest
 from surefoot.scenarios.file.schema import CommandSettings, Scenario
@@ -94,7 +93,7 @@ class Simulation:
         self._path = None if log is None else Path(log)
         self._writer: LogWriter
         self._loop: ClosedLoop
-        self._last: tuple[float, PlanSample] | None
+        self._last: float | None
         self._pushes, self._told, self._closed = 0, 0, False
         self._threads = one_thread()
         self._begin()
@@ -143,7 +142,13 @@ class Simulation:
 
     @property
     def planner(self) -> Planner:
-        """The walking planner."""
+        """The walking planner.
+
+        Raises:
+            AttributeError: another controller has its seat.
+        """
+        if self._loop.planning is None:
+            raise AttributeError("a controller has the seat of the planner; simulate without the key controller")
         return self._loop.planning.planner
 
     @property
@@ -151,9 +156,11 @@ class Simulation:
         """The whole-body controller.
 
         Raises:
-            AttributeError: a pendulum has none.
+            AttributeError: a pendulum has none, nor a walk in whose seat is another controller.
         """
         controller = self._loop.walker.controller
+        if controller is None and self.walk.seat is not None:
+            raise AttributeError("another controller has its seat; simulate without the key controller")
         if controller is None:
             raise AttributeError("a pendulum has no whole-body controller; simulate with fidelity full")
         return controller
@@ -171,11 +178,11 @@ class Simulation:
         """Go through one control tick without a look at it, which saves a tenth of the time; errors as of `step`."""
         self._refuse_when_over()
         loop = self._loop
-        time, sample = loop.time, loop.step()
+        time, goes_on = loop.time, loop.step()
         self._end_when_over()
-        if sample is None:
+        if not goes_on:
             raise RunFault(f"{loop.end.reason}; reset() begins anew") from loop.fault
-        self._last = (time, sample)
+        self._last = time
 
     def _refuse_when_over(self) -> None:
         loop = self._loop
@@ -196,15 +203,15 @@ class Simulation:
         """
         if self._last is None:
             raise RunFault("there is no tick to look at yet; step() makes the first one")
-        loop, (time, sample) = self._loop, self._last
-        seen = loop.walker.look()
+        loop, time = self._loop, self._last
+        seen, planning = loop.walker.look(), loop.planning
         return Tick(
             time=time,
             com=seen.com,
             com_velocity=seen.com_velocity,
             zmp=seen.zmp,
-            plan=loop.planning.plan,
-            reference=sample,
+            phase=loop.phase,
+            planned=None if planning is None else (planning.plan, loop.sample),
             fell=loop.fell,
             state=deepcopy(seen.state),
             report=deepcopy(seen.report),
@@ -268,7 +275,7 @@ class Simulation:
             fault = error.errors(include_url=False)[0]
             what = f"a command with {fault['loc'][-1]} {fault['input']!r}"
             raise ParameterError(("command", *map(str, fault["loc"])), what, fault["msg"]) from None
-        self._loop.planning.command(command_of(settings), self._loop.time)
+        self._loop.walker.command(command_of(settings), self._loop.time)
         self._told += 1
         record = json.dumps(settings.model_dump(mode="json", exclude_none=True))
         self._writer.add_metadata(f"{COMMAND_RECORD}{self._told}", {"command": record})
@@ -280,7 +287,7 @@ class Simulation:
         Raises:
             ParameterError: the planner takes no commands.
         """
-        return self._loop.planning.orders
+        return self._loop.walker.orders
 
     def push(self, force: ArrayLike, duration: float = 0.1, body: str | None = None) -> None:
         """Push the robot, from the next tick on.

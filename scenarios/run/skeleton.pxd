@@ -1,11 +1,13 @@
 cdef class ClosedLoop:
-    cdef readonly object walker, planning, rate, end, fault
+    cdef readonly object walker, planning, rate
     cdef readonly long long tick
+    cdef readonly object sample, end
     cdef readonly bint fell, done
+    cdef readonly object fault
     cdef object _recorder
     cdef list _pushes, _begun
     cdef long long _ticks, _last
 
     cpdef step(self)
     cdef _step(self, long long tick)
-    cdef _push(self, double now, plan)
+    cdef _push(self, double now, double since, phase)

@@ -5,16 +5,15 @@ from collections.abc import Callable, Iterator, Sequence
 from contextlib import contextmanager
 from dataclasses import dataclass, replace
 from traceback import format_exception
-from typing import Literal, Protocol
+from typing import Any, Literal, Protocol, TypeVar
 
 from surefoot.errors import PartError
 from surefoot.forces import Push
-from surefoot.planner.plan import WalkPlan
-from surefoot.planner.sample import PlanSample
+from surefoot.planner.steps.commands import Command
 from surefoot.planner.types import PhaseInfo, PhaseKind
 from surefoot.scenarios.errors import SetupError
 from surefoot.scenarios.record.provenance import AFTER_FALL
-from surefoot.scenarios.record.walk import WalkRecorder
+from surefoot.scenarios.record.walk import RunRecorder
 from surefoot.scenarios.run.planning import ROUNDING, Planning, RunFault
 from surefoot.scenarios.run.tick import Look, Spent
 from surefoot.scenarios.setup.gait import PushPoint
@@ -90,15 +89,41 @@ def refusing() -> Iterator[None]:
         raise SetupError(scenario_problem(refusal)) from refusal
 
 
-class Walker(Protocol):
-    """What walks in a closed loop: a simulated robot under its whole-body controller, or a point mass on ideal feet.
+S = TypeVar("S")
 
-    The skeleton calls its verbs in the order in which they stand here, once per control tick.
+
+class Walker(Protocol[S]):
+    """What walks in a closed loop: a robot under its whole-body controller or another one, or a point mass.
+
+    What it follows is a sample of the plan, or nothing. The skeleton calls its verbs in the order in which they stand
+    here, once per control tick.
     """
 
     @property
-    def planning(self) -> Planning:
-        """Its planner, on its own clock."""
+    def planning(self) -> Planning | None:
+        """Its planner, on its own clock; None without one."""
+        ...
+
+    @property
+    def gait(self) -> tuple[float, PhaseInfo]:
+        """Where it is in its gait, and at what instant it was there [s]."""
+        ...
+
+    @property
+    def orders(self) -> Command:
+        """What it does of what it has been told.
+
+        Raises:
+            ParameterError: it takes no commands.
+        """
+        ...
+
+    def command(self, command: Command, now: float) -> None:
+        """Tell it something at an instant [s].
+
+        Raises:
+            ParameterError: it takes no commands, or cannot do this.
+        """
         ...
 
     @property
@@ -114,19 +139,19 @@ class Walker(Protocol):
         """
         ...
 
-    def control(self, tick: int, now: float) -> tuple[PlanSample, Spent]:
+    def control(self, tick: int, now: float) -> tuple[S, Spent]:
         """Plan, and decide what to do until the next tick; returns the reference of now, and the time it took."""
         ...
 
-    def record(self, now_ns: int, sample: PlanSample) -> None:
+    def record(self, now_ns: int, sample: S) -> None:
         """Write the tick into the log's channels."""
         ...
 
-    def fallen(self, sample: PlanSample) -> bool:
+    def fallen(self, sample: S) -> bool:
         """Whether it has fallen."""
         ...
 
-    def draw(self, tick: int, now_ns: int, plan: WalkPlan, sample: PlanSample, fallen: bool) -> None:
+    def draw(self, tick: int, now_ns: int, plan: Any, sample: S, fallen: bool) -> None:
         """Write what MCAP viewers show of the tick."""
         ...
 
@@ -163,9 +188,10 @@ class ClosedLoop:
 
     Attributes:
         walker: what walks.
-        planning: its planner.
+        planning: its planner; None without one.
         rate: of the control ticks [Hz].
         tick: number of the next tick.
+        sample: the reference of the last tick; there is none before the first, nor of a walker without a plan.
         end: how the run ended, or will have ended if nothing happens.
         fell: whether the walker has fallen.
         done: whether the run is over: its time, a while after a fall, or a fault.
@@ -174,8 +200,8 @@ class ClosedLoop:
 
     def __init__(
         self,
-        walker: Walker,
-        recorder: WalkRecorder,
+        walker: Walker[Any],
+        recorder: RunRecorder,
         rate: int,
         duration: float,
         pushes: Sequence[tuple[PushPoint, Push]] = (),
@@ -184,6 +210,7 @@ class ClosedLoop:
         self._recorder, self.rate = recorder, rate
         self._ticks = self._last = round(duration * rate)
         self.tick = 0
+        self.sample: Any = None
         self._pushes = list(pushes)
         self._begun: list[tuple[PushPoint, Push]] = []
         self.end = End("completed", self._ticks / rate)
@@ -192,9 +219,8 @@ class ClosedLoop:
         self.fault: RunFault | PartError | None = None
 
     @classmethod
-    def of(cls, walk: Walk, walker: Walker, recorder: WalkRecorder) -> "ClosedLoop":
+    def of(cls, walk: Walk, walker: Walker[Any], recorder: RunRecorder) -> "ClosedLoop":
         """The loop of a walk around what walks it, at its start."""
-        walker.planning.recorder = recorder
         return cls(walker, recorder, walk.rates.control, walk.duration, walk.gait_pushes)
 
     @property
@@ -210,17 +236,17 @@ class ClosedLoop:
     @property
     def phase(self) -> PhaseInfo:
         """Where the gait stands; asked only after a step."""
-        return self.planning.plan.phase
+        return self.walker.gait[1]
 
-    def step(self) -> PlanSample | None:
-        """Go through one control tick; returns the reference of the tick, None when a fault ended the run."""
+    def step(self) -> bool:
+        """Go through one control tick; False when a fault ended the run."""
         tick, rate = self.tick, self.rate
         try:
-            sample, fallen = self._step(tick)
+            fallen = self._step(tick)
             tick = self.tick
         except (RunFault, PartError) as fault:
             self.end, self.done, self.fault = fault_end(fault, tick / rate), True, fault
-            return None
+            return False
         if fallen and not self.fell:
             self.fell = True
             self.end = End("fall", tick / rate, f"the robot fell at {tick / rate:.3f} s")
@@ -230,7 +256,7 @@ class ClosedLoop:
         if self.done and not self.fell:
             broken = self._broken_promise()
             self.end = End("fault" if broken else "completed", self.tick / rate, broken)
-        return sample
+        return True
 
     def _broken_promise(self) -> str:
         """Which push at a point of the gait did not act, or not to its end; empty when all did that are to."""
@@ -242,7 +268,7 @@ class ClosedLoop:
                 return f"a push at {push.time:.3f} s, {point}, would have lasted {push.duration:g} s and was cut off"
         return ""
 
-    def _step(self, tick: int) -> tuple[PlanSample, bool]:
+    def _step(self, tick: int) -> bool:
         clock, busy_clock = time.perf_counter, time.thread_time_ns
         begin, busy = clock(), busy_clock()
         walker, rate, recorder = self.walker, self.rate, self._recorder
@@ -252,11 +278,15 @@ class ClosedLoop:
         sample, spent = walker.control(tick, now)
         busy = busy_clock() - busy
         decided = clock()
-        plan = self.planning.plan
+        self.sample = sample
         if self._pushes:
-            self._push(now, plan)
+            since, phase = walker.gait
+            self._push(now, since, phase)
         walker.record(now_ns, sample)
-        recorder.reference(now_ns, plan, sample)
+        planning = self.planning
+        plan = None if planning is None else planning.plan
+        if planning is not None and planning.recorder is not None:
+            planning.recorder.reference(now_ns, planning.plan, sample)
         fallen = walker.fallen(sample)
         walker.draw(tick, now_ns, plan, sample, fallen)
         logged = clock()
@@ -266,13 +296,13 @@ class ClosedLoop:
         state += sensed - begin
         log = logged - decided
         recorder.timing(now_ns, (state, build, solve, plan_time, end - logged, log, end - begin, 1e-9 * busy))
-        return sample, fallen
+        return fallen
 
-    def _push(self, now: float, plan: WalkPlan) -> None:
+    def _push(self, now: float, since: float, phase: PhaseInfo) -> None:
         """Give the pushes whose point of the gait is reached before the next tick."""
         waiting, self._pushes = self._pushes, []
         for point, push in waiting:
-            begin = max(now, plan.time + point.left(plan.phase))
+            begin = max(now, since + point.left(phase))
             # At the end of the tick too: there the next phase may begin, which does not know the point any more.
             if begin < now + (1.0 + ROUNDING) / self.rate:
                 begun = replace(push, time=begin)
@@ -291,7 +321,7 @@ def run_loop(loop: ClosedLoop, on_progress: OnProgress) -> End:
         on_progress: is told where the run is, every simulated tenth of a second.
     """
     started, every = time.perf_counter(), loop.rate // 10 or 1
-    while not loop.done and loop.step() is not None:
+    while not loop.done and loop.step():
         if loop.tick % every == 0:
             on_progress(_progress(loop, time.perf_counter() - started))
     return loop.end

@@ -8,7 +8,7 @@ from numpy.typing import NDArray
 
 from surefoot.planner.plan import WalkPlan
 from surefoot.planner.sample import PlanSample
-from surefoot.planner.types import PhaseKind
+from surefoot.planner.types import PhaseInfo, PhaseKind
 from surefoot.sim.measurement import Measurement
 from surefoot.wbc.types import RobotState, WbcReport
 
@@ -61,8 +61,8 @@ class Tick:
         com: true CoM, shape (3,) [m].
         com_velocity: shape (3,) [m/s].
         zmp: true ZMP, shape (2,) [m]; NaN in flight.
-        plan: the plan that is followed.
-        reference: its references at this instant.
+        phase: where it is in its gait, as planned, or as felt of a robot without a plan.
+        planned: the plan that is followed, and its references at this instant; None without a planner.
         fell: whether the robot has fallen, now or before.
         state: state that the controller was given; None on a pendulum.
         report: what the whole-body controller did, its torques and contact wrenches; None on a pendulum.
@@ -73,16 +73,35 @@ class Tick:
     com: Array
     com_velocity: Array
     zmp: Array
-    plan: WalkPlan
-    reference: PlanSample
+    phase: PhaseInfo
+    planned: tuple[WalkPlan, PlanSample] | None
     fell: bool
     state: RobotState | None
     report: WbcReport | None
     measurement: Measurement | None
 
+    @property
+    def plan(self) -> WalkPlan:
+        """The plan that is followed.
+
+        Raises:
+            AttributeError: there is none, since another controller has the planner's seat.
+        """
+        return self._found()[0]
+
+    @property
+    def reference(self) -> PlanSample:
+        """References of the plan at this instant; errors as of `plan`."""
+        return self._found()[1]
+
+    def _found(self) -> tuple[WalkPlan, PlanSample]:
+        if self.planned is None:
+            raise AttributeError("nothing is planned, since a controller has the seat of the planner")
+        return self.planned
+
     def __repr__(self) -> str:
         """A line: when, where in the gait, where the CoM is."""
-        phase, (x, y, z) = self.plan.phase, self.com.tolist()
+        phase, (x, y, z) = self.phase, self.com.tolist()
         where = {PhaseKind.STAND: "standing", PhaseKind.DOUBLE: "double support"}.get(phase.kind, "single support")
         fallen = ", fallen" if self.fell else ""
         return f"<Tick {self.time:.3f} s, {where}, step {phase.step}, CoM ({x:.3f}, {y:.3f}, {z:.3f}) m{fallen}>"

@@ -55,10 +55,19 @@ def check(walk: Walk, robots: Robots) -> list[Problem]:
         *_beliefs(walk),
         *_controller(walk),
         *_walk_problems(walk),
+        *_seat(walk),
         *_robot(walk, robots),
         *hardware_problems(walk.sensing, walk.keys.motors, walk.rates.physics),
         *(() if walk.walker.has_body else _without_body(walk)),
     ]
+
+
+def _seat(walk: Walk) -> Iterator[Problem]:
+    """List what a controller in the seat of the planner cannot hear, if there is one."""
+    if walk.seat is not None:
+        from surefoot.scenarios.setup.seat import seat_problems
+
+        yield from seat_problems(walk)
 
 
 def _rates(walk: Walk) -> Iterator[Problem]:

@@ -13,21 +13,32 @@ from surefoot.scenarios.file.names import usable
 from surefoot.scenarios.file.schema import Scenario, TerrainSettings, model_of
 from surefoot.scenarios.judge.metric import TRUTH, Metric
 from surefoot.scenarios.judge.metrics import METRICS, known
+from surefoot.scenarios.judge.verdict import applies
 from surefoot.scenarios.setup.robot import Robots
 from surefoot.scenarios.setup.terrain import KINDS
 
 
-def criteria_problems(criteria: Mapping[str, Bound], fidelity: str) -> list[Problem]:
-    """List criteria that check nothing in a fidelity, a fault each; names that are no metrics are for others to say."""
+def criteria_problems(criteria: Mapping[str, Bound], walker: str) -> list[Problem]:
+    """List criteria that check nothing of a kind of walker, a fault each; names that are no metrics others tell."""
     found = [(name, bound, known(name)) for name, bound in criteria.items()]
     metrics = [metric for _, _, metric in found if metric is not None]
     problems = [
         problem for name, bound, metric in found if metric for problem in islice(_faults(name, bound, metric), 1)
     ]
-    if metrics and not any(metric.applies(fidelity) for metric in metrics):
-        what = f"none of these criteria can be measured on a {fidelity}, so nothing would be checked"
+    if walker == "seat":
+        problems += _of_a_planner(criteria)
+    elif metrics and not any(metric.applies(walker) for metric in metrics):
+        what = f"none of these criteria can be measured on a {walker}, so nothing would be checked"
         problems.append(Problem(("criteria",), what, "use fidelity full, or bound a metric that it has"))
     return problems
+
+
+def _of_a_planner(criteria: Mapping[str, Bound]) -> Iterator[Problem]:
+    """Tell criteria that no run of a controller without a planner can be held to."""
+    for name, bound in criteria.items():
+        if not applies(name, bound, "seat"):
+            what = f"criteria.{name} is of a planner, and a controller has its seat"
+            yield Problem(("criteria", name), what, "leave it out")
 
 
 def comparable(name: str, metric: Metric[Any]) -> tuple[str, ...]:

@@ -5,7 +5,7 @@ from dataclasses import dataclass
 from surefoot.errors import ParameterError
 from surefoot.planner.references.com_height import Rise
 from surefoot.scenarios.errors import Key, Problem
-from surefoot.scenarios.file.schema import PendulumSettings
+from surefoot.scenarios.file.schema import PendulumSettings, PlannerSettings
 from surefoot.scenarios.file.sensing import SENSOR_KEYS
 
 _NAMES: dict[Key, Key] = {
@@ -62,6 +62,14 @@ _NO_CONTACT = (
 """Keys that the pendulum, whose feet are ideal and which has no joints, does not feel."""
 
 
+_OF_A_PLANNER = (
+    *(("planner", name) for name in PlannerSettings.model_fields if name != "sample_time"),
+    *(("sensing", name) for name in ("com_noise", "zmp_noise", "force_estimate")),
+    *(("gait", name) for name in ("swing_height", "apex_single", "apex_double", "heel_off")),
+)
+"""Keys that mean nothing to what walks without a plan."""
+
+
 @dataclass(frozen=True, slots=True)
 class Fidelity:
     """What walks.
@@ -85,5 +93,11 @@ FIDELITIES = {
         "whole body", True, Rise.SINGLE, tuple(("pendulum", name) for name in PendulumSettings.model_fields)
     ),
     "pendulum": Fidelity("pendulum", False, Rise.DOUBLE, _NO_CONTACT),
+    "seat": Fidelity(
+        "controller without a planner",
+        True,
+        Rise.SINGLE,
+        (*(("pendulum", name) for name in PendulumSettings.model_fields), *_OF_A_PLANNER),
+    ),
 }
-"""By the values of the key ``fidelity``."""
+"""By the kind of walker: the values of the key ``fidelity``, and ``seat`` beside the key ``controller``."""

@@ -17,12 +17,13 @@ from surefoot.errors import ParameterError, PartError
 from surefoot.models.names import is_file
 from surefoot.scenarios import catalogue
 from surefoot.scenarios.errors import Key, LogError, Problem, ScenarioError, SetupError, told_once
-from surefoot.scenarios.file.criteria import Bound
+from surefoot.scenarios.file.criteria import Bound, standing_walk
 from surefoot.scenarios.file.names import unusable
 from surefoot.scenarios.file.schema import Scenario
 from surefoot.scenarios.file.source import Overrides, Source, apply_overrides, decoded, parse, value_at
 from surefoot.scenarios.file.translate import problems_of, without
 from surefoot.scenarios.judge.metrics import unknown_metrics
+from surefoot.scenarios.judge.verdict import applies
 from surefoot.scenarios.log import read
 from surefoot.scenarios.log.encoding import MAGIC
 from surefoot.scenarios.record import provenance
@@ -70,6 +71,7 @@ def attached_scenario(path: str) -> tuple[str, str]:
         log = read(path)
         text = decoded(BytesIO(log.attachments[provenance.SCENARIO_FILE]), f"{path}/{provenance.SCENARIO_FILE}")
         text = _as_run(text if "\n  preset:" in text else _UNSAID.sub("", text), log.metadata)
+        text = _seated_as_run(text, log.metadata)
     except LogError as error:
         raise ScenarioError([str(error)]) from None
     except (AttributeError, KeyError, TypeError, ValueError, RecursionError):
@@ -109,6 +111,16 @@ def _as_run(text: str, metadata: Mapping[str, Mapping[str, str]]) -> str:
             for name in ("pushes", "commands"):
                 keys[name] = [{**entry, "live": True} for entry in keys[name]]
             keys["faults"] = [_until(keys["duration"], entry) for entry in keys["faults"]]
+    return yaml.safe_dump(keys, sort_keys=False)
+
+
+def _seated_as_run(text: str, metadata: Mapping[str, Mapping[str, str]]) -> str:
+    """The text of a scenario whose controller must be the one that it had then, where the log tells its digest."""
+    digest = metadata.get(provenance.SEAT_RECORD, {}).get("digest")
+    if digest is None:
+        return text
+    keys = parse(text, provenance.SCENARIO_FILE).value
+    keys["controller"]["digest"] = json.loads(digest)
     return yaml.safe_dump(keys, sort_keys=False)
 
 
@@ -182,7 +194,7 @@ def read_scenario(
     problems = [*source.problems, *problems]
     wrong = {problem.key for problem in problems}
     scenario, unfit = _checked(scenario, robots)
-    semantic = [*criteria_problems(scenario.criteria, scenario.fidelity), *unfit]
+    semantic = [*criteria_problems(scenario.criteria, scenario.walker), *unfit]
     semantic = [problem for problem in semantic if not _touched(problem.key, wrong)]
     if problems or semantic:
         raise ScenarioError(_told(source, problems, semantic))
@@ -235,10 +247,14 @@ def _source(written: Written, overrides: Overrides, robots: Robots) -> Source:
         raise ScenarioError([f"{name}:1:1: the file is empty; give at least 'name: {written.stem}'"])
     if not isinstance(source.value, dict):
         raise ScenarioError([f"{name}:1:1: a scenario is a group of keys; write 'key: value' lines"])
-    _place_robot(source, Path(written.place).parent)
+    _place_files(source, Path(written.place).parent)
     _size(source, overrides, robots)
+    own, written_for_it = source.value.get("criteria"), _seat(source.value) is not None
+    asked = list(own) if isinstance(own, dict) else []
     apply_overrides(source, overrides)
-    _place_robot(source, Path.cwd())
+    _place_files(source, Path.cwd())
+    if _seat(source.value) is not None:
+        _ask_of_seat(source.value, [] if written_for_it else asked, overrides)
     source.value.pop("sized_for", None)
     source.value.setdefault("name", written.stem)
     return source
@@ -297,11 +313,56 @@ def _told(source: Source, alone: list[Problem], together: list[Problem]) -> list
     return [*told, f"{source.name}: {rest} problems more; mend these first"] if rest else told
 
 
-def _place_robot(source: Source, folder: Path) -> None:
-    """Name a robot file by its full path, so that the scenario means the same wherever it is read again."""
-    robot = source.value.get("robot")
+def _place_files(source: Source, folder: Path) -> None:
+    """Name files by their full paths, so that the scenario means the same wherever it is read again."""
+    robot, seat = source.value.get("robot"), _seat(source.value)
     if isinstance(robot, str) and is_file(robot):
         source.value["robot"] = os.path.normpath(folder.absolute() / robot)
+    if seat is not None and isinstance(seat.get("policy"), str):
+        seat["policy"] = os.path.normpath(folder.absolute() / seat["policy"])
+
+
+def _seat(values: Any) -> dict[str, Any] | None:
+    """The group of what has the seat of planner and whole-body controller, as it is written; None without one."""
+    seat = values.get("controller") if isinstance(values, dict) else None
+    return seat if isinstance(seat, dict) else None
+
+
+def _ask_of_seat(values: dict[str, Any], written: list[Any], overrides: Overrides) -> None:
+    """Leave out the criteria of a planner that a scenario asks which was written for one, and keep their names.
+
+    Those that the overrides themselves ask stay, to be refused. Of the criteria of a file that gives none, those of a
+    planner are not meant.
+
+    Args:
+        values: of the scenario.
+        written: criteria of a file that has named no controller itself.
+        overrides: over its keys.
+    """
+    if "criteria" not in values:
+        usual = standing_walk().items()
+        values["criteria"] = {
+            name: bound.model_dump(exclude_none=True) for name, bound in usual if applies(name, bound, "seat")
+        }
+    asked = values["criteria"]
+    if not isinstance(asked, dict):
+        return
+    given = [one if isinstance(overrides, Mapping) else one.partition("=")[0].strip() for one in overrides]
+    left = [
+        name
+        for name in written
+        if _needs_planner(asked.get(name), name) and not any(f"{one}.".startswith(f"criteria.{name}.") for one in given)
+    ]
+    values["criteria"] = {name: bound for name, bound in asked.items() if name not in left}
+    if left:
+        values["controller"]["left_out"] = left
+
+
+def _needs_planner(bound: Any, name: Any) -> bool:
+    """Whether a criterion as it is written is one that only a planner can be held to; a faulty one is not."""
+    with suppress(ValidationError):
+        return not applies(str(name), Bound.model_validate(bound), "seat")
+    return False
 
 
 def _validated(data: Any) -> tuple[Scenario, list[Problem]]:

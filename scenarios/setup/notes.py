@@ -65,6 +65,8 @@ def _without_effect(walk: Walk) -> Iterator[str]:
     yield from () if walker.has_body else _not_felt(walk)
     for group, name in walker.unfelt:
         yield from (f"{key} has no effect on a {walker.thing}" for key in _given(walk, group, (name,)))
+    if walk.seat is not None:
+        yield from (f"{group} has no effect beside controller" for group in ("control", "wbc") if getattr(keys, group))
     if walker.has_body:
         return
     for group in ("control", "motors", "plant", "wbc"):

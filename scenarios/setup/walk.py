@@ -19,7 +19,7 @@ from surefoot.planner.steps.gait import GaitParameters
 from surefoot.planner.swing.leg_reach import LegReach
 from surefoot.planner.swing.step_region import StepRegion
 from surefoot.planner.types import FeetState, Twist
-from surefoot.scenarios.file.control import ControlSettings
+from surefoot.scenarios.file.control import ControlSettings, SeatSettings
 from surefoot.scenarios.file.dumped import scenario_yaml
 from surefoot.scenarios.file.group import controller_parameters
 from surefoot.scenarios.file.schema import Fault, LogSettings, PendulumSettings, PushSettings, Rates, Scenario, Start
@@ -128,7 +128,7 @@ class Walk:
     @property
     def walker(self) -> Fidelity:
         """What walks."""
-        return FIDELITIES[self.fidelity]
+        return FIDELITIES[self.keys.walker]
 
     @property
     def told(self) -> bool:
@@ -332,6 +332,11 @@ class Walk:
     def hardware(self) -> Hardware:
         """What sensors and motors do that nobody is told of."""
         return Hardware.of(self.sensing, self.keys.motors, self.size)
+
+    @property
+    def seat(self) -> SeatSettings | None:
+        """What has the seat of planner and whole-body controller; None where they have it."""
+        return self.keys.controller
 
     @property
     def log(self) -> LogSettings:

@@ -163,7 +163,8 @@ def _print_metrics(verdict: Verdict, names: tuple[str, ...]) -> None:
     for name in names:
         value, unit = value_text(name, verdict.metrics.get(name)), shown_unit(name)
         if name == "steps_taken":
-            value = f"{value} of {value_text(name, verdict.metrics.get('steps_planned'))}"
+            planned = verdict.metrics.get("steps_planned")
+            value = value if planned is None else f"{value} of {value_text(name, planned)}"
         bounds = [bound_text(name, bound) for key, bound in verdict.criteria.items() if key.partition(".")[0] == name]
         rows.append((name, value, unit, ", ".join(bounds)))
     print_table(("metric", "value", "unit", "criterion"), rows, missed)

@@ -1,6 +1,7 @@
 """Options that commands share, what a shell completes of them, and commands whose options are one value."""
 
 import inspect
+import json
 from collections.abc import Callable, Iterator
 from pathlib import Path
 from typing import TYPE_CHECKING, Annotated, Any, TypeVar, get_args
@@ -60,9 +61,21 @@ def settings(what: str) -> Any:
     return typer.Option("--set", metavar="KEY=VALUE", help=f"{what}; repeatable.", autocompletion=_settings_from)
 
 
-def overrides(set_: list[str] | None, seed: int | None) -> list[str]:
-    """What ``--set`` and ``--seed`` say, as settings of keys."""
-    return [*(set_ or ()), *([] if seed is None else [f"seed={seed}"])]
+def overrides(set_: list[str] | None, seed: int | None = None, policy: str | None = None) -> list[str]:
+    """What ``--policy``, ``--set`` and ``--seed`` say, as settings of keys."""
+    return [*seat(policy), *(set_ or ()), *([] if seed is None else [f"seed={seed}"])]
+
+
+def seat(policy: str | None) -> list[str]:
+    """What ``--policy`` says: the file or folder of a policy, or the name of a controller, that gets the seat."""
+    if policy is None:
+        return []
+    if not Path(policy).exists():
+        from surefoot.scenarios.file.registries import CONTROLLERS
+
+        if policy in CONTROLLERS.others():
+            return [f"controller.name={json.dumps(policy)}"]
+    return [f"controller.policy={json.dumps(policy)}"]
 
 
 From = Annotated[float | None, typer.Option("--from", metavar="T", help="From this time on [s].", callback=_finite)]
@@ -71,6 +84,14 @@ Replace = Annotated[bool, typer.Option("--force", "-f", help="Replace the file i
 AsJson = Annotated[bool, typer.Option("--json", help="Print one JSON object and nothing else.")]
 Settings = Annotated[list[str] | None, settings("Set a key")]
 Seed = Annotated[int | None, typer.Option(min=0, help="Seed, over that of the scenario.")]
+SeatOf = Annotated[
+    str | None,
+    typer.Option(
+        "--policy",
+        metavar="FILE",
+        help="Contract or folder of a policy, in place of planner and whole-body controller.",
+    ),
+]
 Jobs = Annotated[int | None, typer.Option(min=1, help="Runs at once; as many as cores by default.")]
 LogFile = Annotated[Path, typer.Argument(help="A log, also a truncated one.")]
 

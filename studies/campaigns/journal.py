@@ -50,14 +50,18 @@ class MadeOf:
     def __init__(self, versions: Callable[[], Mapping[str, str]] = relevant_versions) -> None:
         self._versions = versions
         self._base, self._robot = lru_cache(maxsize=None)(_named), lru_cache(maxsize=None)(robot_digest)
+        self._policy = lru_cache(maxsize=None)(_policy_digest)
 
     def of(self, point: Point, anywhere: bool = False) -> str:
         """Digest of all that a run's result depends on but its scenario; ``anywhere``: that is one on every machine."""
-        own, named = self._base(point.base.written)
+        own, named, seat = self._base(point.base.written)
         words = frozenset((*named, *_words(dict(point.settings))))
         versions = {name: one for name, one in self._versions().items() if not (anywhere and name in OF_A_MACHINE)}
         robot = self._robot(str(point.settings.get("robot", own)))
-        return _digest([versions, dict(packages_of(words)), robot])
+        made_of = [versions, dict(packages_of(words)), robot]
+        if policy := _policy_of(point.settings) or seat:
+            made_of.append(self._policy(policy))
+        return _digest(made_of)
 
 
 def overlooked(campaign: Campaign) -> Iterator[str]:
@@ -70,6 +74,20 @@ def overlooked(campaign: Campaign) -> Iterator[str]:
         yield f"{seen}; not when it reads other files or the environment: choose another --out then"
 
 
+def _policy_of(settings: Mapping[str, Any]) -> str:
+    """The policy that settings of keys name; empty where they name none."""
+    seat = settings.get("controller")
+    named = settings.get("controller.policy", seat.get("policy") if isinstance(seat, dict) else None)
+    return str(named or "")
+
+
+def _policy_digest(path: str) -> str:
+    """Digest of a policy as it is on the disk now."""
+    from surefoot.scenarios.policy.files import digest_of
+
+    return digest_of(path)
+
+
 def robot_digest(name: str) -> str:
     """Digest of a robot as it is described now, of what is wrong with it if it cannot be."""
     try:
@@ -78,13 +96,17 @@ def robot_digest(name: str) -> str:
         return _digest(f"{type(error).__name__}: {error}")
 
 
-def _named(written: Written) -> tuple[str, frozenset[str]]:
-    """A scenario's robot, a robot file by its full path, and every word of its keys and values."""
+def _named(written: Written) -> tuple[str, frozenset[str], str]:
+    """A scenario's robot, a robot file by its full path, every word of its keys and values, and its policy if any."""
     values = parse(written.text, written.place).value
     robot = str(values.get("robot", Scenario.model_fields["robot"].default)) if isinstance(values, dict) else ""
     if is_file(robot):
         robot = os.path.normpath(Path(written.place).parent.absolute() / robot)
-    return robot, frozenset(_words(values))
+    seat = values.get("controller") if isinstance(values, dict) else None
+    policy = str(seat.get("policy") or "") if isinstance(seat, dict) else ""
+    if policy:
+        policy = os.path.normpath(Path(written.place).parent.absolute() / policy)
+    return robot, frozenset(_words(values)), policy
 
 
 def _words(value: Any) -> Iterator[str]:

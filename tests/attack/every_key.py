@@ -15,10 +15,11 @@ from surefoot.scenarios.file.sensing import SENSOR_KEYS
 NOT_YET = {
     "sensing.options",
     "plant.options",
+    *(f"controller.{of}" for of in ("policy", "name", "options", "digest", "left_out")),
     "control.gains",
     *(f"control.driven_{of}" for of in ("joints", "motion", "told")),
 }
-"""Keys whose values are what an estimator or a plant takes, or are by names of joints."""
+"""Keys whose values are what a part takes, or are by names of joints; or that name a file of a policy."""
 
 _SENSORS = {"preset": "cheap", "wrench": "feet", "encoder_velocity": True, "encoder_bits": 16, "latency": 0.002}
 SENSORS = {name: _SENSORS.get(name, 10.0 if name.endswith("_range") else 1e-3) for name in SENSOR_KEYS}

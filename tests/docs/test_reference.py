@@ -104,6 +104,7 @@ def test_every_key_of_the_table_is_one_and_takes_its_default(reference):
                 "wbc": None,
                 "motors": None,
                 "plant": None,
+                "controller": None,
                 "control": None,
                 "log": None,
                 "planner": planner,

@@ -15,6 +15,7 @@ from surefoot.planner.ground import terrain
 from surefoot.planner.parameters import PlannerParameters
 from surefoot.planner.steps import adaptation
 from surefoot.scenarios.judge import causes, computing_checks, motion_checks
+from surefoot.scenarios.policy import mends, trial
 from surefoot.scenarios.record.foxglove import drawing, views
 from surefoot.scenarios.show.figures import ground, motion
 from surefoot.scenarios.show.replay import content, video
@@ -104,6 +105,17 @@ CODED = {
         "the last three alone, up": (external.BOUND[0],),
         "the last three alone, above": (external.PUSH[1],),
         "below 4 N": (external.KEPT[0], external.KEPT[0], 100 * external.WEIGHT[0]),
+    },
+    "docs/policies.md": {
+        "error of the mean velocity": (trial.ASTRAY,),
+        "mean tilt": (trial.LEANS,),
+        "change of the targets": (trial.JUMPS,),
+        "sign or scale of actions": (
+            min(map(abs, mends.ACTION_FACTORS)),
+            max(mends.ACTION_FACTORS),
+            -min(mends.ACTION_FACTORS),
+        ),
+        "gains": (min(mends.GAIN_FACTORS), max(mends.GAIN_FACTORS)),
     },
     "docs/replay.md": {
         "Contact forces": (1000, 1000 * content.CONTACT_SCALE),

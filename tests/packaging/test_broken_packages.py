@@ -11,6 +11,7 @@ USES = {
     "surefoot.estimators": "sensing.source={}",
     "surefoot.tasks": "wbc.tasks=[{}]",
     "surefoot.plants": "plant.name={}",
+    "surefoot.controllers": "controller.name={}",
     "surefoot.robots": "robot={}",
     "surefoot.terrains": "terrain.kind={}",
     "surefoot.metrics": "criteria.{}=true",
@@ -22,6 +23,7 @@ RIGHT = {
     "surefoot.estimators": "it must be a function or a class",
     "surefoot.tasks": "it must be a function or a class",
     "surefoot.plants": "it must be a function or a class",
+    "surefoot.controllers": "it must be a function or a class",
     "surefoot.robots": "it must be a Robot",
     "surefoot.terrains": "it must be a TerrainKind",
     "surefoot.metrics": "it must be a Metric",
@@ -31,6 +33,7 @@ OURS = {
     "surefoot.profiles": "paper",
     "surefoot.estimators": "truth",
     "surefoot.plants": "mujoco",
+    "surefoot.controllers": "policy",
     "surefoot.robots": "humanoid100",
     "surefoot.terrains": "stairs",
 }

@@ -9,7 +9,7 @@ import pytest
 
 pytestmark = pytest.mark.unit
 
-OF_THE_FLOORS = ("bench", "drive", "new", "paper", "robot", "serve", "sweep", "walk")
+OF_THE_FLOORS = ("bench", "drive", "new", "paper", "policy", "robot", "serve", "sweep", "walk")
 
 MODULE = '''
 import sys
@@ -174,7 +174,7 @@ def test_files_that_cannot_be_had_are_told_beside_the_others(at_hand, site, body
     made.write("my_package_files.py", f"def maps():\n    {body}\n")
     made.register("surefoot.files", map="my_package_files:maps")
     answer = at_hand("list", sites=[made])
-    assert answer.code == 0 and "campaign  soak" in answer.out
+    assert answer.code == 0 and "campaign   soak" in answer.out
     assert said in answer.err and answer.err.count("\n") == 1
     assert at_hand("show", "soak").code == 0
 

@@ -12,6 +12,7 @@ import sys
 
 import numpy as np
 
+from surefoot.joints import JointCommand
 from surefoot.models import Robot, RobotDescription, RobotOptions
 from surefoot.planner import Motion, PlannerParameters, Profile, WalkingPlanner
 from surefoot.planner.laws.footstep_tvmpc import FootstepTvmpc
@@ -93,6 +94,20 @@ class Plant:
         pass
 
 
+class Seat:
+    parameters = {}
+
+    def __init__(self, walk, how):
+        self.posture, self.how = np.array(walk.robot.nominal_joint_positions), how
+
+    def reset(self, q):
+        pass
+
+    def step(self, readings, command=None):
+        torque = {"short": self.posture[:3], "nan": np.nan * self.posture}.get(fail(self.how), self.posture)
+        return None if self.how == "none" else JointCommand(torque)
+
+
 class Law:
     def __init__(self, parameters, how):
         self.count, self.how = parameters.horizon, how
@@ -143,6 +158,7 @@ KINDS = {
     "task": ("surefoot.tasks", "wbc.tasks=[{}]"),
     "estimator": ("surefoot.estimators", "sensing.source={}"),
     "plant": ("surefoot.plants", "plant.name={}"),
+    "controller": ("surefoot.controllers", "controller.name={}"),
     "profile": ("surefoot.profiles", "planner.profile={}"),
     "terrain": ("surefoot.terrains", "terrain.kind={}"),
     "robot": ("surefoot.robots", "robot={}"),
@@ -154,6 +170,7 @@ MADE = {
     "task": "lambda model, frames: Task('{}')",
     "estimator": "lambda walk: Estimator('{}')",
     "plant": "lambda walk: Plant('{}')",
+    "controller": "lambda walk: Seat(walk, '{}')",
     "law": "law('{}')",
     "planner": "planner('{}')",
     "terrain": "Ground('{}')",
@@ -207,7 +224,8 @@ RAISED = {
         *(("task", how, SHORT) for how in ("leaves", "lazily", "short", "nan")),
         *(("estimator", how, SHORT) for how in ("leaves", "short", "nan")),
         *(
-            ("plant", how, (*SHORT, "sensing.source=truth"))
+            (part, how, (*SHORT, "sensing.source=truth"))
+            for part in ("plant", "controller")
             for how in ("leaves", "root", "mute", "deep", "none", "short", "nan")
         ),
     ],

@@ -76,7 +76,7 @@ def test_a_name_of_ours_means_ours_and_the_clash_is_said(brought, at_hand):
     said = "my_package_others:walk.yaml: 'walk' is a scenario of surefoot's own; give the file another name\n"
     answer = at_hand("list")
     assert (answer.code, answer.err) == (0, said)
-    assert answer.out.count("scenario  walk ") == 1
+    assert answer.out.count("scenario   walk ") == 1
 
 
 def test_the_first_of_two_packages_keeps_a_name_and_the_clash_is_said(brought, at_hand):

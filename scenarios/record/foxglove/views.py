@@ -101,9 +101,7 @@ class PointView:
 
     def events(self, time_ns: int, contact: tuple[bool, bool], force: Array, plan: WalkPlan, lost: bool) -> None:
         """Say what has changed since the last control tick; ``force`` is the push, shape (2,) [N]."""
-        self._events.update(
-            time_ns, contact, bool(np.dot(force, force)), plan.status.solver is _HELD, plan.status.falling, lost
-        )
+        self._events.update(time_ns, contact, force, plan.status.solver is _HELD, plan.status.falling, lost)
 
     def picture(
         self, tick: int, time_ns: int, com: Array, com_velocity: Array, zmp: Array, plan: WalkPlan, sample: PlanSample
@@ -127,18 +125,19 @@ class EventLog:
         self._last = ((True, True), False, False, False, False)
 
     def update(
-        self, time_ns: int, contact: tuple[bool, bool], pushed: bool, fallback: bool, falling: bool, fallen: bool
+        self, time_ns: int, contact: tuple[bool, bool], force: Array, fallback: bool, falling: bool, fallen: bool
     ) -> None:
         """Say what has changed since the last call; before the first one the robot stood in peace.
 
         Args:
             time_ns: simulated time [ns].
             contact: feet that stand, (left, right).
-            pushed: whether a push acts.
+            force: sum of pushes, shape (2,) or (3,) [N]; NaN, of a plant that does not tell, is none.
             fallback: whether the controller or the planner goes on without a solution.
             falling: whether the planner knows that a fall is coming.
             fallen: whether the robot has fallen.
         """
+        pushed = bool(force.dot(force) > 0.0)
         now = (contact, pushed, fallback, falling, fallen)
         if now == self._last:
             return
@@ -200,8 +199,8 @@ SCENE_RATE = 20_000
 _FALLBACK, _HELD = SolveStatus.EQUALITIES_ONLY, SolverStatus.HELD
 
 
-class BodyView:
-    """Everything that is drawn of a run in full physics.
+class RobotView:
+    """What is drawn of every robot: its bodies, its joints, and the forces on it.
 
     Attributes:
         every: control ticks from picture to picture.
@@ -223,19 +222,16 @@ class BodyView:
         period = max(SCENE_PERIOD, round(len(self._scene_data) / SCENE_RATE))
         # A flight recorder has it in all that it keeps.
         self._scene_every = round(control_rate * (period if writer.keep is None else min(period, writer.keep)))
-        self._walk = WalkView(writer, 0.5 * robot.sole_length, 0.5 * robot.sole_width)
-        self._events = EventLog(writer)
         self._levers = np.zeros((2, 3, 2))
 
-    def events(self, time_ns: int, measurement: Measurement, report: WbcReport, plan: WalkPlan, fallen: bool) -> None:
-        """Say what has changed since the last control tick."""
-        x, y, z = measurement.external_force.tolist()
-        pushed, status = x * x + y * y + z * z > 0.0, plan.status  # which NaN, of a plant that does not tell, is not
-        fallback = report.status >= _FALLBACK or status.solver is _HELD
-        self._events.update(time_ns, report.active, pushed, fallback, status.falling, fallen)
-
     def picture(
-        self, tick: int, time_ns: int, measurement: Measurement, terms: RobotTerms, plan: WalkPlan, sample: PlanSample
+        self,
+        tick: int,
+        time_ns: int,
+        measurement: Measurement,
+        terms: RobotTerms,
+        plan: WalkPlan | None = None,
+        sample: PlanSample | None = None,
     ) -> None:
         """Draw a control tick, if it is one that is drawn; ``terms`` are those of the true state.
 
@@ -250,8 +246,13 @@ class BodyView:
         self._tf.append(time_ns, np.concatenate((poses.position.ravel(), poses.quaternion.ravel())))
         self._joints.append(time_ns, np.concatenate((m.joint_position, m.joint_velocity, m.joint_torque)))
         self._forces.append(time_ns, self._arrows(m, terms))
-        zmp = measured_zmp(m.wrench, terms.sole_position, terms.sole_rotation)
-        self._walk.update(time_ns, terms.com, terms.com_velocity, zmp, plan, sample)
+        if plan is not None and sample is not None:
+            self._planned(time_ns, measurement, terms, plan, sample)
+
+    def _planned(
+        self, time_ns: int, measurement: Measurement, terms: RobotTerms, plan: WalkPlan, sample: PlanSample
+    ) -> None:
+        """Draw what is planned, where something is."""
 
     def _arrows(self, m: Measurement, terms: RobotTerms) -> tuple[float, ...]:
         """Contact forces and push as arrows."""
@@ -264,3 +265,37 @@ class BodyView:
         left, right = turned[:, :, 1] + terms.sole_position
         push = force_arrow(self._poses.position[self._torso], m.external_force)
         return (*force_arrow(left, turned[0, :, 0]), *force_arrow(right, turned[1, :, 0]), *push)
+
+
+class SeatView(RobotView):
+    """Everything that is drawn of a robot whose controller has no plan."""
+
+    def __init__(self, writer: LogWriter, world: World, robot: RobotDescription, control_rate: int) -> None:
+        super().__init__(writer, world, robot, control_rate)
+        self._events = EventLog(writer)
+
+    def events(self, time_ns: int, measurement: Measurement, contact: tuple[bool, bool], fallen: bool) -> None:
+        """Say what has changed since the last control tick; feet that stand are (left, right)."""
+        force = measurement.external_force
+        self._events.update(time_ns, contact, force, fallback=False, falling=False, fallen=fallen)
+
+
+class BodyView(RobotView):
+    """Everything that is drawn of a run in full physics."""
+
+    def __init__(self, writer: LogWriter, world: World, robot: RobotDescription, control_rate: int) -> None:
+        super().__init__(writer, world, robot, control_rate)
+        self._walk = WalkView(writer, 0.5 * robot.sole_length, 0.5 * robot.sole_width)
+        self._events = EventLog(writer)
+
+    def events(self, time_ns: int, measurement: Measurement, report: WbcReport, plan: WalkPlan, fallen: bool) -> None:
+        """Say what has changed since the last control tick."""
+        force, status = measurement.external_force, plan.status
+        fallback = report.status >= _FALLBACK or status.solver is _HELD
+        self._events.update(time_ns, report.active, force, fallback, status.falling, fallen)
+
+    def _planned(
+        self, time_ns: int, measurement: Measurement, terms: RobotTerms, plan: WalkPlan, sample: PlanSample
+    ) -> None:
+        zmp = measured_zmp(measurement.wrench, terms.sole_position, terms.sole_rotation)
+        self._walk.update(time_ns, terms.com, terms.com_velocity, zmp, plan, sample)

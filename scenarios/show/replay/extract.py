@@ -12,11 +12,12 @@ from surefoot.models.convert import Coordinates
 from surefoot.scenarios.columns import Reads
 from surefoot.scenarios.errors import LogError
 from surefoot.scenarios.judge.body import torso
-from surefoot.scenarios.judge.digest import RunView, Window
+from surefoot.scenarios.judge.digest import RunView, Window, always
 from surefoot.scenarios.judge.scenario import scenario_of
 from surefoot.scenarios.judge.verdict import agenda_of
 from surefoot.scenarios.log import Log
 from surefoot.scenarios.palette import FEET, Color
+from surefoot.scenarios.record.channels import SUPPORT_VERTICES
 from surefoot.scenarios.record.provenance import WORLD_FILE, RunConstants
 from surefoot.scenarios.show.logview import FOOT_NAMES, rows_at
 from surefoot.scenarios.show.replay import content
@@ -29,7 +30,7 @@ READS: Reads = {
     "/truth": ("q", "com", "left_sole", "right_sole"),
     "/measurement": ("external_force", "wrench_left", "wrench_right"),
     "/estimate": ("dcm",),
-    "/contact": ("zmp", "planned", "cop_left", "cop_right"),
+    "/contact": ("zmp", "planned", "felt", "cop_left", "cop_right"),
     "/reference": ("com", "dcm", "zmp", "support"),
     "/footsteps": ("next", "next_foot"),
 }
@@ -85,7 +86,7 @@ def _nothing(path: Path, window: ReplayWindow, whole: tuple[float, float]) -> Lo
 
 
 _SHOWN = ("/truth", "/measurement", "/estimate", "/contact", "/reference")
-"""Topics of which a replay is made."""
+"""Topics of which a replay is made; of a seat those that are not of a planner."""
 
 
 def extract(log: Log, window: ReplayWindow | None = None) -> Replay:
@@ -98,7 +99,7 @@ def extract(log: Log, window: ReplayWindow | None = None) -> Replay:
     if constants.fidelity == "pendulum":
         raise LogError(f"{log.path}: a pendulum has no body to replay; run the scenario with fidelity full")
     mjcf, model = world(log)
-    log.require("a replay", *_SHOWN)
+    log.require("a replay", *(topic for topic in _SHOWN if topic in always(constants.walker)))
     if "/truth" not in log or not log.count("/truth"):
         raise LogError(f"{log.path}: ends before the first control tick; there is nothing to replay")
     if not all(math.isfinite(time) for time in (window.start, window.end) if time is not None):
@@ -170,19 +171,25 @@ def _facts(run: RunView, frames: Frames, pushed: Array) -> content.Facts:
     rows, count = frames.rows, len(frames.rows)
     ahead, ahead_foot = np.empty((count, 0, 4)), np.empty((count, 0))
     if run.has("/footsteps"):
-        planned = run.log["/footsteps"]
-        then = rows_at(planned.time, frames.time)
-        ahead, ahead_foot = planned.field("next")[then], planned.field("next_foot")[then]
+        footsteps = run.log["/footsteps"]
+        then = rows_at(footsteps.time, frames.time)
+        ahead, ahead_foot = footsteps.field("next")[then], footsteps.field("next_foot")[then]
     push = np.nan_to_num(run.field("/measurement", "external_force"))
+    planned = run.has("/reference")
+
+    def field(topic: str, name: str, *shape: int) -> Array:
+        """A field, which is nowhere to be seen where nothing is planned."""
+        return run.field(topic, name)[rows] if planned else np.full((count, *shape), np.nan)
+
     return content.Facts(
         com=run.field("/truth", "com")[rows],
-        dcm=run.field("/estimate", "dcm")[rows],
+        dcm=field("/estimate", "dcm", 2),
         zmp=run.field("/contact", "zmp")[rows],
-        planned_com=run.field("/reference", "com")[rows],
-        planned_dcm=run.field("/reference", "dcm")[rows],
-        planned_zmp=run.field("/reference", "zmp")[rows],
-        polygon=run.field("/reference", "support")[rows],
-        contacts=run.field("/contact", "planned")[rows] != 0,
+        planned_com=field("/reference", "com", 3),
+        planned_dcm=field("/reference", "dcm", 2),
+        planned_zmp=field("/reference", "zmp", 2),
+        polygon=field("/reference", "support", SUPPORT_VERTICES, 2),
+        contacts=run.field("/contact", "planned" if planned else "felt")[rows] != 0,
         soles=np.stack([run.sole(foot)[rows] for foot in (0, 1)], axis=1),
         cop=np.stack([run.field("/contact", f"cop_{side}")[rows] for side in FOOT_NAMES], axis=1),
         force=np.stack([run.field("/measurement", f"wrench_{side}")[rows, :3] for side in FOOT_NAMES], axis=1),

@@ -9,6 +9,7 @@ import subprocess
 import sys
 from pathlib import Path
 
+import numpy as np
 import pytest
 import yaml
 from typer.main import get_command
@@ -61,8 +62,8 @@ def test_list(surefoot):
     code, out, _ = surefoot("list")
     assert code == 0
     assert "diagonal-walk" in out
-    assert "robot     humanoid100" in out
-    assert "profile   repaired" in out
+    assert "robot      humanoid100" in out
+    assert "profile    repaired" in out
     assert "metric " not in out, "every verdict shows ours"
     summaries = [line for line in out.splitlines() if line.startswith(("scenario ", "control "))]
     assert len(summaries) == len(catalogue.OWN) + len(catalogue.CONTROLS)
@@ -360,8 +361,8 @@ def test_inspect_a_topic(surefoot, scenario, tmp_path):
 def test_events_are_printed_as_words(surefoot, tmp_path):
     with LogWriter(tmp_path / "said.mcap", {}) as writer:
         said = EventLog(writer)
-        said.update(1_500_000_000, (True, False), False, False, False, False)
-        said.update(2_500_000_000, (True, True), False, False, False, True)
+        said.update(1_500_000_000, (True, False), np.zeros(3), False, False, False)
+        said.update(2_500_000_000, (True, True), np.zeros(3), False, False, True)
     said = tmp_path / "said.mcap"
     code, out, _ = surefoot("inspect", said, "--topic", "/events")
     assert code == 0
@@ -382,7 +383,7 @@ def test_a_fall_that_is_taken_back_is_an_event(surefoot, tmp_path):
     with LogWriter(tmp_path / "said.mcap", {}) as writer:
         said = EventLog(writer)
         for tick, falling in enumerate((False, True, True, False, False, True)):
-            said.update(tick * 10**8, (True, True), False, False, falling, False)
+            said.update(tick * 10**8, (True, True), np.zeros(3), False, falling, False)
     found = json.loads(surefoot("inspect", tmp_path / "said.mcap", "--topic", "/events", "--json")[1])
     assert [(event["time"], event["kind"]) for event in found] == [(t, "falling") for t in (0.1, 0.3, 0.5)]
     assert "no step will save the robot" in found[0]["text"] == found[2]["text"]

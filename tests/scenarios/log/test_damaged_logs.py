@@ -3,6 +3,7 @@
 import random
 import time
 
+import numpy as np
 import pytest
 from mcap.writer import Writer
 from typer.testing import CliRunner
@@ -24,7 +25,7 @@ SLOWEST = 5.0
 def run(motion, robot, two_steps, tmp_path):
     def simulate(walk, writer, on_progress):
         events = EventLog(writer)
-        events.update(20_000_000, (True, False), False, False, False, False)
+        events.update(20_000_000, (True, False), np.zeros(3), False, False, False)
         return motion(duration=0.3)(walk, writer, on_progress)
 
     return run_scenario(two_steps, tmp_path / "runs", simulate=simulate, robot=robot).log

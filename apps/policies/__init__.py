@@ -1,0 +1,1 @@
+"""Learned controllers: the contract of a network is begun, and checked."""

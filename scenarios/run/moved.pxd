@@ -1,0 +1,14 @@
+from surefoot.joints cimport JointCommand
+
+cdef class Moved:
+    cdef readonly object walk, plant, measurement
+    cdef readonly bint foreign
+    cdef object _sensors, _own_truth, _faults, _readings, _truth
+    cdef JointCommand _command
+    cdef bint _says_tick
+    cdef double _period, _nominal_height
+
+    cpdef sense(self, long long tick, double now)
+    cpdef bint lost(self, tick, kind)
+    cpdef fallen(self, sample)
+    cpdef advance(self, double now)

@@ -1,0 +1,30 @@
+"""A policy on a plant in another process: the same to the bit as in one."""
+
+import policies
+import pytest
+import yaml
+from needs import POLICY
+
+import surefoot
+
+pytestmark = [pytest.mark.physics, POLICY.mark]
+
+
+def test_it_walks_on_a_plant_in_another_process(bridge, same_content, tmp_path):
+    stander = policies.stander(tmp_path / "stander")
+    gait = {"steps": 0, "com_height": 0.67, "initial_stand": 0.2}
+    values = {
+        "robot": "g1",
+        "duration": 1.0,
+        "gait": gait,
+        "criteria": {"fell": False},
+        "controller": {"policy": str(stander)},
+    }
+    walk = tmp_path / "held.yaml"
+    walk.write_text(yaml.safe_dump(values))
+    plant = bridge.serve(str(walk))
+    _, verdict, said = bridge.result(bridge.walk())
+    assert verdict.get("verdict") == "pass", (said, verdict)
+    bridge.end(plant)
+    alone = surefoot.run(walk, out=tmp_path / "alone")
+    assert same_content(tmp_path / verdict["log"], alone.log) == []

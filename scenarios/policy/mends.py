@@ -61,6 +61,7 @@ def _gains(contract: Contract, _: RobotDescription) -> Iterator[tuple[str, Contr
         stiffness, damping = times(contract.stiffness, factor), times(contract.damping, factor)
         yield f"stiffness and damping times {factor:g}", _changed(contract, stiffness=stiffness, damping=damping)
     for factor in (0.1, 10.0):
+        yield f"stiffness times {factor:g}", _changed(contract, stiffness=times(contract.stiffness, factor))
         yield f"damping times {factor:g}", _changed(contract, damping=times(contract.damping, factor))
 
 

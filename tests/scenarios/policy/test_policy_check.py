@@ -68,11 +68,10 @@ def test_a_trial_tells_a_contract_that_stands_from_one_that_falls(held, robot):
 
 @pytest.mark.long
 @pytest.mark.physics
-@pytest.mark.parametrize("wanted", ["joint order", "gains", ""])
+@pytest.mark.parametrize("wanted", ["gains", ""])
 def test_a_planted_fault_is_named_and_none_where_there_is_none(held, robot, wanted):
     contract, network = held
     planted = {
-        "joint order": swapped(contract, "left_ankle_pitch_joint", "left_knee_joint"),
         "gains": contract.model_copy(update={"stiffness": tuple(0.1 * k for k in contract.stiffness)}),
         "": contract,
     }[wanted]

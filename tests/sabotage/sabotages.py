@@ -190,7 +190,7 @@ def _world(made: type) -> Sabotage:
 
 
 def _sensors(made: type) -> Sabotage:
-    return Sabotage(patches={"scenarios.run.full.SensorSuite": made})
+    return Sabotage(patches={"sim.readings.SensorSuite": made})
 
 
 SLIPS = ("scenarios.judge.feet.stance_slips", "scenarios.check.signs.stance_slips")
@@ -210,7 +210,7 @@ WORLDS: Mapping[str, Sabotage] = {
 
 JUDGES: Mapping[str, Sabotage] = {
     "fall detector never fires": Sabotage(
-        patches={"scenarios.run.full.lies": _never, "scenarios.judge.walking.lies": _never}
+        patches={"scenarios.run.moved.lies": _never, "scenarios.judge.walking.lies": _never}
     ),
     "slip metric halved": Sabotage(judge={"foot_slip_max": halved}),
     "ZMP metrics halved": Sabotage(judge={"zmp_error_rms": halved, "zmp_error_max": halved}),

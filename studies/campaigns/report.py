@@ -1,7 +1,4 @@
-"""The page of a campaign: what was run, what came of it, and how to run any failure of it again.
-
-matplotlib takes longer to be imported than all else of a page: what draws with it is imported where it draws.
-"""
+"""The page of a campaign: what was run, what came of it, and how to run any failure of it again."""
 
 from collections.abc import Mapping
 from datetime import UTC, datetime
@@ -15,7 +12,9 @@ from surefoot.scenarios.show.kit import html
 from surefoot.scenarios.show.kit.html import TableRow, details, escape, section, tag
 from surefoot.studies.campaigns import success
 from surefoot.studies.campaigns.journal import JOURNAL
+from surefoot.studies.campaigns.maps import map_section
 from surefoot.studies.campaigns.points import Point, Record, Runs, RunStatus
+from surefoot.studies.campaigns.searches import searches_section
 from surefoot.studies.campaigns.spec import Axis
 
 if TYPE_CHECKING:
@@ -35,14 +34,10 @@ def page(swept: "Swept", most: int = MOST_ROWS) -> str:
     if not runs:
         parts.append(tag("p", "No run has a result yet."))
     elif spec.bisect is not None:
-        from surefoot.studies.campaigns.searches import searches_section
-
         parts.append(searches_section(swept, axes, _again))
     else:
         parts.append(success.success_section(swept, runs, axes))
         if any(len(axis.values) > 1 for axis in axes):
-            from surefoot.studies.campaigns.maps import map_section
-
             parts.append(map_section(swept, runs, axes))
     parts += [success.distributions_section(swept, runs), _failures(swept, swept.runs, most)]
     return html.document(f"{spec.name}: campaign", "\n".join(part for part in parts if part))

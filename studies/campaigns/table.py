@@ -4,7 +4,6 @@ import csv
 import importlib
 import importlib.util
 import io
-import itertools
 import json
 import math
 from collections.abc import Callable, Iterable, Iterator, Mapping, Sequence
@@ -12,8 +11,6 @@ from dataclasses import dataclass
 from pathlib import Path
 from statistics import NormalDist
 from typing import Any, NamedTuple
-
-import numpy as np
 
 from surefoot.scenarios.errors import require
 from surefoot.scenarios.judge.metrics import known
@@ -76,15 +73,7 @@ class Table:
         """
         pyarrow = require("pyarrow", "parquet", "parquet", "read the .csv")
         kinds = {bool: pyarrow.bool_(), int: pyarrow.int64(), float: pyarrow.float64(), str: pyarrow.string()}
-
-        def array(values: Sequence[TableValue]) -> Any:
-            # Not `pyarrow.array`, which imports all of pandas where it is there.
-            kind = _kind(values)
-            return pyarrow.Array.from_buffers(
-                kinds[kind], len(values), [pyarrow.py_buffer(part) for part in _buffers(kind, values)]
-            )
-
-        arrays = [array(column.values) for column in self.columns]
+        arrays = [pyarrow.array(column.values, kinds[_kind(column.values)]) for column in self.columns]
         fields = [
             pyarrow.field(column.name, array.type, metadata={"unit": column.unit, "meaning": column.meaning})
             for column, array in zip(self.columns, arrays, strict=True)
@@ -274,21 +263,6 @@ def _element(value: Any, part: Any) -> Any:
 
 def _kind(values: Sequence[TableValue]) -> type:
     return next((type(value) for value in values if value is not None), float)
-
-
-def _buffers(kind: type, values: Sequence[TableValue]) -> tuple[bytes, ...]:
-    """A column as Arrow lays it out: which values there are, where texts end, and the values."""
-    there = _bits([value is not None for value in values])
-    given = [kind() if value is None else value for value in values]
-    if kind is str:
-        texts = [str(text).encode() for text in given]
-        ends = np.array([0, *itertools.accumulate(map(len, texts))], np.int32)
-        return there, ends.tobytes(), b"".join(texts)
-    return there, _bits(given) if kind is bool else np.array(given, np.int64 if kind is int else np.float64).tobytes()
-
-
-def _bits(values: Sequence[Any]) -> bytes:
-    return np.packbits(np.array(values, bool), bitorder="little").tobytes()
 
 
 def _cell(value: TableValue) -> str:

@@ -170,6 +170,7 @@ TYPED = {
     ("docs/decisions/legs-as-links.md", "What else was considered"): (3, "a record of its time"),
     ("docs/decisions/one-description.md", "What else was considered"): (1, "a record of its time"),
     ("docs/decisions/one-source.md", "What else was considered"): (10, "a record of its time"),
+    ("docs/decisions/own-code-kept.md", "What else was considered"): (3, "a record of its time"),
     ("docs/decisions/place-and-time.md", "What else was considered"): (3, "a record of its time"),
     ("docs/decisions/two-solvers.md", "What else was considered"): (2, "a record of its time"),
     ("docs/drive.md", "The page"): (1, "how an arrow is drawn"),

@@ -18,13 +18,30 @@ _COP_READS: Reads = {"/contact": ("cop_left", "cop_right"), GAIT: ("phase", "sta
 _ZMP_READS: Reads = {"/contact": ("zmp",), "/reference": ("zmp_reference",)}
 
 
-@reduction("/truth", "/contact", "/reference")
+_SUPPORTED = ("/truth", "/contact", "/reference")
+
+
+@reduction(*_SUPPORTED)
+def zmp_edge(run: RunView) -> Array:
+    """Distance of the measured ZMP to the nearest edge of the planned support polygon, shape (n,) [m].
+
+    Negative outside, NaN in flight.
+    """
+    return _to_edge(run, 0.0)
+
+
+@reduction(*_SUPPORTED)
 def zmp_depth(run: RunView) -> Array:
-    """How deep the measured ZMP is inside the planned support polygon of feet shrunk to 90 %, shape (n,) [m].
+    """The same of feet shrunk to 90 %, shape (n,) [m].
 
     A hull of shrunk feet is the hull of the feet with each edge moved in by a tenth of the foot's half extent along
-    the edge's normal; exact for parallel feet, and on the safe side for others. Negative outside, NaN in flight.
+    the edge's normal; exact for parallel feet, and on the safe side for others.
     """
+    return _to_edge(run, 1 - MARGIN)
+
+
+def _to_edge(run: RunView, cut: float) -> Array:
+    """Distance to the nearest edge of the polygon, each edge moved in by a share of the foot's half extent [m]."""
     zmp = run.field("/contact", "zmp")[:, None, :2]
     vertices = to_truth(run, run.field("/reference", "support"))
     edges = _following(vertices) - vertices
@@ -32,7 +49,8 @@ def zmp_depth(run: RunView) -> Array:
     normals = np.stack([-edges[..., 1], edges[..., 0]], axis=2) / np.where(lengths > 0, lengths, 1.0)[..., None]
     normals *= np.sign(_signed_area(vertices))[:, None, None]
     depth = np.sum(normals * (zmp - vertices), axis=2)
-    depth -= (1 - MARGIN) * _half_extent(run, normals)
+    if cut:
+        depth -= cut * _half_extent(run, normals)
     return np.asarray(np.where(lengths < 1e-9, np.inf, depth).min(axis=1))
 
 

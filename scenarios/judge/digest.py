@@ -114,7 +114,7 @@ class Digest(Window):
         held, self.constants = _found_under_gait(_united((HELD, *reads)), log), constants
         topics = [topic for topic in held if topic in log.numeric]
         kept, self.reduced = Columns(), Columns()
-        for number, channels in enumerate(_in_step(log.windows(topics))):
+        for number, channels in enumerate(in_step(log.windows(topics))):
             if number and not any(map(len, channels.values())):
                 continue  # nothing was put off: of nothing, the first part has told all kinds of fields
             keep(kept, channels, held)
@@ -127,7 +127,7 @@ LAG_NS = 100_000_000
 """What is put off at most [ns]."""
 
 
-def _in_step(windows: Iterable[dict[str, "ChannelData"]]) -> Iterator[dict[str, "ChannelData"]]:
+def in_step(windows: Iterable[dict[str, "ChannelData"]]) -> Iterator[dict[str, "ChannelData"]]:
     """The same windows, each with whole control ticks: one whose last messages are in the next chunk is put off."""
     rest: dict[str, ChannelData] = {}
     for channels in windows:

@@ -1,7 +1,7 @@
 """Messages of one channel: out of a block of bytes, and as numpy arrays by field name."""
 
 import struct
-from collections.abc import Collection
+from collections.abc import Collection, Mapping
 from typing import Any
 
 import numpy as np
@@ -105,6 +105,27 @@ class ChannelData:
     def time(self) -> NDArray[np.float64]:
         """Simulated time of each message, shape (n,) [s]."""
         return np.asarray(self.time_ns / 1e9)
+
+    @classmethod
+    def of(
+        cls,
+        topic: str,
+        fields: tuple[FieldSpec, ...],
+        time_ns: NDArray[np.int64],
+        columns: Mapping[str, NDArray[Any]],
+        joints: tuple[str, ...] = (),
+    ) -> "ChannelData":
+        """Messages of given times, shape (n,) [ns], and values of each field, shape (n, *field shape)."""
+        kinds = [(field.name, columns[field.name].dtype, field.shape) for field in fields]
+        records = np.empty(len(time_ns), np.dtype([("_log_time", np.int64), *kinds]))
+        records["_log_time"] = time_ns
+        for name, values in columns.items():
+            records[name] = values
+        return cls(topic, fields, records, joints)
+
+    def from_row(self, row: int) -> "ChannelData":
+        """The messages from a row on."""
+        return ChannelData(self.topic, self.fields, self._records[row:], self.joints)
 
     def between(self, start_ns: int, end_ns: int) -> "ChannelData":
         """The messages from a time on and up to another one [ns]."""

@@ -23,11 +23,19 @@ class InspectOptions:
     """What `surefoot inspect` is told."""
 
     log: LogFile
-    topic: Annotated[str | None, typer.Option(help="Summarise or export one topic instead.")] = None
+    topic: Annotated[
+        list[str] | None, typer.Option(help="Summarise or export a topic instead; repeatable, into one table.")
+    ] = None
     field: Annotated[str | None, typer.Option(help="Only this field of the topic.")] = None
     start: From = None
     end: To = None
     export: Annotated[Path | None, typer.Option(help="Write the topic to a .csv, .npz or .parquet file.")] = None
+    where: Annotated[
+        str | None,
+        typer.Option(
+            metavar="CONDITION", help="When that holds, such as 'zmp_edge < 0.01 and /truth:torso_tilt > 0.2'."
+        ),
+    ] = None
     strict: Annotated[bool, typer.Option("--strict", help="Fail a log that cannot be proven to be whole.")] = False
     force: Replace = False
     as_json: AsJson = False
@@ -43,14 +51,17 @@ def inspect(told: InspectOptions) -> None:
         from surefoot.scenarios.show.console import print_inspection
         from surefoot.scenarios.show.touching import touching
 
-    opened = read(told.log)
-    if told.topic is not None:
-        if told.strict:
-            raise LogError("--strict is of the verdict; leave --topic away")
-        _show_topic(opened, told.topic, told)
+    opened, asked = read(told.log), told.topic or []
+    if (asked or told.where is not None) and told.strict:
+        raise LogError("--strict is of the verdict; leave --topic and --where away")
+    if told.where is not None:
+        _show_stretches(opened, told.where, asked, told)
+        return
+    if asked:
+        _show_topics(opened, asked, told)
         return
     if (told.field, told.start, told.end, told.export) != (None, None, None, None):
-        raise LogError("--field, --from, --to and --export choose from one topic; name it with --topic")
+        raise LogError("--field, --from, --to and --export choose from topics; name one with --topic")
     found, touches = inspection.inspect(opened, told.strict), touching(opened)
     if told.as_json:
         bodies = [touch._asdict() for touch in touches]
@@ -60,23 +71,52 @@ def inspect(told: InspectOptions) -> None:
     raise typer.Exit(0 if found.verdict.passed else MISSED)
 
 
-def _show_topic(log: "Log", topic: str, told: InspectOptions) -> None:
-    """Summarise a topic, or export it and say where it is; what is said in words is printed."""
+def _show_topics(log: "Log", topics: list[str], told: InspectOptions) -> None:
+    """Summarise topics, or export them and say where they are; what is said in words is printed."""
     from surefoot.scenarios.judge.inspection import topic_summary
     from surefoot.scenarios.show.console import print_topic
-    from surefoot.scenarios.show.export import export, selected
+    from surefoot.scenarios.show.export import Joined, export, prefixed, selected
 
-    if topic == EVENTS and topic in log:
+    if EVENTS in topics and EVENTS in log:
+        if len(topics) > 1:
+            raise LogError(f"{EVENTS} has words, which no table of numbers holds; ask for it alone")
         _show_events(log, told)
         return
-    chosen = selected(log, topic, told.start, told.end, told.field)
+    if len(topics) > 1 and told.field is not None:
+        raise LogError(f"--field is of one topic, and {len(topics)} are named; leave it away, or name one")
+    if len(set(topics)) < len(topics):
+        raise LogError("--topic names one twice; name each once")
+    chosen = [selected(log, topic, told.start, told.end, told.field) for topic in topics]
+    one, *others = chosen
     if told.export is not None:
-        count, file = export(chosen, told.export, told.force), str(told.export)
+        count, file = export(Joined(tuple(chosen)) if others else one, told.export, told.force), str(told.export)
         typer.echo(json.dumps({"file": file, "messages": count}) if told.as_json else file)
-    elif told.as_json:
-        typer.echo(json.dumps(topic_summary(chosen), allow_nan=False))
     else:
-        print_topic(topic, topic_summary(chosen))
+        summary = topic_summary(one)
+        if others:
+            named = [(each, [field.name for field in prefixed(each.topic, each.fields)]) for each in chosen]
+            rows = [zip(names, topic_summary(each).values(), strict=True) for each, names in named]
+            summary = {name: row for part in rows for name, row in part}
+        if told.as_json:
+            typer.echo(json.dumps(summary, allow_nan=False))
+        else:
+            print_topic(", ".join(topics), summary)
+    for loss in log.damage:
+        typer.echo(f"not read: {loss}", err=True)
+
+
+def _show_stretches(log: "Log", question: str, topics: list[str], told: InspectOptions) -> None:
+    """Print when a question holds."""
+    from surefoot.scenarios.judge.questions import stretches
+    from surefoot.scenarios.show.console import print_stretches
+
+    if told.field is not None or told.export is not None:
+        raise LogError(f"{'--field' if told.field is not None else '--export'} is of topics; leave it or --where away")
+    found, units = stretches(log, question, told.start, told.end, topics)
+    if told.as_json:
+        typer.echo(json.dumps([one._asdict() for one in found], allow_nan=False))
+    else:
+        print_stretches(question, found, units[0])
     for loss in log.damage:
         typer.echo(f"not read: {loss}", err=True)
 

@@ -20,6 +20,7 @@ if TYPE_CHECKING:
     from rich.progress import ProgressColumn
 
     from surefoot.scenarios.judge.inspection import Inspection
+    from surefoot.scenarios.judge.questions import Stretch
     from surefoot.scenarios.show.touching import Touch
 
 _REFRESH = 0.1
@@ -147,6 +148,19 @@ def print_topic(topic: str, fields: Mapping[str, Mapping[str, Any]]) -> None:
         spread = [number(row[key]) for key in ("min", "mean", "max")]
         rows.append((name, shape, row["unit"], str(row["messages"]), str(row["not_finite"]), *spread))
     print_table((topic, "shape", "unit", "messages", "not finite", "min", "mean", "max"), rows)
+
+
+def print_stretches(question: str, found: "Sequence[Stretch]", unit: str) -> None:
+    """Print when a question holds, with the value farthest beyond the bound where it has one [unit]."""
+    total = sum(one.end - one.start for one in found)
+    typer.echo(f"{question}: {len(found)} stretches, {total:.3f} s in all")
+    single = any(one.worst is not None for one in found)
+    rows = []
+    for one in found:
+        worst = (f"{one.worst:.4g}", f"{one.at:.3f}") if single else ()
+        rows.append((f"{one.start:.3f}", f"{one.end:.3f}", f"{one.end - one.start:.3f}", *worst))
+    if rows:
+        print_table(("from [s]", "to [s]", "length [s]", *((f"worst [{unit}]", "at [s]") if single else ())), rows)
 
 
 def _print_verdict(name: str, verdict: Verdict) -> None:

@@ -1,14 +1,16 @@
-"""A topic of a log in a stretch of time, and its export to a file, a few seconds of messages at a time."""
+"""Topics of a log in a stretch of time, and their export to a file, a few seconds of messages at a time."""
 
 import csv
 import importlib
 import zipfile
-from collections.abc import Callable, Iterator, Mapping
-from dataclasses import dataclass
+from collections.abc import Callable, Iterator, Mapping, Sequence
+from dataclasses import dataclass, replace
 from pathlib import Path
 
 import numpy as np
+from numpy.typing import NDArray
 
+from surefoot.scenarios.columns import Columns
 from surefoot.scenarios.errors import LogError, require
 from surefoot.scenarios.log import ChannelData, FieldSpec, Log
 from surefoot.scenarios.output import refuse_existing, write_whole
@@ -40,6 +42,58 @@ class Selection:
             yield part if every else part.only(self.fields[0].name)
 
 
+@dataclass(frozen=True, slots=True)
+class Joined:
+    """Messages of several topics as one table: a row for each of the first topic, with the latest of each other one.
+
+    Rows before the first message of another topic are left out. Fields are called by their topics, as ``contact.zmp``.
+
+    Attributes:
+        selections: of the topics, two at least, of one log and one stretch of time.
+    """
+
+    selections: tuple[Selection, ...]
+
+    @property
+    def fields(self) -> tuple[FieldSpec, ...]:
+        """Those of all topics."""
+        return tuple(field for one in self.selections for field in prefixed(one.topic, one.fields))
+
+    def __iter__(self) -> Iterator[ChannelData]:
+        first, *others = self.selections
+        topics = [one.topic for one in self.selections]
+        held: dict[str, ChannelData] = {}
+        for _, channels in first.log.stretches(topics, first.start, first.end):
+            known = {topic: held[topic].joined(found) if topic in held else found for topic, found in channels.items()}
+            clock = channels[first.topic].time_ns
+            rows = {one.topic: np.searchsorted(known[one.topic].time_ns, clock, side="right") - 1 for one in others}
+            there = np.all([found >= 0 for found in rows.values()], axis=0)
+            held = {topic: found.from_row(len(found) - 1) for topic, found in known.items() if len(found)}
+            if there.any():
+                picked = {topic: found[there] for topic, found in rows.items()}
+                yield self._table(channels[first.topic], np.flatnonzero(there), known, picked)
+
+    def _table(
+        self,
+        clock: ChannelData,
+        kept: NDArray[np.intp],
+        known: dict[str, ChannelData],
+        rows: dict[str, NDArray[np.intp]],
+    ) -> ChannelData:
+        columns = {}
+        for one in self.selections:
+            source, at = (clock, kept) if one.topic == clock.topic else (known[one.topic], rows[one.topic])
+            values = source.values([field.name for field in one.fields])
+            for own, field in zip(prefixed(one.topic, one.fields), one.fields, strict=True):
+                columns[own.name] = values[field.name][at]
+        return ChannelData.of(", ".join(rows), self.fields, clock.time_ns[kept], columns, clock.joints)
+
+
+def prefixed(topic: str, fields: Sequence[FieldSpec]) -> Iterator[FieldSpec]:
+    """Fields that are called by their topic, too."""
+    return (replace(field, name=f"{topic.removeprefix('/')}.{field.name}") for field in fields)
+
+
 def selected(log: Log, topic: str, start: float | None, end: float | None, field: str | None) -> Selection:
     """Choose messages of a topic in a window of time, open where an end is None [s], with one field or all.
 
@@ -55,7 +109,7 @@ def selected(log: Log, topic: str, start: float | None, end: float | None, field
     return Selection(log, topic, start, end, (found if field is None else found.only(field)).fields)
 
 
-def export(selection: Selection, path: Path, replace: bool = False) -> int:
+def export(selection: Selection | Joined, path: Path, force: bool = False) -> int:
     """Write messages to a file; time is the first column, the others are those of `ChannelData.columns`.
 
     CSV has units in its headings, parquet has unit, frame and meaning as metadata of the columns.
@@ -66,16 +120,20 @@ def export(selection: Selection, path: Path, replace: bool = False) -> int:
     Raises:
         LogError: the ending is unknown, the file exists or cannot be written, or pyarrow is needed and missing.
     """
-    writers: Mapping[str, Callable[[Selection, Path], int]] = {".csv": _csv, ".npz": _npz, ".parquet": _parquet}
+    writers: Mapping[str, Callable[[Selection | Joined, Path], int]] = {
+        ".csv": _csv,
+        ".npz": _npz,
+        ".parquet": _parquet,
+    }
     write = writers.get(path.suffix.lower())
     if write is None:
         raise LogError(f"{path}: unknown kind of file '{path.suffix}'; end its name in {', '.join(writers)}")
-    refuse_existing(path, replace)
-    with write_whole(path, replace) as temporary:
+    refuse_existing(path, force)
+    with write_whole(path, force) as temporary:
         return write(selection, temporary)
 
 
-def _csv(selection: Selection, path: Path) -> int:
+def _csv(selection: Selection | Joined, path: Path) -> int:
     count = 0
     with path.open("w", encoding="utf-8", newline="") as file:
         writer = csv.writer(file, lineterminator="\n")
@@ -90,17 +148,20 @@ def _csv(selection: Selection, path: Path) -> int:
     return count
 
 
-def _npz(selection: Selection, path: Path) -> int:
-    names = tuple(field.name for field in selection.fields)
-    kept = selection.log.gather({selection.topic: names}, selection.start, selection.end)[selection.topic]
+def _npz(selection: Selection | Joined, path: Path) -> int:
+    names, kept = ("time", *(field.name for field in selection.fields)), Columns()
+    for part in selection:
+        kept.add("time", part.time)
+        for name, values in part.values(names[1:]).items():
+            kept.add(name, values)
     with zipfile.ZipFile(path, "w", zipfile.ZIP_DEFLATED) as archive:
-        for name in ("time", *names):  # one after the other: numpy's own way holds all of them
+        for name in names:  # one after the other: numpy's own way holds all of them
             with archive.open(f"{name}.npy", "w", force_zip64=True) as file:
-                np.lib.format.write_array(file, kept.time if name == "time" else kept.field(name))
-    return len(kept)
+                np.lib.format.write_array(file, kept[name])
+    return kept.rows("time")
 
 
-def _parquet(selection: Selection, path: Path) -> int:
+def _parquet(selection: Selection | Joined, path: Path) -> int:
     pyarrow = require("pyarrow", "parquet", "parquet", "export to .csv or .npz")
     parquet, count, writer = importlib.import_module("pyarrow.parquet"), 0, None
     try:

@@ -358,6 +358,26 @@ def test_inspect_a_topic(surefoot, scenario, tmp_path):
     assert surefoot("inspect", log, "--topic", "/trut")[0] == 2
 
 
+def test_inspect_several_topics_and_when_something_holds(surefoot, scenario, tmp_path):
+    surefoot("run", scenario, "--out", tmp_path)
+    log = tmp_path / "two-steps-0" / "log.mcap"
+    code, out, _ = surefoot("inspect", log, "--topic", "/truth", "--topic", "/contact", "--json")
+    assert code == 0 and {"truth.com", "contact.zmp"} <= json.loads(out).keys()
+    both = tmp_path / "both.csv"
+    assert surefoot("inspect", log, "--topic", "/truth", "--topic", "/plan", "--export", both)[0] == 0
+    assert both.read_text().startswith("time [s],truth.")
+    assert surefoot("inspect", log, "--topic", "/truth", "--topic", "/truth")[0] == 2
+    assert surefoot("inspect", log, "--topic", "/truth", "--topic", "/plan", "--field", "com")[0] == 2
+    code, out, _ = surefoot("inspect", log, "--where", "/truth:com_2 >= 0.5", "--json")
+    (found,) = json.loads(out)
+    assert code == 0 and found["worst"] == pytest.approx(1.0) and found["end"] == pytest.approx(3.998)
+    code, out, _ = surefoot("inspect", log, "--where", "/truth:com_2 >= 0.5 and zmp_edge > 0", "--to", "3")
+    assert code == 0 and "worst" not in out
+    assert surefoot("inspect", log, "--where", "com_0 < 1")[2].startswith(f"{log}: com_0 is of 4 topics")
+    for wrong in (("--field", "com"), ("--export", tmp_path / "x.csv"), ("--strict",)):
+        assert surefoot("inspect", log, "--where", "/truth:com_2 >= 0.5", *wrong)[0] == 2
+
+
 def test_events_are_printed_as_words(surefoot, tmp_path):
     with LogWriter(tmp_path / "said.mcap", {}) as writer:
         said = EventLog(writer)

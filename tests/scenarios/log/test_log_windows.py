@@ -18,7 +18,7 @@ from surefoot.scenarios.log.chunk_reader import ChunkReader
 from surefoot.scenarios.log.spec import layout_of
 from surefoot.scenarios.record import channels
 from surefoot.scenarios.run.run import run_scenario
-from surefoot.scenarios.show.export import export, selected
+from surefoot.scenarios.show.export import Joined, export, selected
 
 pytestmark = pytest.mark.unit
 
@@ -203,3 +203,33 @@ def test_what_cannot_be_exported_is_said(log, tmp_path):
         export(part, tmp_path / "none" / "x.csv")
     with pytest.raises(LogError, match=r"no message of /x in that time; the log is from 0\.000 s to 3\.998 s"):
         selected(log, "/x", 7.0, 8.0, None)
+
+
+def test_several_topics_are_one_table_with_the_latest_of_each(tmp_path, monkeypatch):
+    path = tmp_path / "two.mcap"
+    with LogWriter(path, {}) as writer:
+        quick = writer.channel(ChannelSpec("/quick", "Q", (FieldSpec("a", unit="m"),)))
+        slow = writer.channel(ChannelSpec("/slow/one", "S", (FieldSpec("b", (2,), "N"), FieldSpec("n", kind="int"))))
+        for tick in range(1000):
+            quick.append(tick * 2_000_000, float(tick))
+            if tick % 30 == 20:
+                slow.append(tick * 2_000_000, np.array([tick, -tick], float), tick)
+    log = read(path)
+
+    def joined():
+        return Joined(tuple(selected(log, topic, 0.0, None, None) for topic in ("/quick", "/slow/one")))
+
+    assert export(joined(), tmp_path / "x.csv") == 980
+    with (tmp_path / "x.csv").open(newline="") as file:
+        head, *rows = csv.reader(file)
+    assert head == ["time [s]", "quick.a [m]", "slow/one.b_0 [N]", "slow/one.b_1 [N]", "slow/one.n"]
+    table = np.array(rows, float)
+    tick = np.arange(20, 1000)
+    latest = (tick - 20) // 30 * 30 + 20
+    assert table[:, 0] == pytest.approx(0.002 * tick)
+    assert np.array_equal(table[:, 1:], np.column_stack((tick, latest, -latest, latest)))
+    monkeypatch.setattr("surefoot.scenarios.log.reader.WINDOW", 0.07)
+    export(joined(), tmp_path / "x.npz")
+    with np.load(tmp_path / "x.npz") as data:
+        assert np.array_equal(data["slow/one.b"], table[:, 2:4])
+        assert np.array_equal(data["time"], table[:, 0])

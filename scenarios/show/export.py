@@ -1,10 +1,11 @@
 """Topics of a log in a stretch of time, and their export to a file, a few seconds of messages at a time."""
 
 import csv
+import dataclasses
 import importlib
 import zipfile
 from collections.abc import Callable, Iterator, Mapping, Sequence
-from dataclasses import dataclass, replace
+from dataclasses import dataclass
 from pathlib import Path
 
 import numpy as np
@@ -91,7 +92,7 @@ class Joined:
 
 def prefixed(topic: str, fields: Sequence[FieldSpec]) -> Iterator[FieldSpec]:
     """Fields that are called by their topic, too."""
-    return (replace(field, name=f"{topic.removeprefix('/')}.{field.name}") for field in fields)
+    return (dataclasses.replace(field, name=f"{topic.removeprefix('/')}.{field.name}") for field in fields)
 
 
 def selected(log: Log, topic: str, start: float | None, end: float | None, field: str | None) -> Selection:
@@ -109,7 +110,7 @@ def selected(log: Log, topic: str, start: float | None, end: float | None, field
     return Selection(log, topic, start, end, (found if field is None else found.only(field)).fields)
 
 
-def export(selection: Selection | Joined, path: Path, force: bool = False) -> int:
+def export(selection: Selection | Joined, path: Path, replace: bool = False) -> int:
     """Write messages to a file; time is the first column, the others are those of `ChannelData.columns`.
 
     CSV has units in its headings, parquet has unit, frame and meaning as metadata of the columns.
@@ -128,8 +129,8 @@ def export(selection: Selection | Joined, path: Path, force: bool = False) -> in
     write = writers.get(path.suffix.lower())
     if write is None:
         raise LogError(f"{path}: unknown kind of file '{path.suffix}'; end its name in {', '.join(writers)}")
-    refuse_existing(path, force)
-    with write_whole(path, force) as temporary:
+    refuse_existing(path, replace)
+    with write_whole(path, replace) as temporary:
         return write(selection, temporary)
 
 

@@ -25,6 +25,11 @@ class Rule(Protocol):
         """The same view where nothing is made, else that of what is; of what it is given it changes nothing."""
 
 
+def rule_name(rule: Rule) -> str:
+    """The name of a rule: that of its function, or of its class."""
+    return str(getattr(rule, "__name__", type(rule).__name__))
+
+
 def ends(view: View) -> View:
     """Single support of a step that catches the body ends with its touchdown.
 

@@ -206,6 +206,7 @@ class PlannerSettings(Group):
         None, "filter of the planner's state, null: kalman when ZMP or CoM are noisy, else none"
     )
     recovery: RecoverySettings | None = key(None, "numbers of its recovery from pushes, null: as they are")
+    without: Many[str] = key((), "rules of its recovery that are left out, by their names")
 
 
 class Start(Group):

@@ -17,10 +17,11 @@ from surefoot.planner.references.com_height import (
     Rise,
     SmoothHeight,
 )
+from surefoot.planner.rules import Rule, rule_name
 from surefoot.planner.swing.leg_reach import LegReach
 from surefoot.planner.swing.step_region import StepRegion
 from surefoot.planner.types import GRAVITY
-from surefoot.scenarios.errors import Problem
+from surefoot.scenarios.errors import Problem, nearest
 from surefoot.scenarios.file.group import recovery_parameters
 from surefoot.scenarios.file.schema import PlannerSettings
 from surefoot.scenarios.setup.gait import longest_landing, step_region
@@ -141,7 +142,25 @@ class Formulation:
             **{name: value for name, value in chosen.items() if value is not None},
         )
 
+    @property
+    def rules(self) -> tuple[Rule, ...]:
+        """The profile's rules of recovery but for those that the scenario leaves out."""
+        return tuple(rule for rule in self.profile.rules if rule_name(rule) not in self.keys.without)
+
     def problems(self) -> Iterator[Problem]:
+        """List what the scenario asks of the profile that it has not got: moves of the jerk, or rules."""
+        yield from self._missing_rules()
+        yield from self._missing_moves()
+
+    def _missing_rules(self) -> Iterator[Problem]:
+        profile = self.profile
+        own = () if profile.planner is not None else tuple(map(rule_name, profile.rules))
+        for name in self.keys.without:
+            if name not in own:
+                what = f"planner.without {name[:100]!r}, which is no rule of profile {profile.name!r}"
+                yield Problem(("planner", "without"), what, nearest(name, own) if own else "leave it out: there is none")
+
+    def _missing_moves(self) -> Iterator[Problem]:
         """List moves of the jerk that the profile has not got, or that begin after the horizon."""
         profile, keys = self.profile, self.keys
         if not profile.moves:

@@ -267,7 +267,7 @@ class Walk:
                 planner = profile.planner(*given, profile)
                 index(planner.parameters.horizon)
                 return planner
-        planner = WalkingPlanner(*given, profile, self.region, self.legs)
+        planner = WalkingPlanner(*given, replace(profile, rules=self.formulation.rules), self.region, self.legs)
         check_walk(planner.schedule, self.formulation.heights)
         return planner
 

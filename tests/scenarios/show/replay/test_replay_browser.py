@@ -24,6 +24,7 @@ DARK = 125
 """Only the robot is so dark in every channel."""
 
 TIME = "return parseFloat(document.querySelector('input')?.value)"
+ELAPSED = "parseFloat(document.querySelector('#root [role=slider]').getAttribute('aria-valuenow'))"
 PLAY = "document.querySelector('.mantine-ActionIcon-root').click()"
 EYE = """
 const names = [...document.querySelectorAll('[data-playback-scene-tree] div')].filter(e => e.textContent === '/Robot');
@@ -144,3 +145,20 @@ def test_the_robot_can_be_switched_off(page: Browser) -> None:
     page.run(EYE)
     time.sleep(0.8)
     assert changed(before, picture(page)) > 1000
+
+
+def test_a_link_to_a_moment_shows_it_and_stands_still(page: Browser) -> None:
+    page.run(SEEK % 0.1)
+    page.run(PLAY)
+    page.run("location.hash = '#t=0.53'")
+    page.wait_for(f"return Math.abs({ELAPSED} - 0.53) < 1e-3")
+    time.sleep(0.5)
+    assert page.run(f"return {ELAPSED}") == pytest.approx(0.53, abs=1e-3), "it stands still"
+    page.run("location.hash = '#t=99'")
+    page.wait_for(f"return {ELAPSED} > 0.9")
+    page.run("location.hash = '#t=soon'")
+    time.sleep(0.3)
+    assert page.run(f"return {ELAPSED}") > 0.9
+    page.open(page.run("return location.href.split('#')[0] + '?again#t=0.71'"))
+    page.wait_for("return document.querySelector('#root [role=slider]') && true")
+    page.wait_for(f"return Math.abs({ELAPSED} - 0.71) < 1e-3")

@@ -66,16 +66,6 @@ def search_table(name: str, head: str = "N·s/kg") -> str:
     return table([head, *across.values], lines)
 
 
-def mechanisms_table() -> str:
-    """Mean and least threshold over all directions and phases, with one mechanism off at a time; the dearest first."""
-    found, (mechanisms, *_) = searches("mechanisms")
-    by = {one: [each.shown for each in found if each.labels[mechanisms.name] == one] for one in mechanisms.values}
-    plain, *others = by
-    order = [plain, *sorted(others, key=lambda one: fmean(by[one]))]
-    lines = ([str(one), f"{fmean(by[one]):.3f}", f"{min(by[one]):.3f}", str(len(by[one]))] for one in order)
-    return table(["mechanism off", "mean, N·s/kg", "least, N·s/kg", "searches"], lines)
-
-
 def numbers_table() -> str:
     """What a number of the recovery moves, halved and doubled: the thresholds that are others than as it is."""
     found, (cases, numbers) = searches("recovery-numbers")
@@ -338,7 +328,6 @@ TABLES: dict[str, tuple[str, Callable[[], str]]] = {
     "recovery-numbers": ("recovery-results.md", numbers_table),
     "known-falls": ("falling.md", known_table),
     "given-up": ("recovery.md", given_up_table),
-    "mechanisms": ("recovery-results.md", mechanisms_table),
     "abilities": ("recovery-results.md", partial(search_table, "abilities")),
     "profiles-walk": (
         "profiles.md",
@@ -371,6 +360,7 @@ TABLES: dict[str, tuple[str, Callable[[], str]]] = {
             ("criteria", "scenarios.md"),
             ("public-humanoids", "robots.md"),
             ("robustness", "campaigns.md"),
+            ("mechanisms", "recovery-results.md"),
             ("mechanisms-walking", "recovery-results.md"),
         )
     },

@@ -12,6 +12,7 @@ from surefoot.scenarios.check.check import Checked, CheckStatus
 from surefoot.scenarios.check.signs import FAR, Parting
 from surefoot.scenarios.judge.verdict import shown_unit, value_text
 from surefoot.scenarios.output import write_whole
+from surefoot.scenarios.show.moment import Moment
 
 _SHOWN_MOVES = 12
 """Moves of a run that are named; the others are counted."""
@@ -53,6 +54,7 @@ def lines_of(checked: Checked) -> list[str]:
         lines.append(_REMEDIES[checked.status].format(checked.case.baseline))
     if checked.log is not None and checked.status in ("failed", "moved", "better"):
         lines += [f"look at: surefoot plot {checked.log}{where}" for where in _figures(checked.partings)]
+        lines += [f"look at: {Moment(checked.log, one.begin).text}" for one in checked.partings[:1]]
     return lines
 
 

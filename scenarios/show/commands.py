@@ -49,6 +49,7 @@ def inspect(told: InspectOptions) -> None:
         from surefoot.scenarios.judge import inspection
         from surefoot.scenarios.log import read
         from surefoot.scenarios.show.console import print_inspection
+        from surefoot.scenarios.show.moment import Moment
         from surefoot.scenarios.show.touching import touching
 
     opened, asked = read(told.log), told.topic or []
@@ -65,7 +66,10 @@ def inspect(told: InspectOptions) -> None:
     found, touches = inspection.inspect(opened, told.strict), touching(opened)
     if told.as_json:
         bodies = [touch._asdict() for touch in touches]
-        typer.echo(json.dumps({**found.to_json(), "touching": bodies}, allow_nan=False))
+        shown = {**found.to_json(), "touching": bodies}
+        for one in shown["health"]:
+            one["look_at"] = None if one["time"] is None else Moment(opened.path, one["time"]).to_json()
+        typer.echo(json.dumps(shown, allow_nan=False))
     else:
         print_inspection(found, touches)
     raise typer.Exit(0 if found.verdict.passed else MISSED)

@@ -29,6 +29,7 @@ from surefoot.scenarios.show.differences import (
     unreadable,
 )
 from surefoot.scenarios.show.logview import LogView
+from surefoot.scenarios.show.moment import Moment
 
 TOLERANCE = 1e-6
 
@@ -89,6 +90,12 @@ class Comparison:
         return next((channel for channel in self.channels if channel.time is not None), None)
 
     @property
+    def moments(self) -> tuple[Moment, ...]:
+        """The moment of both logs at which they part; none where they do not."""
+        time = None if self.first is None else self.first.time
+        return () if time is None else tuple(Moment(Path(path), time) for path in (self.a, self.b))
+
+    @property
     def summary(self) -> str:
         """One sentence: identical, or where the runs part."""
         if self.identical:
@@ -108,6 +115,7 @@ class Comparison:
             "b": self.b,
             "identical": self.identical,
             "summary": self.summary,
+            "look_at": [one.to_json() for one in self.moments],
             "tolerance": self.tolerance,
             "first_divergence": None if self.first is None else plain(asdict(self.first), str),
             "versions": [asdict(one) for one in self.versions],
@@ -204,6 +212,8 @@ def print_comparison(found: Comparison) -> None:
     """Print what is the same and what is not, the answer first."""
     typer.echo(found.summary)
     typer.echo(f"A: {found.a}\nB: {found.b}")
+    for moment in found.moments:
+        typer.echo(f"look at: {moment.text}")
     for note in (*found.notes, *found.unread):
         typer.echo(f"note: {note}")
     for title, pairs in (("version", found.versions), ("setting", found.settings)):

@@ -12,9 +12,9 @@ from typing import TYPE_CHECKING, Any, Self
 
 import typer
 
-from surefoot.scenarios.judge.finding import Finding
 from surefoot.scenarios.judge.verdict import FIRST_METRICS, Verdict, bound_text, shown_unit, value_text
 from surefoot.scenarios.run.skeleton import Progress
+from surefoot.scenarios.show.moment import Moment
 
 if TYPE_CHECKING:
     from rich.progress import ProgressColumn
@@ -108,8 +108,8 @@ def print_result(name: str, verdict: Verdict, log: Path) -> None:
 def print_inspection(found: "Inspection", touches: "Sequence[Touch]") -> None:
     """Print everything that an inspection found."""
     typer.echo(f"{found.log}: {found.start:.3f} s to {found.end:.3f} s")
-    for line in _health_lines(found.health):
-        typer.echo(f"health: {line}")
+    for line in _health_lines(found):
+        typer.echo(line)
     for touch in touches:
         typer.echo(f"touching: {touch.one} and {touch.other}, from {touch.time:.3f} s on")
     _print_verdict(found.scenario, found.verdict)
@@ -128,16 +128,21 @@ def print_valueless(names: Collection[str]) -> None:
         typer.echo(f"without a value: {', '.join(sorted(names))}")
 
 
-def _health_lines(health: Sequence[Finding]) -> list[str]:
-    """Every warning with its evidence and its relation to a fall, and how many checks found nothing."""
-    lines = []
-    for finding in health:
-        if finding.status != "ok":
-            when = "" if finding.time is None else f" from {finding.time:.3f} s on"
-            value = "" if finding.value is None else f", value {finding.value:.4g}"
-            relation = "" if finding.relation is None else f"{finding.relation}: "
-            lines.append(f"{relation}{finding.check}{when}{value}: {finding.cause}")
-    return [*lines, f"{len(health) - len(lines)} of {len(health)} checks found nothing"]
+def _health_lines(found: "Inspection") -> list[str]:
+    """Every warning with its evidence, its relation to a fall and where to see it, and how many found nothing."""
+    lines, told, warnings = [], False, [one for one in found.health if one.status != "ok"]
+    for finding in warnings:
+        when = "" if finding.time is None else f" from {finding.time:.3f} s on"
+        value = "" if finding.value is None else f", value {finding.value:.4g}"
+        relation = "" if finding.relation is None else f"{finding.relation}: "
+        lines.append(f"health: {relation}{finding.check}{when}{value}: {finding.cause}")
+        if finding.time is not None:
+            moment = Moment(Path(found.log), finding.time)
+            # The command that makes a replay is as long as the finding: that of the first one makes the replay of all.
+            lines += [f"  look at: {moment.link or moment.command}"] if moment.link or not told else []
+            told = True
+    count = len(found.health)
+    return [*lines, f"health: {count - len(warnings)} of {count} checks found nothing"]
 
 
 def print_topic(topic: str, fields: Mapping[str, Mapping[str, Any]]) -> None:

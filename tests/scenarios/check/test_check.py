@@ -18,6 +18,7 @@ from surefoot.scenarios.file.criteria import Bound
 from surefoot.scenarios.judge.metric import metric
 from surefoot.scenarios.judge.metrics import METRICS, OWN, known, register
 from surefoot.scenarios.show.figures.page import FIGURES
+from surefoot.scenarios.show.moment import Moment
 
 pytestmark = pytest.mark.unit
 
@@ -138,6 +139,7 @@ def test_a_run_whose_trace_parts_has_moved_and_is_told_where_first_and_most(kept
     begin, end = baseline.trace.values["time"][2:4]
     assert f"look at: surefoot plot {found.log} --what balance --from {begin:g} --to {end:g}" in lines
     assert f"look at: surefoot plot {found.log} --what soles --from {end:g}" in lines
+    assert f"look at: {Moment(found.log, found.partings[0].begin).command}" in lines
 
 
 def test_a_metric_of_a_package_that_is_not_here_is_not_compared_unless_a_criterion_names_it(kept, tmp_path):

@@ -158,7 +158,8 @@ class Formulation:
         for name in self.keys.without:
             if name not in own:
                 what = f"planner.without {name[:100]!r}, which is no rule of profile {profile.name!r}"
-                yield Problem(("planner", "without"), what, nearest(name, own) if own else "leave it out: there is none")
+                right = nearest(name, own) if own else "leave it out: there is none"
+                yield Problem(("planner", "without"), what, right)
 
     def _missing_moves(self) -> Iterator[Problem]:
         """List moves of the jerk that the profile has not got, or that begin after the horizon."""

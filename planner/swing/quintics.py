@@ -5,7 +5,7 @@ import math
 import numpy as np
 
 from surefoot.maths.algebra import Vector
-from surefoot.planner.geometry import quintic
+from surefoot.planner.geometry.plane import quintic
 from surefoot.planner.geometry.quintic import between
 from surefoot.planner.types import Array
 

@@ -12,10 +12,10 @@ import numpy as np
 from benchmarks.table import Section, Value, microseconds
 from surefoot.planner.laws.profiles import PROFILES
 from surefoot.planner.model.jerk import cached_response
+from surefoot.planner.plan.sampling import PlanSampler
 from surefoot.planner.planner import WalkingPlanner
 from surefoot.planner.plants import IdealFeet
 from surefoot.planner.recovery.step_adjustment import StepAdjustment
-from surefoot.planner.sampling import PlanSampler
 from surefoot.planner.steps.gait import GaitParameters
 from surefoot.planner.types import CentroidalState, FeetState, PhaseKind
 from surefoot.scenarios.log import NoLog

@@ -17,7 +17,7 @@ from surefoot.scenarios.policy.contract import Contract
 from surefoot.scenarios.policy.files import read
 from surefoot.scenarios.policy.mends import changed_terms, depths, reordered, scaled, times
 from surefoot.scenarios.record.provenance import versions
-from surefoot.scenarios.setup.robot import describe
+from surefoot.scenarios.setup.robot.robots import describe
 
 HEADS = ("policy", "planted", "up [s]", "wanted", "named", "by")
 OUT = Path(__file__).parents[1] / "docs" / "results" / "policy-faults.csv"

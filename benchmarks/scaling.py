@@ -9,9 +9,9 @@ from pathlib import Path
 import numpy as np
 
 from benchmarks.table import Section, Value, microseconds
+from surefoot.planner.plan.sampling import PlanSampler
 from surefoot.planner.planner import WalkingPlanner
 from surefoot.planner.plants import IdealFeet
-from surefoot.planner.sampling import PlanSampler
 from surefoot.planner.steps.gait import GaitParameters
 from surefoot.planner.types import CentroidalState, FeetState
 from surefoot.scenarios.log import NoLog

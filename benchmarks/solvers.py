@@ -13,8 +13,8 @@ from scipy.optimize import nnls
 from benchmarks.stopwatch import TimedWalk
 from benchmarks.table import Section, Value, microseconds
 from benchmarks.tick import WALK
-from surefoot.wbc.qp import EQUALITY_ROWS, QpData
-from surefoot.wbc.solvers import Daqp, EqualityFirst, ProxQp, QpSolution, QpSolver
+from surefoot.wbc.qp.data import EQUALITY_ROWS, QpData
+from surefoot.wbc.qp.solvers import Daqp, EqualityFirst, ProxQp, QpSolution, QpSolver
 
 
 class DaqpModel:

@@ -8,11 +8,11 @@ from typing import Any
 from page_table import table
 
 from surefoot.planner.laws.law import Motion, MotionProblem, StepContext
-from surefoot.planner.plan import WalkPlan
+from surefoot.planner.plan.plan import WalkPlan
 from surefoot.planner.references.zmp_reference import ZmpReference
 from surefoot.planner.types import CentroidalState, FeetState
 from surefoot.sim.measurement import Measurement
-from surefoot.wbc.model import RobotTerms
+from surefoot.wbc.body.model import RobotTerms
 from surefoot.wbc.reference import WbcReference
 from surefoot.wbc.tasks.task import Task
 from surefoot.wbc.types import RobotState

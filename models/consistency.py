@@ -5,8 +5,8 @@ from dataclasses import astuple, dataclass
 import numpy as np
 import pinocchio as pin
 
-from surefoot.engine import mujoco
-from surefoot.mimic import Dynamics
+from surefoot.engines.mimic import Dynamics
+from surefoot.engines.windowless import mujoco
 from surefoot.models.convert import Array, Coordinates, mujoco_acceleration_to_pinocchio, velocity_map
 from surefoot.models.pinocchio import pinocchio_model
 from surefoot.models.types import RobotDescription

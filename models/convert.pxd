@@ -1,5 +1,5 @@
 cimport cython
-from surefoot.algebra cimport vector3
+from surefoot.maths.algebra cimport vector3
 
 ctypedef (vector3, vector3, vector3) rows
 

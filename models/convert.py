@@ -18,7 +18,7 @@ Positions have the shape (7 + nj,), velocities and accelerations (6 + nj,). Outp
 not alias the inputs.
 
 A joint that follows another one by an equality has a place in MuJoCo's arrays, which are longer then, and none in
-Pinocchio's (see `surefoot.mimic`). `Coordinates` knows which places are those of the nj joints.
+Pinocchio's (see `surefoot.engines.mimic`). `Coordinates` knows which places are those of the nj joints.
 """
 
 from typing import TYPE_CHECKING
@@ -27,7 +27,7 @@ import numpy as np
 from numpy.typing import NDArray
 
 if TYPE_CHECKING:
-    from surefoot.engine import mujoco
+    from surefoot.engines.windowless import mujoco
 
 Array = NDArray[np.float64]
 Row = tuple[float, float, float]
@@ -149,7 +149,7 @@ class Coordinates:
         if self.G is None:
             found: Array = model.dof_M0[6:]
             return found
-        from surefoot.engine import mujoco
+        from surefoot.engines.windowless import mujoco
 
         data, M = mujoco.MjData(model), np.zeros((model.nv, model.nv))
         mujoco.mj_kinematics(model, data)

@@ -17,7 +17,7 @@ from surefoot.models.types import RobotDescription
 from surefoot.similarity import REFERENCE_SIZE, Similarity
 
 if TYPE_CHECKING:
-    from surefoot.engine import mujoco
+    from surefoot.engines.windowless import mujoco
 
 Array = NDArray[np.float64]
 
@@ -226,7 +226,7 @@ def com_height(robot: RobotDescription) -> float:
 
 def swing_acceleration(robot: RobotDescription) -> tuple[float, float]:
     """Of the left leg's sole with the share of its hip's torque, forward and sideways [m/s^2]."""
-    from surefoot.engine import mujoco
+    from surefoot.engines.windowless import mujoco
 
     model, data = _upright(robot)
     hips = robot.roles.left_leg[: robot.roles.left_leg.index(robot.roles.knees[0])]
@@ -320,7 +320,7 @@ def _upright(robot: RobotDescription) -> "tuple[mujoco.MjModel, mujoco.MjData]":
 @lru_cache(maxsize=8)
 def _compiled(mjcf: str, angles: tuple[float, ...]) -> "tuple[mujoco.MjModel, mujoco.MjData]":
     """A text with its joints at angles, kept since dozens of facts need it (50 ms); nobody may write to it."""
-    from surefoot.engine import mujoco
+    from surefoot.engines.windowless import mujoco
 
     model = mujoco.MjModel.from_xml_string(mjcf)
     data = mujoco.MjData(model)

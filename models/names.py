@@ -4,7 +4,7 @@ from collections.abc import Iterator, Mapping
 from pathlib import Path
 from typing import TYPE_CHECKING
 
-from surefoot.plugins import Declared
+from surefoot.parts.plugins import Declared
 
 if TYPE_CHECKING:
     from surefoot.models.types import Robot

@@ -10,7 +10,7 @@ from pathlib import Path
 import numpy as np
 import pinocchio as pin
 
-from surefoot.mimic import names_of
+from surefoot.engines.mimic import names_of
 from surefoot.models.coupling import coupled
 from surefoot.models.types import RobotDescription, RobotError
 
@@ -18,7 +18,7 @@ from surefoot.models.types import RobotDescription, RobotError
 def pinocchio_model(description: RobotDescription) -> pin.Model:
     """Read the robot's MJCF with Pinocchio; sites are frames, armatures are inside the mass matrix.
 
-    Joints that follow others have no coordinate (see `surefoot.mimic`).
+    Joints that follow others have no coordinate (see `surefoot.engines.mimic`).
 
     Effort and velocity limits come from the description, because the MJCF reader does not take them from motors.
 

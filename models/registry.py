@@ -9,7 +9,6 @@ Another package needs one file, with a function from options to a description, a
 from functools import partial
 from pathlib import Path
 
-from surefoot.guard import taken_for
 from surefoot.models import names
 from surefoot.models.humanoid100 import HUMANOID100
 from surefoot.models.names import SHIPPED, is_file
@@ -22,6 +21,7 @@ from surefoot.models.types import (
     UnknownRobotError,
     nearest,
 )
+from surefoot.parts.guard import taken_for
 
 
 def _explained(path: Path, options: RobotOptions) -> Explanation:

@@ -22,12 +22,12 @@ if TYPE_CHECKING:
     from surefoot.planner.laws.qp import Qp, QpSolution, solve
     from surefoot.planner.look import View
     from surefoot.planner.parameters import LegInertia, PlannerParameters, StepAdaptation
-    from surefoot.planner.plan import Planner, WalkPlan
+    from surefoot.planner.plan.plan import Planner, WalkPlan
+    from surefoot.planner.plan.sample import PlanSample
+    from surefoot.planner.plan.sampling import PlanSampler
     from surefoot.planner.planner import WalkingPlanner
     from surefoot.planner.plants import IdealFeet, Pendulum
     from surefoot.planner.rules import RULES, Rule
-    from surefoot.planner.sample import PlanSample
-    from surefoot.planner.sampling import PlanSampler
     from surefoot.planner.steps.commands import Command, velocity_bouts, walk_of
     from surefoot.planner.steps.gait import Bout, GaitParameters
     from surefoot.planner.types import CentroidalState, FeetState, Foot, Footstep, PhaseKind, Twist
@@ -82,10 +82,10 @@ if not TYPE_CHECKING:  # a type checker shall still refuse names that are not th
             "laws.qp": ("Qp", "QpSolution", "solve"),
             "look": ("View",),
             "parameters": ("LegInertia", "PlannerParameters", "StepAdaptation"),
-            "plan": ("Planner", "WalkPlan"),
-            "sample": ("PlanSample",),
+            "plan.plan": ("Planner", "WalkPlan"),
+            "plan.sample": ("PlanSample",),
             "rules": ("RULES", "Rule"),
-            "sampling": ("PlanSampler",),
+            "plan.sampling": ("PlanSampler",),
             "planner": ("WalkingPlanner",),
             "plants": ("IdealFeet", "Pendulum"),
             "types": ("CentroidalState", "FeetState", "Foot", "Footstep", "PhaseKind", "Twist"),

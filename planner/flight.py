@@ -5,7 +5,7 @@ from dataclasses import replace
 
 import numpy as np
 
-from surefoot.planner.geometry import greatest, sole_pose, wrap_angle
+from surefoot.planner.geometry.plane import greatest, sole_pose, wrap_angle
 from surefoot.planner.measured import Measured
 from surefoot.planner.state import Swing, WalkState
 from surefoot.planner.swing.leg_reach import around_stance_leg

@@ -10,7 +10,7 @@ from surefoot.planner.steps.phases cimport PhaseSamples
 from surefoot.planner.steps.step cimport Step
 from surefoot.planner.swing.trajectory cimport SwingTrajectory
 from surefoot.planner.types cimport Balance, PhaseInfo
-from surefoot.planner.plan cimport WalkPlan
+from surefoot.planner.plan.plan cimport WalkPlan
 
 cdef class View:
     cdef readonly WalkState state

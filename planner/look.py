@@ -6,7 +6,7 @@ from dataclasses import dataclass, replace
 import numpy as np
 
 from surefoot.forces import ExternalLoad
-from surefoot.planner.geometry import signed_distance
+from surefoot.planner.geometry.plane import signed_distance
 from surefoot.planner.measured import Measured
 from surefoot.planner.model.dcm import natural_frequency
 from surefoot.planner.recovery.falling import counted

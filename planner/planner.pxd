@@ -6,7 +6,7 @@ from surefoot.planner.references.window cimport Window
 from surefoot.planner.references.zmp_reference cimport Support, ZmpReference
 from surefoot.planner.state cimport Swing, WalkState
 from surefoot.planner.types cimport Balance
-from surefoot.planner.plan cimport WalkPlan
+from surefoot.planner.plan.plan cimport WalkPlan
 from surefoot.planner.walk_model cimport WalkModel
 
 @cython.locals(state=WalkState, support=Support, measured=Measured, balance=Balance)

@@ -14,7 +14,7 @@ from surefoot.planner.laws.profiles import PROFILES, Profile
 from surefoot.planner.look import View, look
 from surefoot.planner.measured import Measured
 from surefoot.planner.parameters import PlannerParameters
-from surefoot.planner.plan import WalkPlan
+from surefoot.planner.plan.plan import WalkPlan
 from surefoot.planner.problem import problem_of
 from surefoot.planner.recovery.falling import falling
 from surefoot.planner.references.com_height import HeightProfile, SmoothHeight

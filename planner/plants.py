@@ -4,10 +4,10 @@ import math
 
 import numpy as np
 
-from surefoot.planner.geometry import nearest_point, signed_distance
+from surefoot.planner.geometry.plane import nearest_point, signed_distance
 from surefoot.planner.model.dcm import dcm
 from surefoot.planner.model.jerk import jerk_model
-from surefoot.planner.sampling import PlanSampler
+from surefoot.planner.plan.sampling import PlanSampler
 from surefoot.planner.types import Array, FeetState
 
 

@@ -1,6 +1,6 @@
 from surefoot.planner.model.time_scaling cimport TimeScaling
 from surefoot.planner.references.offset_table cimport OffsetTable
-from surefoot.planner.plan cimport WalkPlan
+from surefoot.planner.plan.plan cimport WalkPlan
 from surefoot.planner.references.zmp_reference cimport Support
 from surefoot.planner.steps.phases cimport Phase
 from surefoot.planner.steps.schedule cimport Schedule

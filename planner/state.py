@@ -6,7 +6,7 @@ from enum import Enum
 import numpy as np
 
 from surefoot.planner.model.time_scaling import TimeScaling
-from surefoot.planner.plan import WalkPlan
+from surefoot.planner.plan.plan import WalkPlan
 from surefoot.planner.references.height_transition import HeightTransition
 from surefoot.planner.references.offset_table import OffsetTable
 from surefoot.planner.references.zmp_reference import Support

@@ -43,8 +43,8 @@ class PhaseKind(IntEnum):
 class Footstep:
     """A foothold: where a foot stands, stood, or is to land.
 
-    It is told in the world frame. Seen from its stance foot (`planner.geometry.seen_from`) it is told in the frame of
-    that foothold: x is how far ahead it is, y how far to the left, yaw how far it is turned.
+    It is told in the world frame. Seen from its stance foot (`planner.geometry.plane.seen_from`) it is told in the
+    frame of that foothold: x is how far ahead it is, y how far to the left, yaw how far it is turned.
 
     Attributes:
         foot: the foot that stands here.

@@ -1,6 +1,6 @@
 """Where the bodies of a robot are, by MuJoCo's kinematics."""
 
-from surefoot.engine import mujoco
+from surefoot.engines.windowless import mujoco
 from surefoot.models.convert import Coordinates
 from surefoot.sim.measurement import Array
 

@@ -1,4 +1,4 @@
-from surefoot cimport algebra, linear
+from surefoot.maths cimport algebra, linear
 
 cdef double ACCELERATION_LIMIT
 

@@ -2,8 +2,8 @@
 
 import numpy as np
 
-from surefoot import algebra, linear
-from surefoot.engine import mujoco
+from surefoot.engines.windowless import mujoco
+from surefoot.maths import algebra, linear
 from surefoot.sim.measurement import Array
 
 ACCELERATION_LIMIT = 1e10

@@ -5,7 +5,7 @@ from collections.abc import Sequence
 import numpy as np
 from numpy.typing import NDArray
 
-from surefoot.engine import mujoco
+from surefoot.engines.windowless import mujoco
 
 _TERRAIN, _FOOT, _BODY = 0, 1, 3
 """Codes of geoms: the sum over a contact's two tells its kind; 3 is a body other than a foot on the terrain."""

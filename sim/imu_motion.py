@@ -4,9 +4,9 @@ import math
 
 import numpy as np
 
-from surefoot import algebra, linear
-from surefoot.algebra import Vector
-from surefoot.engine import mujoco
+from surefoot.engines.windowless import mujoco
+from surefoot.maths import algebra, linear
+from surefoot.maths.algebra import Vector
 from surefoot.models import convert
 from surefoot.models.convert import Coordinates
 from surefoot.models.types import ImuPlace

@@ -7,7 +7,7 @@ from typing import Literal
 import numpy as np
 from numpy.typing import NDArray
 
-from surefoot.engine import mujoco
+from surefoot.engines.windowless import mujoco
 
 Array = NDArray[np.float64]
 

@@ -6,7 +6,7 @@ from typing import Any
 import numpy as np
 from numpy.typing import NDArray
 
-from surefoot.engine import mujoco
+from surefoot.engines.windowless import mujoco
 
 Option = float | str | list[float] | list[str]
 

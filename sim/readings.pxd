@@ -1,6 +1,6 @@
 cimport cython
-from surefoot cimport algebra, linear
-from surefoot.algebra cimport vector3
+from surefoot.maths cimport algebra, linear
+from surefoot.maths.algebra cimport vector3
 from surefoot.readings cimport Reading, Readings
 from surefoot.sim cimport imu_motion
 from surefoot.sim.imu_motion cimport ImuChain, ImuMotion

@@ -4,8 +4,8 @@ import math
 
 import numpy as np
 
-from surefoot import algebra, linear
-from surefoot.algebra import Vector
+from surefoot.maths import algebra, linear
+from surefoot.maths.algebra import Vector
 from surefoot.readings import Reading, Readings
 from surefoot.sim import imu_motion
 from surefoot.sim.imu_motion import ImuChain, ImuMotion

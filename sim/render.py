@@ -8,7 +8,7 @@ from itertools import repeat
 import numpy as np
 from numpy.typing import NDArray
 
-from surefoot.engine import mujoco
+from surefoot.engines.windowless import mujoco
 from surefoot.models.convert import Coordinates
 from surefoot.sim.gl import make_context
 from surefoot.sim.marks import Mark, draw

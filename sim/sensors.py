@@ -2,9 +2,9 @@
 
 import numpy as np
 
-from surefoot import algebra
-from surefoot.algebra import Vector
-from surefoot.engine import mujoco
+from surefoot.engines.windowless import mujoco
+from surefoot.maths import algebra
+from surefoot.maths.algebra import Vector
 from surefoot.models import convert
 from surefoot.models.convert import Coordinates
 from surefoot.models.types import RobotDescription

@@ -7,7 +7,7 @@ from typing import Literal
 import numpy as np
 from numpy.typing import NDArray
 
-from surefoot.engine import mujoco
+from surefoot.engines.windowless import mujoco
 from surefoot.sim.measurement import Array
 
 Color = tuple[float, float, float, float]

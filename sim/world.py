@@ -7,7 +7,7 @@ from functools import lru_cache
 
 import numpy as np
 
-from surefoot.engine import mujoco
+from surefoot.engines.windowless import mujoco
 from surefoot.forces import Push
 from surefoot.joints import JointCommand
 from surefoot.models.convert import Coordinates

@@ -12,7 +12,7 @@ def face(package: str, homes: Mapping[str, Iterable[str]]) -> tuple[Callable[[st
 
     Args:
         package: its name.
-        homes: public names by the module, below the package, that has them.
+        homes: public names by the module that has them, seen from the package: ``a.b`` is below it, ``.a`` beside it.
 
     Returns:
         both functions.
@@ -22,7 +22,7 @@ def face(package: str, homes: Mapping[str, Iterable[str]]) -> tuple[Callable[[st
     def get(name: str) -> Any:
         if name not in places:
             raise AttributeError(f"module '{package}' has no attribute '{name}'")
-        return getattr(import_module(f"{package}.{places[name]}"), name)
+        return getattr(import_module(f".{places[name]}", package), name)
 
     def names() -> list[str]:
         return sorted(places)

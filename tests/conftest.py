@@ -11,7 +11,7 @@ from needs import BROWSER
 from sensed_catalogue import from_sensors, pytest_addoption, pytest_configure
 from skips import pytest_sessionfinish, pytest_terminal_summary
 
-import surefoot.engine  # noqa: F401  before a test imports MuJoCo, which a wrong MUJOCO_GL in the shell would end
+import surefoot.engines.windowless  # noqa: F401  before a test imports MuJoCo, which a wrong MUJOCO_GL in the shell would end
 from surefoot.models import RobotDescription, RobotOptions, describe
 
 __all__ = ["from_sensors", "pytest_addoption", "pytest_configure", "pytest_sessionfinish", "pytest_terminal_summary"]

@@ -5,11 +5,11 @@ from dataclasses import dataclass
 import numpy as np
 
 from surefoot.forces import Push
-from surefoot.planner.geometry import signed_distance
-from surefoot.planner.plan import WalkPlan
+from surefoot.planner.geometry.plane import signed_distance
+from surefoot.planner.plan.plan import WalkPlan
+from surefoot.planner.plan.sampling import PlanSampler
 from surefoot.planner.planner import WalkingPlanner
 from surefoot.planner.plants import IdealFeet, Pendulum
-from surefoot.planner.sampling import PlanSampler
 from surefoot.planner.swing.leg_reach import LegReach
 from surefoot.planner.types import Array, CentroidalState, FeetState
 

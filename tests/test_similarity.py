@@ -12,7 +12,7 @@ from surefoot.planner.model.filter import FilterNoise
 from surefoot.planner.parameters import GroundSearch, PlannerParameters
 from surefoot.scenarios.judge.metrics import OWN
 from surefoot.similarity import LEG_LENGTH, MASS, REFERENCE_SIZE, Similarity, exponents
-from surefoot.wbc.limits import JointLimits
+from surefoot.wbc.body.limits import JointLimits
 from surefoot.wbc.parameters import WbcParameters
 
 pytestmark = pytest.mark.unit

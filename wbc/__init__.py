@@ -14,13 +14,13 @@ from surefoot.lazy import face
 
 if TYPE_CHECKING:
     from surefoot.forces import ExternalLoad
-    from surefoot.wbc.cone import Sole
+    from surefoot.wbc.body.ik import PostureIk, PostureResult, PostureTarget
+    from surefoot.wbc.body.limits import JointLimits
+    from surefoot.wbc.body.model import BodyFrames, RobotTerms
+    from surefoot.wbc.contact.cone import Sole
     from surefoot.wbc.controller import WholeBodyController
-    from surefoot.wbc.ik import PostureIk, PostureResult, PostureTarget
-    from surefoot.wbc.limits import JointLimits
-    from surefoot.wbc.model import BodyFrames, RobotTerms
     from surefoot.wbc.parameters import WbcParameters
-    from surefoot.wbc.qp import QpData, QpLayout
+    from surefoot.wbc.qp.data import QpData, QpLayout
     from surefoot.wbc.reference import WbcReference
     from surefoot.wbc.types import FootSensing, RobotState, SolveStatus, WbcAnswer, WbcReport
 
@@ -49,13 +49,13 @@ if not TYPE_CHECKING:  # a type checker shall still refuse names that are not th
     __getattr__, __dir__ = face(
         __name__,
         {
-            "cone": ("Sole",),
+            "contact.cone": ("Sole",),
             "controller": ("WholeBodyController",),
-            "ik": ("PostureIk", "PostureResult", "PostureTarget"),
-            "limits": ("JointLimits",),
-            "model": ("BodyFrames", "RobotTerms"),
+            "body.ik": ("PostureIk", "PostureResult", "PostureTarget"),
+            "body.limits": ("JointLimits",),
+            "body.model": ("BodyFrames", "RobotTerms"),
             "parameters": ("WbcParameters",),
-            "qp": ("QpData", "QpLayout"),
+            "qp.data": ("QpData", "QpLayout"),
             "reference": ("WbcReference",),
             "types": (
                 "ExternalLoad",

@@ -1,6 +1,6 @@
 cimport cython
-from surefoot cimport algebra, linear
-from surefoot.wbc.model cimport RobotTerms
+from surefoot.maths cimport algebra, linear
+from surefoot.wbc.body.model cimport RobotTerms
 from surefoot.wbc.types cimport WbcAnswer
 
 cdef class AnswerReader:

@@ -4,10 +4,10 @@ from collections.abc import Sequence
 
 import numpy as np
 
-from surefoot import algebra, linear
+from surefoot.maths import algebra, linear
 from surefoot.similarity import Similarity
-from surefoot.wbc.model import RobotTerms
-from surefoot.wbc.qp import QpData, QpLayout
+from surefoot.wbc.body.model import RobotTerms
+from surefoot.wbc.qp.data import QpData, QpLayout
 from surefoot.wbc.tasks.stack import TaskStack
 from surefoot.wbc.types import Array, WbcAnswer
 

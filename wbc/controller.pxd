@@ -1,12 +1,12 @@
 cimport cython
 from surefoot.wbc.answer cimport AnswerReader
-from surefoot.wbc.balance cimport SupportRegion
-from surefoot.wbc.contacts cimport ContactSchedule, ContactState
+from surefoot.wbc.tasks.balance cimport SupportRegion
+from surefoot.wbc.contact.contacts cimport ContactSchedule, ContactState
 from surefoot.wbc.dynamics cimport HardConstraints
-from surefoot.wbc.model cimport RobotTerms
+from surefoot.wbc.body.model cimport RobotTerms
 from surefoot.wbc.reference cimport WbcReference
-from surefoot.wbc.separation cimport Separation
-from surefoot.wbc.solvers cimport QpSolution
+from surefoot.wbc.body.separation cimport Separation
+from surefoot.wbc.qp.solvers cimport QpSolution
 from surefoot.wbc.tasks.stack cimport TaskStack
 from surefoot.wbc.types cimport FootSensing, WbcAnswer, WbcReport
 

@@ -11,20 +11,20 @@ from numpy.typing import NDArray
 
 from surefoot.forces import NO_LOAD
 from surefoot.wbc.answer import AnswerReader
-from surefoot.wbc.arm_swing import ArmSwing
-from surefoot.wbc.balance import SupportRegion
-from surefoot.wbc.cone import CONE_ROWS, TOE_DEPTH, Sole
-from surefoot.wbc.contacts import ContactSchedule, ContactState
-from surefoot.wbc.driven import DrivenRows, without_driven
+from surefoot.wbc.body.limits import JointLimits
+from surefoot.wbc.body.model import BodyFrames, RobotTerms
+from surefoot.wbc.body.separation import Separation
+from surefoot.wbc.contact.cone import CONE_ROWS, TOE_DEPTH, Sole
+from surefoot.wbc.contact.contacts import ContactSchedule, ContactState
+from surefoot.wbc.contact.external import LoadObserver
 from surefoot.wbc.dynamics import HardConstraints
-from surefoot.wbc.external import LoadObserver
-from surefoot.wbc.limits import JointLimits
-from surefoot.wbc.model import BodyFrames, RobotTerms
 from surefoot.wbc.parameters import WbcParameters
-from surefoot.wbc.qp import UNBOUNDED, WRENCH_UNIT, QpData, QpLayout, allocate
+from surefoot.wbc.qp.data import UNBOUNDED, WRENCH_UNIT, QpData, QpLayout, allocate
+from surefoot.wbc.qp.driven import DrivenRows, without_driven
+from surefoot.wbc.qp.solvers import QpSolution, QpSolver, equalities_only, in_turn
 from surefoot.wbc.reference import WbcReference
-from surefoot.wbc.separation import Separation
-from surefoot.wbc.solvers import QpSolution, QpSolver, equalities_only, in_turn
+from surefoot.wbc.tasks.arm_swing import ArmSwing
+from surefoot.wbc.tasks.balance import SupportRegion
 from surefoot.wbc.tasks.default import default_tasks
 from surefoot.wbc.tasks.diagonal import ForceDistribution, Posture, Regularisation
 from surefoot.wbc.tasks.registry import TaskLayout
@@ -55,8 +55,8 @@ class WholeBodyController:
     """Weighted inverse-dynamics QP, built, solved and interpreted once per control tick.
 
     Herzog et al., "Momentum control with hierarchical inverse dynamics", Autonomous Robots 2016, in its weighted form,
-    with the CoM law of ``surefoot.wbc.balance``. A tick that no solver answers degrades as ``SolveStatus`` says; it
-    never raises. ``update`` is a whole tick; its parts can be called one by one:
+    with the CoM law of ``surefoot.wbc.tasks.balance``. A tick that no solver answers degrades as ``SolveStatus`` says;
+    it never raises. ``update`` is a whole tick; its parts can be called one by one:
 
         terms = controller.observe(state)
         qp = controller.build(terms, reference, contacts)       # qp.copy() survives the next tick

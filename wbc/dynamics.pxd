@@ -1,9 +1,9 @@
 cimport cython
-from surefoot cimport algebra, linear
-from surefoot.algebra cimport vector3
-from surefoot.wbc.contacts cimport ContactState
-from surefoot.wbc.limits cimport AccelerationBounds
-from surefoot.wbc.model cimport RobotTerms
+from surefoot.maths cimport algebra, linear
+from surefoot.maths.algebra cimport vector3
+from surefoot.wbc.contact.contacts cimport ContactState
+from surefoot.wbc.body.limits cimport AccelerationBounds
+from surefoot.wbc.body.model cimport RobotTerms
 from surefoot.wbc.reference cimport WbcReference
 
 cdef class HardConstraints:

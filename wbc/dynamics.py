@@ -4,13 +4,13 @@ from collections.abc import Sequence
 
 import numpy as np
 
-from surefoot import algebra, linear
-from surefoot.wbc.contacts import ContactState
-from surefoot.wbc.leaning import FREE
-from surefoot.wbc.limits import AccelerationBounds, JointLimits
-from surefoot.wbc.model import RobotTerms
+from surefoot.maths import algebra, linear
+from surefoot.wbc.body.leaning import FREE
+from surefoot.wbc.body.limits import AccelerationBounds, JointLimits
+from surefoot.wbc.body.model import RobotTerms
+from surefoot.wbc.contact.contacts import ContactState
 from surefoot.wbc.parameters import ContactGains
-from surefoot.wbc.qp import UNBOUNDED, QpData, QpLayout
+from surefoot.wbc.qp.data import UNBOUNDED, QpData, QpLayout
 from surefoot.wbc.reference import WbcReference
 from surefoot.wbc.types import Array
 
@@ -20,7 +20,7 @@ class HardConstraints:
 
     Active contact: J q̈ + J' v = -d J v + levelling; inactive contact: w = 0. Six rows each, so that the QP keeps its
     shape. A foot that lands before it is felt goes on down along its normal. A leaning foot (see
-    `surefoot.wbc.leaning`) is free to turn about its line, where its moment is zero.
+    `surefoot.wbc.body.leaning`) is free to turn about its line, where its moment is zero.
     Floating base: M_b q̈ + h_b = Σ J_bᵀ w (first six rows of the equations of motion).
     Torque: τ = M_a q̈ + h_a - Σ J_aᵀ w within the limits, with the torque itself eliminated.
     Joints: within their limits, where a foot that is held counts as at rest. What it turns is a ripple of its contact,
@@ -50,7 +50,7 @@ class HardConstraints:
             gains: of the contacts.
             ankles: columns of the generalised velocity that belong to the left and to the right ankle.
             tipping: of these, that of the joint that rolls each foot; -1 for none.
-            leaning: whether feet roll as their legs do (see `surefoot.wbc.leaning`).
+            leaning: whether feet roll as their legs do (see `surefoot.wbc.body.leaning`).
         """
         self._damping, self._levelling = gains.damping, gains.levelling
         self._softening, self._sinking = gains.softening, gains.sinking

@@ -1,4 +1,4 @@
-from surefoot.algebra cimport vector3
+from surefoot.maths.algebra cimport vector3
 
 cdef class WbcReference:
     cdef vector3 _c, _c_dot, _c_ddot, _s, _s_dot, _s_ddot, _w, _w_dot

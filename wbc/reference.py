@@ -6,7 +6,7 @@ from typing import Any, ClassVar
 import numpy as np
 from numpy.typing import ArrayLike, NDArray
 
-from surefoot.algebra import Vector
+from surefoot.maths.algebra import Vector
 
 Array = NDArray[np.float64]
 

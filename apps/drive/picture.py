@@ -9,21 +9,21 @@ import numpy as np
 from scipy.spatial.transform import Rotation
 
 from surefoot.apps.drive.session import PUSH_TIME, PushInput
-from surefoot.engine import mujoco
+from surefoot.engines.windowless import mujoco
 from surefoot.models.pinocchio import pinocchio_model
-from surefoot.planner.geometry import headings, points_seen_from
+from surefoot.planner.geometry.plane import headings, points_seen_from
 from surefoot.planner.types import Foot, Footstep, PhaseKind
 from surefoot.scenarios import palette
 from surefoot.scenarios.run.simulation import Tick
-from surefoot.scenarios.setup.stance import frames_of
+from surefoot.scenarios.setup.robot.body import frames_of
 from surefoot.scenarios.setup.walk import Walk
 from surefoot.scenarios.show.logview import FOOT_NAMES
 from surefoot.scenarios.show.replay.content import PUSH_SHOWN, Array, Facts, Replay, Track, sole_corners, tracks
 from surefoot.scenarios.show.replay.extract import surfaces
 from surefoot.sim.bodies import BodyPoses
 from surefoot.sim.scene import world_mjcf
-from surefoot.wbc.model import RobotTerms
-from surefoot.wbc.zmp import centre_of_pressure, measured_zmp
+from surefoot.wbc.body.model import RobotTerms
+from surefoot.wbc.contact.zmp import centre_of_pressure, measured_zmp
 
 FOLLOW_TIME = 0.4
 """Time constant with which the camera follows the robot [s]."""

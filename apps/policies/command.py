@@ -92,7 +92,7 @@ def _described(name: str) -> "RobotDescription":
     from surefoot.errors import ParameterError
     from surefoot.scenarios.errors import ScenarioError
     from surefoot.scenarios.file.schema import RobotSettings
-    from surefoot.scenarios.setup.robot import describe
+    from surefoot.scenarios.setup.robot.robots import describe
 
     try:
         return describe(name, RobotSettings())

@@ -10,16 +10,16 @@ import pinocchio as pin
 import typer
 from numpy.typing import NDArray
 
-from surefoot.engine import mujoco
+from surefoot.engines.windowless import mujoco
 from surefoot.models.consistency import EnginePair
 from surefoot.models.convert import Coordinates
 from surefoot.models.facts import facts_of
 from surefoot.models.registry import explain
 from surefoot.models.types import Explanation, RobotDescription, RobotError, UnknownRobotError
-from surefoot.plugins import PluginError
+from surefoot.parts.plugins import PluginError
 from surefoot.scenarios.errors import ScenarioError
 from surefoot.scenarios.judge.metrics import plain
-from surefoot.scenarios.setup.stance import Body, TorqueMargin, body_of, on_one_foot, standing
+from surefoot.scenarios.setup.robot.body import Body, TorqueMargin, body_of, on_one_foot, standing
 from surefoot.scenarios.show.console import print_table
 
 Array = NDArray[np.float64]

@@ -22,7 +22,7 @@ from numpy.typing import NDArray
 from sources import KEY, digest
 
 import surefoot
-from surefoot.planner.geometry import sole_corners
+from surefoot.planner.geometry.plane import sole_corners
 from surefoot.planner.types import Foot, Footstep
 from surefoot.scenarios.palette import BLUE, COM_PLANNED, FEET
 

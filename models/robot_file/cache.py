@@ -12,7 +12,8 @@ from typing import Any
 
 import numpy as np
 
-from surefoot import kept, mimic
+from surefoot.engines import mimic
+from surefoot.models import kept
 from surefoot.models.robot_file.document import MESH, Kind, content, raw, signature
 from surefoot.models.types import Coupling, ImuPlace, JointRoles, RobotDescription, RobotError
 

@@ -8,7 +8,7 @@ from pathlib import Path, PurePath
 
 import numpy as np
 
-from surefoot.engine import mujoco
+from surefoot.engines.windowless import mujoco
 from surefoot.models.robot_file.mesh_file import binary_stl, burden, is_sound_stl, mesh_content, triangles
 from surefoot.models.robot_file.meshes import thinned
 from surefoot.models.robot_file.mjcf import Assembled

@@ -5,7 +5,7 @@ from typing import NamedTuple
 import numpy as np
 import pinocchio as pin
 
-from surefoot.mimic import names_of
+from surefoot.engines.mimic import names_of
 from surefoot.models.inertia import LEAST_MASS
 from surefoot.models.robot_file.bindings import rolling, told_rolling
 from surefoot.models.robot_file.engine_mesh import compiled, taken

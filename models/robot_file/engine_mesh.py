@@ -3,7 +3,7 @@
 from collections.abc import Iterable, Sequence
 from xml.etree import ElementTree
 
-from surefoot.engine import mujoco
+from surefoot.engines.windowless import mujoco
 from surefoot.models.mjcf import numbers
 from surefoot.models.robot_file.meshes import Triangles
 from surefoot.models.types import RobotError

@@ -2,7 +2,7 @@
 
 import pinocchio as pin
 
-from surefoot.mimic import moving_columns
+from surefoot.engines.mimic import moving_columns
 from surefoot.models.robot_file.reduced import Reduced
 from surefoot.models.robot_file.schema import RobotFile
 from surefoot.models.types import ImuPlace, RobotError, nearest

@@ -15,7 +15,7 @@ from collections.abc import Iterator, Sequence
 import numpy as np
 import pinocchio as pin
 
-from surefoot.mimic import names_of
+from surefoot.engines.mimic import names_of
 from surefoot.models.types import Array, RobotError
 
 LEAST = 1e-5

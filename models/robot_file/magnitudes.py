@@ -13,7 +13,7 @@ from itertools import repeat
 import numpy as np
 import pinocchio as pin
 
-from surefoot.mimic import names_of
+from surefoot.engines.mimic import names_of
 from surefoot.models.robot_file.shapes import Shape, placed
 from surefoot.models.types import Array, RobotError
 

@@ -4,7 +4,7 @@ from collections.abc import Iterator, Mapping
 
 import numpy as np
 
-from surefoot.engine import mujoco
+from surefoot.engines.windowless import mujoco
 from surefoot.models.robot_file.bindings import Binding, Follower, element_name
 
 _EQ, _TRN = mujoco.mjtEq, mujoco.mjtTrn

@@ -5,7 +5,7 @@ from functools import lru_cache
 
 import numpy as np
 
-from surefoot.engine import mujoco
+from surefoot.engines.windowless import mujoco
 from surefoot.models.robot_file.mjcf_schema import ELEMENTS, WORLD, LeftOut
 from surefoot.models.types import Array
 

@@ -4,7 +4,7 @@ from collections.abc import Iterator
 
 import numpy as np
 
-from surefoot.engine import mujoco
+from surefoot.engines.windowless import mujoco
 
 _OF_JOINT = (int(mujoco.mjtTrn.mjTRN_JOINT), int(mujoco.mjtTrn.mjTRN_JOINTINPARENT))
 _FILTERED = tuple(

@@ -6,7 +6,7 @@ from typing import NamedTuple
 import numpy as np
 import pinocchio as pin
 
-from surefoot.mimic import names_of
+from surefoot.engines.mimic import names_of
 from surefoot.models.robot_file.document import SRDF, read_xml
 from surefoot.models.robot_file.quantities import check_numbers, of_srdf
 from surefoot.models.robot_file.schema import RobotFile, matched

@@ -5,7 +5,7 @@ from pathlib import Path
 import numpy as np
 import pinocchio as pin
 
-from surefoot.engine import mujoco
+from surefoot.engines.windowless import mujoco
 from surefoot.models.robot_file.bindings import Follower
 from surefoot.models.robot_file.compiled import Bare
 from surefoot.models.robot_file.magnitudes import Part

@@ -7,7 +7,7 @@ from xml.etree import ElementTree
 import numpy as np
 import pinocchio as pin
 
-from surefoot.mimic import independent
+from surefoot.engines.mimic import independent
 from surefoot.models.joints import axis_of
 from surefoot.models.mjcf import Role, add_couplings, add_defaults, numbers
 from surefoot.models.robot_file.engine_mesh import add_mesh

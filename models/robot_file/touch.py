@@ -7,7 +7,7 @@ from dataclasses import dataclass
 import numpy as np
 import pinocchio as pin
 
-from surefoot.engine import mujoco
+from surefoot.engines.windowless import mujoco
 from surefoot.models.convert import Coordinates
 from surefoot.models.robot_file.engine_mesh import compiled, taken
 from surefoot.models.robot_file.legs import SIDES, Leg

@@ -5,8 +5,8 @@ from dataclasses import dataclass
 
 import numpy as np
 
+from surefoot.planner.geometry.orientation import sole_rotation
 from surefoot.planner.ground.terrain import DEEPER, HALF_WIDTH, Box, Site, Terrain
-from surefoot.planner.orientation import sole_rotation
 
 
 @dataclass(frozen=True, slots=True)

@@ -6,7 +6,7 @@ from enum import Enum
 import numpy as np
 from numpy.typing import NDArray
 
-from surefoot.planner.geometry import frame_rotation
+from surefoot.planner.geometry.plane import frame_rotation
 from surefoot.planner.ground.terrain import HALF_WIDTH, Box, Site, Terrain
 
 

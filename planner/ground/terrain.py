@@ -7,7 +7,7 @@ import numpy as np
 from numpy.typing import NDArray
 
 from surefoot.errors import ParameterError
-from surefoot.planner.geometry import CORNERS, frame_rotation
+from surefoot.planner.geometry.plane import CORNERS, frame_rotation
 from surefoot.planner.ground.footholds import Footholds
 from surefoot.planner.types import Array, Footstep
 

@@ -7,8 +7,8 @@ from itertools import product
 import numpy as np
 from numpy.typing import NDArray
 
+from surefoot.planner.geometry.orientation import sole_rotation
 from surefoot.planner.ground.terrain import DEEPER, Box, Site, Terrain
-from surefoot.planner.orientation import sole_rotation
 from surefoot.planner.types import Array
 from surefoot.streams import Stream
 

@@ -5,8 +5,8 @@ from dataclasses import dataclass
 
 import numpy as np
 
+from surefoot.planner.geometry.orientation import sole_rotation
 from surefoot.planner.ground.terrain import DEEPER, Box, Site, Terrain
-from surefoot.planner.orientation import sole_rotation
 from surefoot.planner.types import Array
 
 FAR = 50.0

@@ -1,7 +1,7 @@
 cimport cython
 cimport libc.math as math
-from surefoot cimport linear
-from surefoot.dual_method cimport DualMethod
+from surefoot.maths cimport linear
+from surefoot.maths.dual_method cimport DualMethod
 
 cdef class BoundedQp(DualMethod):
     cdef Py_ssize_t _n, _rows

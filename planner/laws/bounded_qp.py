@@ -9,8 +9,8 @@ import math
 
 import numpy as np
 
-from surefoot import linear
-from surefoot.dual_method import DualMethod
+from surefoot.maths import linear
+from surefoot.maths.dual_method import DualMethod
 from surefoot.planner.types import Array
 
 TOLERANCE = 1e-12

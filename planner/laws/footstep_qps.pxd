@@ -1,7 +1,7 @@
 cimport cython
 from libc.stdint cimport int64_t
-from surefoot cimport algebra, linear
-from surefoot.algebra cimport vector3
+from surefoot.maths cimport algebra, linear
+from surefoot.maths.algebra cimport vector3
 from surefoot.planner.model cimport dcm
 from surefoot.planner.model.nominal cimport NominalMotion
 

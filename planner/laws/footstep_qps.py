@@ -22,7 +22,7 @@ import math
 
 import numpy as np
 
-from surefoot import algebra, linear
+from surefoot.maths import algebra, linear
 from surefoot.planner.laws.law import BuiltQps, MotionProblem
 from surefoot.planner.laws.qp import Qp
 from surefoot.planner.model import dcm

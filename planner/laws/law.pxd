@@ -1,4 +1,4 @@
-from surefoot cimport linear
+from surefoot.maths cimport linear
 
 cdef class StepContext:
     cdef readonly object increment, side, free, swing

@@ -11,7 +11,7 @@ from typing import Protocol
 
 import numpy as np
 
-from surefoot import linear
+from surefoot.maths import linear
 from surefoot.planner.laws.qp import Qp, QpSolution
 from surefoot.planner.references.zmp_reference import ZmpReference
 from surefoot.planner.types import Array, SolverStatus

@@ -2,7 +2,7 @@
 
 from typing import TYPE_CHECKING
 
-from surefoot.plugins import Declared
+from surefoot.parts.plugins import Declared
 
 if TYPE_CHECKING:
     from surefoot.planner.laws.profiles import Profile
@@ -19,4 +19,4 @@ PROFILES: "Declared[Profile]" = Declared(
     },
     "surefoot.planner.laws.profiles",
 )
-"""Every profile by its name: those of this package, and those of other packages (see `surefoot.plugins`)."""
+"""Every profile by its name: those of this package, and those of other packages (see `surefoot.parts.plugins`)."""

@@ -11,7 +11,7 @@ from surefoot.planner.laws.tvmpc import paper_law, repaired_law
 from surefoot.planner.laws.zmp_preview import ZmpPreview
 from surefoot.planner.model.jerk import BLOCK_STARTS
 from surefoot.planner.parameters import PlannerParameters
-from surefoot.planner.plan import Planner
+from surefoot.planner.plan.plan import Planner
 from surefoot.planner.references.com_height import HeightProfile, PaperHeight
 from surefoot.planner.rules import RULES, Rule
 
@@ -69,4 +69,4 @@ _OWN = (
 )
 
 PROFILES = names.PROFILES.filled(Profile, {profile.name: profile for profile in _OWN})
-"""Every profile by its name: these, and those of other packages (see `surefoot.plugins`)."""
+"""Every profile by its name: these, and those of other packages (see `surefoot.parts.plugins`)."""

@@ -1,7 +1,7 @@
 cimport cython
 cimport libc.math as math
-from surefoot cimport algebra
-from surefoot.algebra cimport vector3
+from surefoot.maths cimport algebra
+from surefoot.maths.algebra cimport vector3
 
 cdef double _BEND, _GUESS
 cdef Py_ssize_t HIPS, KNEES, ANKLES, FEET, TRUNK, BESIDE, _LEFT, _RIGHT, _MIDDLE

@@ -7,7 +7,7 @@ So the optimiser plans only what differs from this motion.
 
 import numpy as np
 
-from surefoot import linear
+from surefoot.maths import linear
 from surefoot.planner.types import Array
 
 

@@ -1,7 +1,7 @@
 cimport cython
-from surefoot.algebra cimport vector3
-from surefoot.planner cimport quintic
-from surefoot.planner.quintic cimport quintic6
+from surefoot.maths.algebra cimport vector3
+from surefoot.planner.geometry cimport quintic
+from surefoot.planner.geometry.quintic cimport quintic6
 
 @cython.locals(k=Py_ssize_t, way=double, rate=double, bend=double)
 cpdef void follow(quintic6 course, double length, double begun, const double[:] time, double[:, ::1] told) noexcept

@@ -9,8 +9,8 @@ from itertools import product
 
 import numpy as np
 
-from surefoot.planner import geometry, quintic
-from surefoot.planner.quintic import Quintic
+from surefoot.planner.geometry import plane, quintic
+from surefoot.planner.geometry.quintic import Quintic
 from surefoot.planner.types import Array
 
 CLOCK_ROUNDING = 1e-9
@@ -109,7 +109,7 @@ class TimeScaling:
         for slowing, factor in product((bend, max(bend, 0.0)), _LENGTHS):
             start, end = np.array([[0.0], [rate], [slowing]]), np.array([[way], [1.0], [0.0]])
             lasting = factor * length
-            course = tuple(geometry.quintic(start, end, lasting)[:, 0].tolist())
+            course = tuple(plane.quintic(start, end, lasting)[:, 0].tolist())
             scaling = replace(self, begun=self.now, elapsed=0.0, way=way, length=lasting, coefficients=course)
             if min(scaling._at(time)[1] for time in np.linspace(0.0, lasting, _LOOKED_AT).tolist()) > _SLOWEST:
                 break

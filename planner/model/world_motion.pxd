@@ -1,6 +1,6 @@
 cimport cython
-from surefoot cimport algebra, linear
-from surefoot.algebra cimport vector3
+from surefoot.maths cimport algebra, linear
+from surefoot.maths.algebra cimport vector3
 
 cpdef vector3 advanced(vector3 state, double jerk, double t) noexcept nogil
 

@@ -2,7 +2,7 @@
 
 import numpy as np
 
-from surefoot import algebra, linear
+from surefoot.maths import algebra, linear
 from surefoot.planner.types import Array
 
 Ahead = tuple[Array, Array, Array, Array, Array]

@@ -9,7 +9,7 @@ from dataclasses import dataclass
 
 import numpy as np
 
-from surefoot.planner.geometry import frame_rotation
+from surefoot.planner.geometry.plane import frame_rotation
 from surefoot.planner.types import Array
 
 

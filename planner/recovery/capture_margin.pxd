@@ -1,6 +1,6 @@
 cimport cython
 cimport libc.math as math
-from surefoot cimport algebra
+from surefoot.maths cimport algebra
 from surefoot.planner.recovery.reach cimport StepReach
 
 cdef Py_ssize_t EDGES

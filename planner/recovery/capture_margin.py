@@ -16,7 +16,7 @@ import math
 
 import numpy as np
 
-from surefoot import algebra
+from surefoot.maths import algebra
 from surefoot.planner.parameters import PlannerParameters
 from surefoot.planner.recovery.reach import StepReach
 from surefoot.planner.recovery.step_problem import StepProblem

@@ -1,5 +1,5 @@
 cimport cython
-from surefoot cimport algebra
+from surefoot.maths cimport algebra
 from surefoot.planner.model cimport dcm as law
 
 cdef Py_ssize_t COLUMNS

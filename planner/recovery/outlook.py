@@ -6,7 +6,7 @@ The DCM obeys ξ' = (λ/ω) (ξ - p). Seen from now the ZMP of sample k counts b
 
 import numpy as np
 
-from surefoot import algebra
+from surefoot.maths import algebra
 from surefoot.planner.model import dcm as law
 from surefoot.planner.parameters import PlannerParameters
 from surefoot.planner.references.window import Window

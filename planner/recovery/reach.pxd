@@ -1,6 +1,6 @@
 cimport cython
 cimport libc.math as math
-from surefoot cimport algebra
+from surefoot.maths cimport algebra
 from surefoot.planner.swing cimport boxes
 
 cdef double PEAK, BRAKING, GAINING

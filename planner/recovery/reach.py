@@ -7,7 +7,7 @@ import math
 
 import numpy as np
 
-from surefoot import algebra
+from surefoot.maths import algebra
 from surefoot.planner.recovery.step_problem import StepProblem
 from surefoot.planner.swing import boxes, quintics
 from surefoot.planner.swing.leg_reach import LegReach

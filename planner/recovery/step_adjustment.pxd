@@ -1,6 +1,6 @@
 cimport cython
 cimport libc.math as math
-from surefoot cimport algebra, linear
+from surefoot.maths cimport algebra, linear
 from surefoot.planner.model cimport pendulum
 from surefoot.planner.recovery.outlook cimport Outlook
 from surefoot.planner.recovery.reach cimport StepReach

@@ -33,7 +33,7 @@ import math
 
 import numpy as np
 
-from surefoot import algebra, linear
+from surefoot.maths import algebra, linear
 from surefoot.planner.model import pendulum
 from surefoot.planner.parameters import PlannerParameters
 from surefoot.planner.recovery.outlook import Outlook

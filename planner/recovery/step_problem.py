@@ -3,7 +3,7 @@
 import math
 from dataclasses import dataclass
 
-from surefoot.planner.geometry import seen_from, wrap_angle
+from surefoot.planner.geometry.plane import seen_from, wrap_angle
 from surefoot.planner.steps.step import Step, room_left, shortest_swing
 from surefoot.planner.swing.course import Ground
 from surefoot.planner.types import Array, Footstep

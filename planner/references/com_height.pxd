@@ -1,7 +1,7 @@
 cimport cython
 cimport libc.math as math
-from surefoot cimport algebra
-from surefoot.algebra cimport vector3
+from surefoot.maths cimport algebra
+from surefoot.maths.algebra cimport vector3
 from surefoot.planner.steps.phases cimport PhaseSamples
 
 cdef Py_ssize_t _DOUBLE, _SINGLE

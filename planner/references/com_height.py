@@ -12,8 +12,8 @@ from typing import Protocol
 
 import numpy as np
 
-from surefoot import algebra
-from surefoot.algebra import Vector
+from surefoot.maths import algebra
+from surefoot.maths.algebra import Vector
 from surefoot.planner.steps.gait import GaitParameters
 from surefoot.planner.steps.phases import PhaseSamples
 from surefoot.planner.types import GRAVITY, Array, PhaseKind

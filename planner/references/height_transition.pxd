@@ -1,8 +1,8 @@
 cimport cython
-from surefoot cimport algebra
-from surefoot.algebra cimport vector3
-from surefoot.planner cimport quintic
-from surefoot.planner.quintic cimport quintic6
+from surefoot.maths cimport algebra
+from surefoot.maths.algebra cimport vector3
+from surefoot.planner.geometry cimport quintic
+from surefoot.planner.geometry.quintic cimport quintic6
 
 cdef Py_ssize_t _LOOKED_AT
 

@@ -5,9 +5,9 @@ from math import ceil
 
 import numpy as np
 
-from surefoot import algebra
-from surefoot.algebra import Vector
-from surefoot.planner import quintic
+from surefoot.maths import algebra
+from surefoot.maths.algebra import Vector
+from surefoot.planner.geometry import quintic
 from surefoot.planner.model.time_scaling import CLOCK_ROUNDING
 from surefoot.planner.types import Array
 

@@ -1,9 +1,9 @@
 cimport cython
 cimport libc.math as math
-from surefoot cimport algebra
-from surefoot.planner cimport quintic
+from surefoot.maths cimport algebra
+from surefoot.planner.geometry cimport quintic
 from surefoot.planner.swing cimport heel_off
-from surefoot.planner.quintic cimport quintic6
+from surefoot.planner.geometry.quintic cimport quintic6
 
 @cython.final
 cdef class UnitSwing:

@@ -4,8 +4,8 @@ import math
 
 import numpy as np
 
-from surefoot import algebra
-from surefoot.planner import quintic
+from surefoot.maths import algebra
+from surefoot.planner.geometry import quintic
 from surefoot.planner.model.time_scaling import CLOCK_ROUNDING
 from surefoot.planner.steps.phases import Phase, PhaseSamples
 from surefoot.planner.steps.schedule import Schedule

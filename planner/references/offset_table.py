@@ -4,7 +4,7 @@ from dataclasses import dataclass
 
 import numpy as np
 
-from surefoot.planner.geometry import greatest
+from surefoot.planner.geometry.plane import greatest
 from surefoot.planner.model.time_scaling import Course, TimeScaling
 from surefoot.planner.references.zmp_reference import SupportKey
 from surefoot.planner.types import Array

@@ -1,6 +1,6 @@
 cimport cython
 cimport libc.math as math
-from surefoot cimport algebra, linear
+from surefoot.maths cimport algebra, linear
 from surefoot.planner.steps.phases cimport PhaseSamples
 
 ctypedef (double, double) box2

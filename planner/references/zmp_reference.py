@@ -7,12 +7,12 @@ from typing import NamedTuple
 import numpy as np
 from numpy.typing import NDArray
 
-from surefoot import algebra, linear
-from surefoot.planner.geometry import CORNERS, frame_rotation, points_of_sole
+from surefoot.maths import algebra, linear
+from surefoot.maths.polygon import convex_hull
+from surefoot.planner.geometry.plane import CORNERS, frame_rotation, points_of_sole
 from surefoot.planner.steps.phases import PhaseSamples
 from surefoot.planner.steps.schedule import Schedule
 from surefoot.planner.types import Array, Foot, Footstep, PhaseKind
-from surefoot.polygon import convex_hull
 
 
 @dataclass(frozen=True)

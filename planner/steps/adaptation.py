@@ -5,7 +5,7 @@ from dataclasses import replace
 
 import numpy as np
 
-from surefoot.planner.geometry import frame_rotation
+from surefoot.planner.geometry.plane import frame_rotation
 from surefoot.planner.steps.schedule import Schedule
 from surefoot.planner.steps.step import Stop
 from surefoot.planner.swing.heel_off import roll_span, stretched

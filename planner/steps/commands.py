@@ -9,7 +9,7 @@ from itertools import pairwise
 import numpy as np
 
 from surefoot.errors import ParameterError
-from surefoot.planner.geometry import frame_rotation
+from surefoot.planner.geometry.plane import frame_rotation
 from surefoot.planner.steps.gait import WEIGHT_SHIFT, Bout, GaitParameters
 from surefoot.planner.swing.step_region import StepRegion
 from surefoot.planner.types import Array, Foot, Footstep, Twist

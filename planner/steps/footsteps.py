@@ -4,7 +4,7 @@ from dataclasses import dataclass
 
 import numpy as np
 
-from surefoot.planner.geometry import frame_rotation, wrap_angle
+from surefoot.planner.geometry.plane import frame_rotation, wrap_angle
 from surefoot.planner.ground.terrain import Terrain
 from surefoot.planner.steps.gait import GaitParameters
 from surefoot.planner.types import Array, FeetState, Foot, Footstep, Twist

@@ -1,5 +1,5 @@
 cimport cython
-from surefoot cimport algebra
+from surefoot.maths cimport algebra
 
 cdef Py_ssize_t _DOUBLE
 cdef double CLOCK_ROUNDING

@@ -7,7 +7,7 @@ from itertools import pairwise
 import numpy as np
 from numpy.typing import NDArray
 
-from surefoot import algebra
+from surefoot.maths import algebra
 from surefoot.planner.model.time_scaling import CLOCK_ROUNDING
 from surefoot.planner.steps.step import Step
 from surefoot.planner.swing.heel_off import RollSpan

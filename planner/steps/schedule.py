@@ -15,7 +15,7 @@ import numpy as np
 from numpy.typing import NDArray
 
 from surefoot.errors import ParameterError
-from surefoot.planner.geometry import wrap_angle
+from surefoot.planner.geometry.plane import wrap_angle
 from surefoot.planner.model.time_scaling import CLOCK_ROUNDING
 from surefoot.planner.steps.footsteps import start_footholds
 from surefoot.planner.steps.gait import GaitParameters, in_samples

@@ -5,7 +5,7 @@ from typing import Protocol
 
 import numpy as np
 
-from surefoot.planner.geometry import frame_rotation, wrap_angle
+from surefoot.planner.geometry.plane import frame_rotation, wrap_angle
 from surefoot.planner.steps.commands import MOST_STEPS, STANDING, fastest
 from surefoot.planner.steps.footsteps import Path
 from surefoot.planner.steps.gait import GaitParameters

@@ -5,7 +5,7 @@ from dataclasses import dataclass, field, replace
 
 import numpy as np
 
-from surefoot.planner.geometry import frame_rotation, seen_from
+from surefoot.planner.geometry.plane import frame_rotation, seen_from
 from surefoot.planner.ground.terrain import Terrain
 from surefoot.planner.parameters import PlannerParameters
 from surefoot.planner.steps.footsteps import Path

@@ -7,9 +7,9 @@ import numpy as np
 from numpy.typing import NDArray
 
 from surefoot.errors import ParameterError
-from surefoot.planner.geometry import sole_pose
+from surefoot.planner.geometry.orientation import sole_rotation
+from surefoot.planner.geometry.plane import sole_pose
 from surefoot.planner.ground.terrain import Terrain
-from surefoot.planner.orientation import sole_rotation
 from surefoot.planner.parameters import PlannerParameters
 from surefoot.planner.swing.trajectory import SwingCourse, start_swing
 from surefoot.planner.types import Array, Foot, Footstep

@@ -1,5 +1,5 @@
 cimport cython
-from surefoot.algebra cimport vector3
+from surefoot.maths.algebra cimport vector3
 
 @cython.locals(w=double, tilt=double)
 cpdef vector3 bump(double s) noexcept nogil

@@ -10,9 +10,9 @@ from typing import NamedTuple
 
 import numpy as np
 
-from surefoot.planner.geometry import frame_rotation
+from surefoot.planner.geometry.orientation import roll_sole
+from surefoot.planner.geometry.plane import frame_rotation
 from surefoot.planner.model.time_scaling import TimeScaling
-from surefoot.planner.orientation import roll_sole
 from surefoot.planner.types import Array, Foot, Footstep
 
 _BEGIN = 0.25

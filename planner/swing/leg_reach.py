@@ -5,7 +5,7 @@ from dataclasses import dataclass, field, replace
 
 import numpy as np
 
-from surefoot.planner.geometry import frame_rotation, wrap_angle
+from surefoot.planner.geometry.plane import frame_rotation, wrap_angle
 from surefoot.planner.parameters import PlannerParameters
 from surefoot.planner.swing.boxes import landing_boxes
 from surefoot.planner.swing.step_region import soles_apart

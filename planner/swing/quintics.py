@@ -4,9 +4,9 @@ import math
 
 import numpy as np
 
-from surefoot.algebra import Vector
-from surefoot.planner.geometry import quintic
-from surefoot.planner.quintic import between
+from surefoot.maths.algebra import Vector
+from surefoot.planner.geometry.plane import quintic
+from surefoot.planner.geometry.quintic import between
 from surefoot.planner.types import Array
 
 PEAK = 5.77

@@ -5,10 +5,10 @@ from dataclasses import dataclass, field, replace
 
 import numpy as np
 
-from surefoot import linear
-from surefoot.planner.geometry import shift, shifted
+from surefoot.maths import linear
+from surefoot.planner.geometry.plane import shift, shifted
+from surefoot.planner.geometry.quintic import between
 from surefoot.planner.parameters import GroundSearch, PlannerParameters
-from surefoot.planner.quintic import between
 from surefoot.planner.swing.quintics import detour, straight_time, to_rest, up_and_down
 from surefoot.planner.types import Array, Foot
 

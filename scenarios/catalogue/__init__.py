@@ -12,7 +12,7 @@ from importlib.resources.abc import Traversable
 from types import ModuleType
 from typing import NamedTuple
 
-from surefoot.plugins import OWN_PACKAGE, PluginError, Registry
+from surefoot.parts.plugins import OWN_PACKAGE, PluginError, Registry
 from surefoot.scenarios.errors import ScenarioError, nearest
 from surefoot.scenarios.file.source import decoded
 

@@ -11,7 +11,7 @@ from functools import partial
 
 import numpy as np
 
-from surefoot.planner.geometry import frame_rotation, headings
+from surefoot.planner.geometry.plane import frame_rotation, headings
 from surefoot.planner.types import GRAVITY
 from surefoot.scenarios.columns import Reads
 from surefoot.scenarios.judge.body import leg

@@ -9,8 +9,8 @@ from pathlib import Path
 from typing import Any, NamedTuple
 
 from surefoot.errors import PluginError
-from surefoot.guard import MisfitError, shown
-from surefoot.plugins import Registry
+from surefoot.parts.guard import MisfitError, shown
+from surefoot.parts.plugins import Registry
 from surefoot.scenarios.errors import ScenarioError
 from surefoot.scenarios.file.source import decoded
 from surefoot.scenarios.output import reason

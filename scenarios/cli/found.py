@@ -14,8 +14,8 @@ from typer.core import TyperCommand, TyperGroup
 from typer.main import get_group
 
 from surefoot.errors import PluginError
-from surefoot.guard import Guard
-from surefoot.plugins import OWN_PACKAGE, Registry
+from surefoot.parts.guard import Guard
+from surefoot.parts.plugins import OWN_PACKAGE, Registry
 from surefoot.scenarios.cli.words import Commands
 from surefoot.scenarios.errors import LinkError, LogError, ScenarioError
 

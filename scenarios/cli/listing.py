@@ -5,8 +5,8 @@ from dataclasses import dataclass
 from typing import Any
 
 from surefoot.models.names import ROBOTS
+from surefoot.parts.plugins import OWN_PACKAGE, Declared, Registry
 from surefoot.planner.laws.names import PROFILES
-from surefoot.plugins import OWN_PACKAGE, Declared, Registry
 from surefoot.scenarios import catalogue
 from surefoot.scenarios.cli import texts
 from surefoot.scenarios.cli.files import brought, first_line

@@ -16,6 +16,6 @@ def schema_text() -> str:
 
 def made() -> str:
     """The schema as it follows from the sources and from all packages."""
-    from surefoot.scenarios.setup.criteria import published
+    from surefoot.scenarios.setup.checks.criteria import published
 
     return json.dumps(published(), indent=2)

@@ -8,9 +8,9 @@ from typing import TYPE_CHECKING, Annotated, Any, TypeVar, get_args
 
 from pydantic import BaseModel, BeforeValidator, ConfigDict, Field, create_model
 
-from surefoot.documented import doc_of
 from surefoot.errors import ParameterError
 from surefoot.planner.parameters import RecoveryParameters
+from surefoot.scenarios.documented import doc_of
 from surefoot.scenarios.file.names import OneOf
 from surefoot.scenarios.file.units import Unit
 from surefoot.similarity import REFERENCE_SIZE, Similarity

@@ -7,7 +7,7 @@ from pydantic import GetCoreSchemaHandler, GetJsonSchemaHandler
 from pydantic_core import PydanticCustomError, core_schema
 
 from surefoot.models.names import is_file
-from surefoot.plugins import OWN_PACKAGE, Registry
+from surefoot.parts.plugins import OWN_PACKAGE, Registry
 from surefoot.scenarios.errors import Key, Problem, dotted
 from surefoot.scenarios.file.registries import DEFAULTS, REGISTRIES
 

@@ -3,8 +3,8 @@
 from typing import Any
 
 from surefoot.models.names import ROBOTS
+from surefoot.parts.plugins import Declared, Registry
 from surefoot.planner.laws.names import PROFILES
-from surefoot.plugins import Declared, Registry
 from surefoot.scenarios.errors import Key
 from surefoot.wbc.tasks.registry import TASKS
 

@@ -9,7 +9,7 @@ from typing import Annotated, Any, Literal
 
 from pydantic import BaseModel, BeforeValidator, Field, SerializeAsAny
 
-from surefoot.plugins import PluginError
+from surefoot.parts.plugins import PluginError
 from surefoot.scenarios.file.control import ControlSettings, PlantSettings, SeatSettings
 from surefoot.scenarios.file.criteria import Bound, standing_walk
 from surefoot.scenarios.file.group import WHOLE, ControllerSettings, Group, Many, RecoverySettings, as_tuple, key

@@ -6,7 +6,7 @@ from dataclasses import dataclass
 
 import numpy as np
 
-from surefoot.planner.geometry import headings
+from surefoot.planner.geometry.plane import headings
 from surefoot.scenarios.columns import Reads
 from surefoot.scenarios.errors import LogError
 from surefoot.scenarios.file.criteria import Bound

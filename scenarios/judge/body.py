@@ -39,7 +39,7 @@ def side_of(name: str) -> str:
 
 
 def feet_lean(roles: Roles) -> bool:
-    """Whether no joint rolls the feet, which then stand on side edges (see `surefoot.wbc.leaning`)."""
+    """Whether no joint rolls the feet, which then stand on side edges (see `surefoot.wbc.body.leaning`)."""
     return len(roles.get("left_leg", ())) == WITHOUT_ROLL
 
 

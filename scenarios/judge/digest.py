@@ -8,7 +8,7 @@ from typing import TYPE_CHECKING, Any, TypeAlias, TypeVar, cast
 import numpy as np
 from numpy.typing import NDArray
 
-from surefoot.planner.geometry import headings
+from surefoot.planner.geometry.plane import headings
 from surefoot.scenarios.columns import Columns, KeptChannel, Reads, keep
 from surefoot.scenarios.errors import LogError
 from surefoot.scenarios.judge.body import knees

@@ -4,7 +4,7 @@ from dataclasses import dataclass
 
 import numpy as np
 
-from surefoot.planner.geometry import corners, headings, rotations, sole_corners
+from surefoot.planner.geometry.plane import corners, headings, rotations, sole_corners
 from surefoot.planner.ground.terrain import Box, Terrain
 from surefoot.planner.types import GRAVITY, Foot, Footstep
 from surefoot.scenarios.columns import Reads
@@ -13,7 +13,7 @@ from surefoot.scenarios.judge.digest import GAIT, SENSED, Array, Mask, Rows, Run
 from surefoot.scenarios.judge.metric import DEG, MM, metric
 from surefoot.scenarios.judge.placed import to_truth
 from surefoot.scenarios.judge.walking import FALL_READS, fall_time, runs_of
-from surefoot.wbc.leaning import line_centre
+from surefoot.wbc.body.leaning import line_centre
 
 _CLEARANCE_TICKS = 5
 """Every how many control ticks the clearance of a swing is looked at."""

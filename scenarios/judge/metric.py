@@ -15,9 +15,9 @@ from pickle import PicklingError
 from types import NoneType, UnionType
 from typing import Any, Generic, TypeVar, Union, get_args, get_origin, get_type_hints
 
-from surefoot.documented import doc_of
 from surefoot.errors import ParameterError
 from surefoot.scenarios.columns import Reads
+from surefoot.scenarios.documented import doc_of
 from surefoot.scenarios.judge.digest import PLANNED, Array, RunView
 
 __all__ = ["RESERVED", "TRUTH", "Metric", "Reads", "Reduction", "RunView", "metric", "reduction"]

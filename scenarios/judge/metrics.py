@@ -10,8 +10,8 @@ from typing import TYPE_CHECKING, Any
 import numpy as np
 
 from surefoot.errors import PartError
-from surefoot.guard import Guard, MisfitError, shown
-from surefoot.plugins import Declared, PluginError
+from surefoot.parts.guard import Guard, MisfitError, shown
+from surefoot.parts.plugins import Declared, PluginError
 from surefoot.scenarios.columns import Reads
 from surefoot.scenarios.errors import LogError, Problem, nearest
 from surefoot.scenarios.judge import (

@@ -2,7 +2,7 @@
 
 from typing import TYPE_CHECKING, Any
 
-from surefoot.plugins import Declared
+from surefoot.parts.plugins import Declared
 
 if TYPE_CHECKING:
     from surefoot.scenarios.judge.metric import Metric

@@ -2,7 +2,7 @@
 
 import numpy as np
 
-from surefoot.planner.geometry import yaw_rotations
+from surefoot.planner.geometry.plane import yaw_rotations
 from surefoot.scenarios.columns import Reads
 from surefoot.scenarios.judge.digest import Array, Mask, Rows, RunView
 

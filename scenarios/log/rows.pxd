@@ -1,5 +1,5 @@
 cimport cython
-from surefoot cimport linear
+from surefoot.maths cimport linear
 
 cdef class Source:
     cdef object array

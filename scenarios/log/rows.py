@@ -2,7 +2,7 @@
 
 import numpy as np
 
-from surefoot import linear
+from surefoot.maths import linear
 from surefoot.scenarios.log.channel import Clock, Slab
 from surefoot.scenarios.log.layout import Array, RowLayout, Table, sizes
 

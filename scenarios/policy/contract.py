@@ -131,6 +131,6 @@ def contract_of(values: Any, place: str) -> Contract:
 
 def schema() -> dict[str, Any]:
     """JSON Schema of contracts."""
-    from surefoot.scenarios.setup.criteria import DIALECT
+    from surefoot.scenarios.setup.checks.criteria import DIALECT
 
     return {"$schema": DIALECT, **Contract.model_json_schema()}

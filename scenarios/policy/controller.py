@@ -23,8 +23,8 @@ from surefoot.scenarios.policy.network import Network
 from surefoot.scenarios.policy.terms import Seen
 from surefoot.scenarios.run.assembly import Parts, senses_of
 from surefoot.scenarios.run.seat import placed
+from surefoot.scenarios.setup.robot.body import body_of
 from surefoot.scenarios.setup.seat import STANDING
-from surefoot.scenarios.setup.stance import body_of
 from surefoot.scenarios.setup.walk import Walk
 from surefoot.sim.measurement import Measurement
 from surefoot.wbc.estimation.estimate import Planned

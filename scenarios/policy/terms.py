@@ -8,10 +8,10 @@ from typing import Any
 import numpy as np
 from numpy.typing import NDArray
 
-from surefoot import algebra
-from surefoot.documented import doc_of
+from surefoot.maths import algebra
+from surefoot.parts.plugins import Registry
 from surefoot.planner.types import Twist
-from surefoot.plugins import Registry
+from surefoot.scenarios.documented import doc_of
 
 Array = NDArray[np.float64]
 

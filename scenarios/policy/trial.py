@@ -17,7 +17,7 @@ from surefoot.scenarios.log import NoLog
 from surefoot.scenarios.policy.contract import Contract
 from surefoot.scenarios.run.planning import RunFault
 from surefoot.scenarios.run.run import closed_loop
-from surefoot.scenarios.setup.robot import describe
+from surefoot.scenarios.setup.robot.robots import describe
 from surefoot.scenarios.setup.walk import resolve
 
 Array = NDArray[np.float64]

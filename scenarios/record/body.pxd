@@ -1,8 +1,8 @@
 cimport cython
 cimport libc.math as math
-from surefoot cimport algebra
-from surefoot.algebra cimport vector3
-from surefoot.wbc cimport zmp
+from surefoot.maths cimport algebra
+from surefoot.maths.algebra cimport vector3
+from surefoot.wbc.contact cimport zmp
 
 cdef double _SECOND, _FALLBACK
 

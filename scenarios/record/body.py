@@ -5,15 +5,15 @@ import math
 import numpy as np
 from numpy.typing import NDArray
 
-from surefoot import algebra
-from surefoot.planner.sample import PlanSample
+from surefoot.maths import algebra
+from surefoot.planner.plan.sample import PlanSample
 from surefoot.scenarios.log import LogWriter
 from surefoot.scenarios.log.layout import RowLayout, Table
 from surefoot.scenarios.record import channels
 from surefoot.scenarios.record.channels import Sizes
 from surefoot.sim.measurement import Measurement
-from surefoot.wbc import zmp
-from surefoot.wbc.model import RobotTerms
+from surefoot.wbc.body.model import RobotTerms
+from surefoot.wbc.contact import zmp
 from surefoot.wbc.types import SolveStatus, WbcReport
 
 Array = NDArray[np.float64]

@@ -5,7 +5,7 @@ Feet are ordered left, right; wrenches force first; poses x y z qx qy qz qw; q a
 
 from dataclasses import dataclass
 
-from surefoot.documented import doc_of
+from surefoot.scenarios.documented import doc_of
 from surefoot.scenarios.log.spec import ChannelSpec, FieldSpec
 from surefoot.wbc.tasks import DEFAULT_LAYOUT, TaskLayout
 

@@ -1,7 +1,7 @@
 cimport cython
 cimport libc.math as math
-from surefoot cimport algebra, linear
-from surefoot.algebra cimport vector3
+from surefoot.maths cimport algebra, linear
+from surefoot.maths.algebra cimport vector3
 
 cdef double PI
 

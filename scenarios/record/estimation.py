@@ -5,7 +5,7 @@ from collections.abc import Mapping
 
 import numpy as np
 
-from surefoot import algebra, linear
+from surefoot.maths import algebra, linear
 from surefoot.readings import Readings
 from surefoot.scenarios.log import LogWriter
 from surefoot.scenarios.log.layout import RowLayout, Table
@@ -13,8 +13,8 @@ from surefoot.scenarios.log.spec import ChannelSpec, FieldSpec
 from surefoot.scenarios.record import channels
 from surefoot.scenarios.record.channels import Sizes
 from surefoot.scenarios.record.readings import ReadingsRecorder
+from surefoot.wbc.body.model import RobotTerms
 from surefoot.wbc.estimation.estimate import Deviation, Estimate
-from surefoot.wbc.model import RobotTerms
 from surefoot.wbc.types import Array
 
 _THREE, _TWO = np.full(3, np.nan), np.full(2, np.nan)

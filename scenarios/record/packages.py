@@ -11,7 +11,7 @@ from importlib.util import find_spec
 from modulefinder import ModuleFinder
 from pathlib import Path
 
-from surefoot.plugins import OWN_PACKAGE
+from surefoot.parts.plugins import OWN_PACKAGE
 
 GROUPS = f"{OWN_PACKAGE}."
 EVERYWHERE = f"{GROUPS}metrics"

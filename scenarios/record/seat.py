@@ -15,7 +15,7 @@ from surefoot.scenarios.record.body import RobotRows
 from surefoot.scenarios.record.channels import Sizes
 from surefoot.scenarios.record.walk import RunRecorder
 from surefoot.sim.measurement import Measurement
-from surefoot.wbc.model import RobotTerms
+from surefoot.wbc.body.model import RobotTerms
 
 Array = NDArray[np.float64]
 

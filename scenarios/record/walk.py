@@ -8,10 +8,10 @@ import numpy as np
 from numpy.typing import NDArray
 
 from surefoot.forces import Push
-from surefoot.planner.geometry import frame_rotation
-from surefoot.planner.orientation import roll_sole
-from surefoot.planner.plan import WalkPlan
-from surefoot.planner.sample import POINT, PlanSample, in_point
+from surefoot.planner.geometry.orientation import roll_sole
+from surefoot.planner.geometry.plane import frame_rotation
+from surefoot.planner.plan.plan import WalkPlan
+from surefoot.planner.plan.sample import POINT, PlanSample, in_point
 from surefoot.planner.steps.commands import Command
 from surefoot.planner.types import GRAVITY, CentroidalState, FeetState, Foot, Footstep, SolverStatus
 from surefoot.scenarios.log import LogWriter

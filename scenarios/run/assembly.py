@@ -9,9 +9,9 @@ import numpy as np
 from pydantic import ValidationError
 
 from surefoot.errors import ParameterError
-from surefoot.guard import Guard, MisfitError, shown
 from surefoot.models.pinocchio import limb_shapes
 from surefoot.models.types import RobotDescription
+from surefoot.parts.guard import Guard, MisfitError, shown
 from surefoot.scenarios.file.control import ControlSettings
 from surefoot.scenarios.file.schema import Rates, Scenario
 from surefoot.scenarios.run.driven import driven_joints
@@ -19,10 +19,10 @@ from surefoot.scenarios.run.sensed import Senses
 from surefoot.scenarios.run.sensing import ESTIMATORS, Estimator, SensorEstimator
 from surefoot.scenarios.setup.load import load
 from surefoot.scenarios.setup.parts import TASK, guarded
+from surefoot.scenarios.setup.robot.body import Body
 from surefoot.scenarios.setup.sized import clock
-from surefoot.scenarios.setup.stance import Body
 from surefoot.scenarios.setup.walk import Walk, resolve
-from surefoot.wbc.cone import Sole
+from surefoot.wbc.contact.cone import Sole
 from surefoot.wbc.controller import WholeBodyController
 from surefoot.wbc.tasks import TASKS, Task, TaskFactory
 from surefoot.wbc.types import Array

@@ -10,7 +10,7 @@ import numpy as np
 from surefoot.forces import NO_LOAD, ExternalLoad
 from surefoot.joints import JointCommand
 from surefoot.models.types import RobotDescription
-from surefoot.planner.plan import WalkPlan
+from surefoot.planner.plan.plan import WalkPlan
 from surefoot.planner.steps.commands import Command
 from surefoot.planner.types import CentroidalState, FeetState
 from surefoot.readings import Reading, Readings
@@ -24,15 +24,15 @@ from surefoot.scenarios.run.reference import planned
 from surefoot.scenarios.run.sensed import foot_sensing, unsure
 from surefoot.scenarios.run.tick import Spent
 from surefoot.scenarios.setup.feasible import made_ready
-from surefoot.scenarios.setup.stance import body_of, feet_at
+from surefoot.scenarios.setup.robot.body import body_of, feet_at
 from surefoot.scenarios.setup.walk import Walk
 from surefoot.similarity import GRAVITY
-from surefoot.wbc.driven import DrivenRows
-from surefoot.wbc.falling import GivingWay
-from surefoot.wbc.model import RobotTerms
-from surefoot.wbc.soles import yaws
+from surefoot.wbc.body.falling import GivingWay
+from surefoot.wbc.body.model import RobotTerms
+from surefoot.wbc.body.soles import yaws
+from surefoot.wbc.contact.zmp import measured_zmp
+from surefoot.wbc.qp.driven import DrivenRows
 from surefoot.wbc.types import NONE_TOUCHES, Array, RobotState, WbcReport
-from surefoot.wbc.zmp import measured_zmp
 
 if TYPE_CHECKING:
     from surefoot.sim.measurement import Measurement

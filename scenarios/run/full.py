@@ -6,11 +6,11 @@ import numpy as np
 from numpy.typing import NDArray
 
 from surefoot.errors import ParameterError
-from surefoot.guard import Guard
 from surefoot.joints import JointCommand
-from surefoot.planner.plan import WalkPlan
-from surefoot.planner.sample import PlanSample
-from surefoot.plugins import Registry
+from surefoot.parts.guard import Guard
+from surefoot.parts.plugins import Registry
+from surefoot.planner.plan.plan import WalkPlan
+from surefoot.planner.plan.sample import PlanSample
 from surefoot.readings import Readings
 from surefoot.scenarios.file.control import PlantSettings
 from surefoot.scenarios.file.registries import DEFAULTS, PLANT_NAMES
@@ -27,13 +27,13 @@ from surefoot.scenarios.run.planning import Planned, Planning
 from surefoot.scenarios.run.plant import Plant, PlantMaker, Sensors, completed, made, push_plant
 from surefoot.scenarios.run.skeleton import ClosedLoop
 from surefoot.scenarios.run.tick import Look, Spent
-from surefoot.scenarios.setup.stance import as_told, disturbed, pressed
+from surefoot.scenarios.setup.stances.start import as_told, disturbed, pressed
 from surefoot.scenarios.setup.walk import Walk
 from surefoot.sim.drives import IDEAL, Drives
 from surefoot.sim.world import World
+from surefoot.wbc.body.statics import LEVER, standing_torque
+from surefoot.wbc.contact.zmp import measured_zmp
 from surefoot.wbc.controller import WholeBodyController
-from surefoot.wbc.statics import LEVER, standing_torque
-from surefoot.wbc.zmp import measured_zmp
 
 if TYPE_CHECKING:
     from surefoot.scenarios.record.coupling import CouplingRecorder

@@ -5,10 +5,10 @@ import pinocchio as pin
 
 from surefoot.joints import JointCommand
 from surefoot.readings import Readings
-from surefoot.scenarios.setup.stance import Body
+from surefoot.scenarios.setup.robot.body import Body
 from surefoot.sim.measurement import Measurement
 from surefoot.similarity import GRAVITY, REFERENCE_SIZE, Similarity
-from surefoot.wbc.statics import LEVER, standing_torque
+from surefoot.wbc.body.statics import LEVER, standing_torque
 from surefoot.wbc.types import Array
 
 STIFFNESS, DAMPING = 3.0, 0.08

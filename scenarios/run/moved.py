@@ -11,13 +11,13 @@ from surefoot.scenarios.log import LogWriter
 from surefoot.scenarios.record.channels import Sizes
 from surefoot.scenarios.run.planning import FaultSchedule, RunFault
 from surefoot.scenarios.run.plant import Plant, Sensors, measured_tick, push_plant
-from surefoot.scenarios.setup.hardware import refuse_unread
-from surefoot.scenarios.setup.stance import frames_of
+from surefoot.scenarios.setup.groups.hardware import refuse_unread
+from surefoot.scenarios.setup.robot.body import frames_of
 from surefoot.scenarios.setup.walk import Walk
 from surefoot.sim.errors import SimulationDiverged
 from surefoot.sim.measurement import Measurement
 from surefoot.sim.world import World
-from surefoot.wbc.model import RobotTerms
+from surefoot.wbc.body.model import RobotTerms
 
 if TYPE_CHECKING:
     from surefoot.scenarios.record.coupling import CouplingRecorder

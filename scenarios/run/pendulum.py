@@ -9,14 +9,14 @@ from numpy.typing import NDArray
 
 from surefoot.errors import ParameterError
 from surefoot.forces import Push
-from surefoot.planner.geometry import sole_corners
+from surefoot.maths.polygon import convex_hull
+from surefoot.planner.geometry.plane import sole_corners
 from surefoot.planner.parameters import LegInertia
-from surefoot.planner.plan import WalkPlan
+from surefoot.planner.plan.plan import WalkPlan
+from surefoot.planner.plan.sample import PlanSample
+from surefoot.planner.plan.sampling import PlanSampler
 from surefoot.planner.plants import CartTable, IdealFeet, Pendulum
-from surefoot.planner.sample import PlanSample
-from surefoot.planner.sampling import PlanSampler
 from surefoot.planner.types import GRAVITY, CentroidalState, FeetState, Foot, Footstep
-from surefoot.polygon import convex_hull
 from surefoot.scenarios.file.schema import PendulumSettings
 from surefoot.scenarios.judge.body import lost
 from surefoot.scenarios.log import LogWriter

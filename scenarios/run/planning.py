@@ -11,9 +11,9 @@ import numpy as np
 from numpy.typing import NDArray
 
 from surefoot.errors import ParameterError
-from surefoot.guard import OWN_GUARD, Guard
-from surefoot.planner.plan import Planner, WalkPlan
-from surefoot.planner.sampling import PlanSampler
+from surefoot.parts.guard import OWN_GUARD, Guard
+from surefoot.planner.plan.plan import Planner, WalkPlan
+from surefoot.planner.plan.sampling import PlanSampler
 from surefoot.planner.steps.commands import Command
 from surefoot.planner.types import CentroidalState, FeetState, Foot, Footstep, PhaseInfo, PhaseKind
 from surefoot.scenarios.file.schema import Fault, Rates

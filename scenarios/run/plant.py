@@ -9,8 +9,8 @@ import numpy as np
 
 from surefoot.errors import ParameterError
 from surefoot.forces import Push
-from surefoot.guard import Guard, Guarded, MisfitError, taken_for
 from surefoot.joints import JointCommand
+from surefoot.parts.guard import Guard, Guarded, MisfitError, taken_for
 from surefoot.readings import Readings
 from surefoot.scenarios.run.planning import RunFault
 from surefoot.scenarios.setup.parts import fit

@@ -1,9 +1,9 @@
 cimport cython
-from surefoot cimport algebra
-from surefoot.algebra cimport vector3
-from surefoot.planner cimport orientation
-from surefoot.planner.sample cimport PlanSample
-from surefoot.planner.sampling cimport PlanSampler
+from surefoot.maths cimport algebra
+from surefoot.maths.algebra cimport vector3
+from surefoot.planner.geometry cimport orientation
+from surefoot.planner.plan.sample cimport PlanSample
+from surefoot.planner.plan.sampling cimport PlanSampler
 from surefoot.wbc.reference cimport WbcReference
 
 cdef Py_ssize_t OMEGA, STIFFNESS, LOAD, ZMP, PENDULUM_ZMP, COM, VELOCITY, ACCELERATION

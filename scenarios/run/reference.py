@@ -3,11 +3,11 @@
 import numpy as np
 from numpy.typing import NDArray
 
-from surefoot import algebra
-from surefoot.planner import orientation
-from surefoot.planner.plan import WalkPlan
-from surefoot.planner.sample import PlanSample, in_point
-from surefoot.planner.sampling import PlanSampler
+from surefoot.maths import algebra
+from surefoot.planner.geometry import orientation
+from surefoot.planner.plan.plan import WalkPlan
+from surefoot.planner.plan.sample import PlanSample, in_point
+from surefoot.planner.plan.sampling import PlanSampler
 from surefoot.planner.types import PhaseKind
 from surefoot.wbc.reference import WbcReference
 

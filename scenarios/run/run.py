@@ -12,10 +12,10 @@ from typing import TYPE_CHECKING, cast
 from threadpoolctl import ThreadpoolController, threadpool_limits
 
 from surefoot.errors import PartError
-from surefoot.guard import said, shown
 from surefoot.models.facts import knees_straight, knees_turn, named_roles
 from surefoot.models.mjcf import without_looks
 from surefoot.native import modules
+from surefoot.parts.guard import said, shown
 from surefoot.planner.laws.profiles import Profile
 from surefoot.scenarios.errors import LogError, ScenarioError, SetupError
 from surefoot.scenarios.file.registries import DEFAULTS
@@ -38,8 +38,8 @@ from surefoot.scenarios.record.provenance import (
 )
 from surefoot.scenarios.run.interrupts import Interrupts, held_back
 from surefoot.scenarios.run.skeleton import ClosedLoop, End, OnProgress, Progress, fault_end, refusing, run_loop
+from surefoot.scenarios.setup.checks.notes import agenda
 from surefoot.scenarios.setup.load import load as load_scenario
-from surefoot.scenarios.setup.notes import agenda
 from surefoot.scenarios.setup.walk import Walk, resolve
 
 if TYPE_CHECKING:

@@ -12,9 +12,9 @@ import pinocchio as pin
 from numpy.typing import NDArray
 
 from surefoot.errors import ParameterError
-from surefoot.guard import Guarded, MisfitError, taken_for
 from surefoot.joints import JointCommand
-from surefoot.planner.plan import WalkPlan
+from surefoot.parts.guard import Guarded, MisfitError, taken_for
+from surefoot.planner.plan.plan import WalkPlan
 from surefoot.planner.steps.commands import Command
 from surefoot.planner.types import PhaseInfo
 from surefoot.readings import Readings
@@ -35,13 +35,14 @@ from surefoot.scenarios.run.plant import Plant, Sensors, completed, push_plant
 from surefoot.scenarios.run.skeleton import ClosedLoop
 from surefoot.scenarios.run.tick import Look, Spent
 from surefoot.scenarios.setup.parts import fit
+from surefoot.scenarios.setup.robot.body import Body, body_of, feet_at
 from surefoot.scenarios.setup.seat import STANDING, velocities
-from surefoot.scenarios.setup.stance import Body, body_of, disturbed, feet_at, pressed
+from surefoot.scenarios.setup.stances.start import disturbed, pressed
 from surefoot.scenarios.setup.walk import Walk, resolve
 from surefoot.sim.measurement import Measurement
 from surefoot.sim.readings import SensorSuite
 from surefoot.sim.world import World
-from surefoot.wbc.zmp import measured_zmp
+from surefoot.wbc.contact.zmp import measured_zmp
 
 Array = NDArray[np.float64]
 

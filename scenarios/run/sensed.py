@@ -7,7 +7,7 @@ from typing import TYPE_CHECKING, Any
 import numpy as np
 
 from surefoot.errors import ParameterError
-from surefoot.guard import Guard, MisfitError
+from surefoot.parts.guard import Guard, MisfitError
 from surefoot.planner.types import CentroidalState, FeetState
 from surefoot.readings import Readings
 from surefoot.scenarios.setup.parts import ESTIMATE, guarded

@@ -7,10 +7,10 @@ from typing import TYPE_CHECKING, Any, Protocol
 import numpy as np
 from numpy.typing import NDArray
 
+from surefoot.parts.plugins import Registry
 from surefoot.planner.model.filter import ZMP_ONLY, CentroidalFilter, FilterNoise
-from surefoot.planner.plan import WalkPlan
+from surefoot.planner.plan.plan import WalkPlan
 from surefoot.planner.types import GRAVITY, CentroidalState
-from surefoot.plugins import Registry
 from surefoot.readings import Readings
 from surefoot.scenarios.file.registries import SOURCES
 from surefoot.scenarios.file.sensing import Sensing

@@ -15,7 +15,7 @@ from pydantic import ValidationError
 from surefoot.errors import ParameterError
 from surefoot.forces import Push
 from surefoot.planner.laws.profiles import Profile
-from surefoot.planner.plan import Planner
+from surefoot.planner.plan.plan import Planner
 from surefoot.planner.steps.commands import Command
 from surefoot.scenarios.errors import LogError, nearest
 from surefoot.scenarios.file.schema import CommandSettings, Scenario
@@ -26,7 +26,7 @@ from surefoot.scenarios.run.planning import RunFault
 from surefoot.scenarios.run.run import closed_loop, note_parts, one_thread, open_log, write_end
 from surefoot.scenarios.run.skeleton import ClosedLoop, End, refusing
 from surefoot.scenarios.run.tick import Tick
-from surefoot.scenarios.setup.gait import command_of
+from surefoot.scenarios.setup.groups.gait import command_of
 from surefoot.scenarios.setup.load import load as load_scenario
 from surefoot.scenarios.setup.walk import Walk, resolve
 

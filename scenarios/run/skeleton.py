@@ -16,7 +16,7 @@ from surefoot.scenarios.record.provenance import AFTER_FALL
 from surefoot.scenarios.record.walk import RunRecorder
 from surefoot.scenarios.run.planning import ROUNDING, Planning, RunFault
 from surefoot.scenarios.run.tick import Look, Spent
-from surefoot.scenarios.setup.gait import PushPoint
+from surefoot.scenarios.setup.groups.gait import PushPoint
 from surefoot.scenarios.setup.keys import scenario_problem
 from surefoot.scenarios.setup.walk import Walk
 from surefoot.wbc.controller import WholeBodyController

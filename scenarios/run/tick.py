@@ -6,8 +6,8 @@ from typing import NamedTuple
 import numpy as np
 from numpy.typing import NDArray
 
-from surefoot.planner.plan import WalkPlan
-from surefoot.planner.sample import PlanSample
+from surefoot.planner.plan.plan import WalkPlan
+from surefoot.planner.plan.sample import PlanSample
 from surefoot.planner.types import PhaseInfo, PhaseKind
 from surefoot.sim.measurement import Measurement
 from surefoot.wbc.types import RobotState, WbcReport

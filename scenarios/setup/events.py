@@ -10,7 +10,7 @@ from numpy.typing import NDArray
 
 from surefoot.errors import ParameterError
 from surefoot.planner.check import check_durations
-from surefoot.planner.geometry import wrap_angle
+from surefoot.planner.geometry.plane import wrap_angle
 from surefoot.planner.steps.commands import velocity_bouts
 from surefoot.planner.steps.source import AWAY
 from surefoot.planner.types import Twist
@@ -19,7 +19,7 @@ from surefoot.scenarios.file.schema import CommandSettings, Fault, PushSettings,
 from surefoot.scenarios.file.sensing import MOTOR_SIZES, SENSOR_SIZES
 from surefoot.scenarios.file.units import meant
 from surefoot.scenarios.record.provenance import Event
-from surefoot.scenarios.setup.gait import (
+from surefoot.scenarios.setup.groups.gait import (
     command_of,
     gait_of,
     push_force,

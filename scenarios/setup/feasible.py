@@ -15,15 +15,16 @@ from numpy.typing import NDArray
 
 from surefoot.errors import ParameterError
 from surefoot.models.types import same_robot
+from surefoot.parts.plugins import OWN_PACKAGE
 from surefoot.planner.laws.profiles import PROFILES
-from surefoot.plugins import OWN_PACKAGE
 from surefoot.scenarios.errors import Key, ScenarioError
 from surefoot.scenarios.file.criteria import Bound
 from surefoot.scenarios.file.schema import Scenario
 from surefoot.scenarios.setup.keys import scenario_key
-from surefoot.scenarios.setup.rehearsal import check_legs, check_turns
-from surefoot.scenarios.setup.stance import Body, feet_at, leg_inertia, start_posture
-from surefoot.scenarios.setup.stances import check_stances
+from surefoot.scenarios.setup.robot.body import Body, feet_at, leg_inertia
+from surefoot.scenarios.setup.stances.rehearsal import check_legs, check_turns
+from surefoot.scenarios.setup.stances.stances import check_stances
+from surefoot.scenarios.setup.stances.start import start_posture
 from surefoot.scenarios.setup.terrain import KINDS
 from surefoot.scenarios.setup.walk import Walk, resolve
 

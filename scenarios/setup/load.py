@@ -27,9 +27,9 @@ from surefoot.scenarios.judge.verdict import applies
 from surefoot.scenarios.log import read
 from surefoot.scenarios.log.encoding import MAGIC
 from surefoot.scenarios.record import provenance
-from surefoot.scenarios.setup.checks import check
-from surefoot.scenarios.setup.criteria import criteria_problems
-from surefoot.scenarios.setup.robot import Robots
+from surefoot.scenarios.setup.checks.checks import check
+from surefoot.scenarios.setup.checks.criteria import criteria_problems
+from surefoot.scenarios.setup.robot.robots import Robots
 from surefoot.scenarios.setup.sized import say_for, walk_of
 from surefoot.scenarios.setup.terrain import kind_of
 
@@ -272,8 +272,10 @@ def _size(source: Source, overrides: Overrides, robots: Robots) -> None:
     of, walk = (_sound({**one, "robot": name}, robots) for one, name in zip((before, source.value), names, strict=True))
     if of is None or walk is None:
         return
+    from surefoot.scenarios.setup.stances.stances import bent_once
+
     with suppress(ParameterError):
-        source.value["gait"]["com_height"] = robots.bent_alike(of, walk)
+        source.value["gait"]["com_height"] = bent_once(of, walk, robots)
         source.written["gait", "com_height"] = f"{of.gait.com_height:g} in the file, for {names[0]}"
 
 

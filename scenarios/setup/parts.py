@@ -7,10 +7,10 @@ from typing import TYPE_CHECKING, Any, cast
 
 import numpy as np
 
-from surefoot.guard import Guard, Guarded, MisfitError, taken_for
+from surefoot.parts.guard import Guard, Guarded, MisfitError, taken_for
 from surefoot.planner.laws.law import Motion, MotionPlanner, MotionProblem
 from surefoot.planner.laws.profiles import PROFILES, Profile
-from surefoot.planner.plan import WalkPlan
+from surefoot.planner.plan.plan import WalkPlan
 from surefoot.planner.types import Array
 from surefoot.wbc.estimation.estimate import Estimate
 
@@ -64,7 +64,7 @@ _SAMPLED: dict[str, Shape] = {
 
 
 def plan(answer: WalkPlan, *_: Any) -> WalkPlan:
-    """What a planner gives; see `surefoot.guard.Guard.function`."""
+    """What a planner gives; see `surefoot.parts.guard.Guard.function`."""
     taken_for(WalkPlan)(answer)
     horizon = len(answer.jerk)
     fit(answer.jerk, (horizon, 2), "jerk")

@@ -6,7 +6,7 @@ from surefoot.planner.steps.commands import Command
 from surefoot.planner.types import Twist
 from surefoot.scenarios.errors import Problem
 from surefoot.scenarios.file.registries import DEFAULTS
-from surefoot.scenarios.setup.gait import command_of, velocities_of
+from surefoot.scenarios.setup.groups.gait import command_of, velocities_of
 from surefoot.scenarios.setup.walk import Walk
 
 STANDING = Twist()

@@ -18,8 +18,8 @@ from pydantic_core import PydanticCustomError
 
 from surefoot.errors import ParameterError
 from surefoot.models.facts import RobotFacts, stance_widening
+from surefoot.parts.plugins import PluginError
 from surefoot.planner.parameters import RecoveryParameters
-from surefoot.plugins import PluginError
 from surefoot.scenarios.errors import Key, Problem, nearest
 from surefoot.scenarios.file.criteria import Bound
 from surefoot.scenarios.file.group import groups_in
@@ -28,7 +28,7 @@ from surefoot.scenarios.file.source import Overrides, Source, apply_overrides
 from surefoot.scenarios.file.units import Unit, is_number, unit_of
 from surefoot.scenarios.judge.metric import Metric
 from surefoot.scenarios.judge.metrics import known
-from surefoot.scenarios.setup.robot import POSTURE, Robots, Rule, is_known, nearer_landings, rules
+from surefoot.scenarios.setup.robot.robots import POSTURE, Robots, Rule, is_known, nearer_landings, rules
 from surefoot.scenarios.setup.walk import Walk
 from surefoot.similarity import REFERENCE, REFERENCE_SIZE, Similarity
 from surefoot.wbc.parameters import WbcParameters

@@ -12,7 +12,7 @@ from surefoot.models.facts import RobotFacts, facts_of, size_of, stance_widening
 from surefoot.planner.check import check_walk
 from surefoot.planner.laws.profiles import Profile
 from surefoot.planner.parameters import LegInertia, PlannerParameters
-from surefoot.planner.plan import Planner
+from surefoot.planner.plan.plan import Planner
 from surefoot.planner.planner import WalkingPlanner
 from surefoot.planner.steps.commands import Command, fitted
 from surefoot.planner.steps.gait import GaitParameters
@@ -24,8 +24,8 @@ from surefoot.scenarios.file.dumped import scenario_yaml
 from surefoot.scenarios.file.group import controller_parameters
 from surefoot.scenarios.file.schema import Fault, LogSettings, PendulumSettings, PushSettings, Rates, Scenario, Start
 from surefoot.scenarios.file.sensing import Sensing
-from surefoot.scenarios.setup.formulation import Formulation, cop_room, leg_reach, lowered, region_of
-from surefoot.scenarios.setup.gait import (
+from surefoot.scenarios.setup.groups.formulation import Formulation, cop_room, leg_reach, lowered, region_of
+from surefoot.scenarios.setup.groups.gait import (
     FINAL_STAND,
     PushPoint,
     command_of,
@@ -36,10 +36,10 @@ from surefoot.scenarios.setup.gait import (
     told_until,
     waypoints_of,
 )
-from surefoot.scenarios.setup.hardware import Hardware
+from surefoot.scenarios.setup.groups.hardware import Hardware
 from surefoot.scenarios.setup.keys import FIDELITIES, Fidelity
 from surefoot.scenarios.setup.parts import guarded_law
-from surefoot.scenarios.setup.robot import describe, true_robot
+from surefoot.scenarios.setup.robot.robots import describe, true_robot
 from surefoot.scenarios.setup.terrain import kind_of
 from surefoot.scenarios.setup.terrain.ground import Ground, tiles_of, tilt_of
 from surefoot.similarity import REFERENCE_SIZE, Similarity

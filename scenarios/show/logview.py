@@ -11,7 +11,7 @@ from typing import Any
 import numpy as np
 from numpy.typing import NDArray
 
-from surefoot.planner.geometry import points_seen_from
+from surefoot.planner.geometry.plane import points_seen_from
 from surefoot.scenarios.columns import KeptChannel, Reads
 from surefoot.scenarios.errors import LogError
 from surefoot.scenarios.log import Log

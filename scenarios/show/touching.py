@@ -31,7 +31,7 @@ def touching(log: Log) -> tuple[Touch, ...]:
     if not ticks.size:
         return ()
     # Few runs get here, and the others need no engine.
-    from surefoot.engine import mujoco
+    from surefoot.engines.windowless import mujoco
     from surefoot.models.convert import Coordinates
     from surefoot.scenarios.show.replay.extract import world
 

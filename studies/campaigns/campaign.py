@@ -13,7 +13,7 @@ from surefoot.scenarios.errors import Key, Problem, ScenarioError, nearest
 from surefoot.scenarios.file.source import Source, decoded, parse, plain_scalar, setting
 from surefoot.scenarios.file.translate import problems_of
 from surefoot.scenarios.setup.load import Written, for_robot, key_problems, written
-from surefoot.scenarios.setup.robot import Robots, is_known
+from surefoot.scenarios.setup.robot.robots import Robots, is_known
 from surefoot.studies.campaigns.shipped import ENDING, shipped
 from surefoot.studies.campaigns.spec import MOST_RUNS, Bisect, Spec
 

@@ -13,7 +13,7 @@ from typing import Any
 import numpy as np
 
 from surefoot.errors import ParameterError, PluginError
-from surefoot.planner.geometry import frame_rotation, sole_corners
+from surefoot.planner.geometry.plane import frame_rotation, sole_corners
 from surefoot.planner.parameters import StepAdaptation
 from surefoot.planner.recovery.capturability import Moment, Way, landing_points, swing_box
 from surefoot.planner.swing.leg_reach import ANYWHERE
@@ -22,7 +22,7 @@ from surefoot.planner.types import GRAVITY, Array, Foot, Footstep
 from surefoot.scenarios.errors import LogError, ScenarioError, SetupError
 from surefoot.scenarios.file.schema import Scenario
 from surefoot.scenarios.log import read
-from surefoot.scenarios.setup.gait import push_time
+from surefoot.scenarios.setup.groups.gait import push_time
 from surefoot.scenarios.setup.load import load
 from surefoot.scenarios.setup.walk import Walk, resolve
 from surefoot.scenarios.show.logview import FOOT_NAMES, LogView, MissingError

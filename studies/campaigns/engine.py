@@ -13,7 +13,7 @@ from types import ModuleType
 from typing import Any, NamedTuple, Protocol
 
 from surefoot.errors import PluginError
-from surefoot.guard import said
+from surefoot.parts.guard import said
 from surefoot.scenarios.errors import LogError, ScenarioError, SetupError, require
 from surefoot.scenarios.file.schema import Scenario
 from surefoot.scenarios.record.provenance import LOG_NAME, relevant_versions

@@ -7,7 +7,7 @@ import numpy as np
 from numpy.typing import NDArray
 
 from surefoot.joints import JointCommand, Servo
-from surefoot.planner.geometry import wrap_angle
+from surefoot.planner.geometry.plane import wrap_angle
 from surefoot.planner.types import PhaseKind
 from surefoot.scenarios.run.planning import RunFault
 from surefoot.studies.tour.robot import ARM_JOINTS, TourRobot, tour_robot

@@ -12,7 +12,7 @@ import yaml
 from numpy.typing import NDArray
 from pydantic import BaseModel, ConfigDict
 
-from surefoot import kept
+from surefoot.models import kept
 from surefoot.models.robot_file.document import MODEL, content
 from surefoot.models.robot_file.paths import resolve
 from surefoot.scenarios.errors import LogError

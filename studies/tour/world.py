@@ -7,7 +7,7 @@ from xml.etree import ElementTree
 import numpy as np
 from numpy.typing import NDArray
 
-from surefoot.engine import mujoco
+from surefoot.engines.windowless import mujoco
 from surefoot.joints import JointCommand
 from surefoot.models.convert import mujoco_to_pinocchio, pinocchio_to_mujoco
 from surefoot.models.types import RobotDescription

@@ -27,7 +27,7 @@ def refusal(robots, text, overrides=()):
 
 @pytest.fixture
 def robots():
-    from surefoot.scenarios.setup.robot import Robots
+    from surefoot.scenarios.setup.robot.robots import Robots
 
     return Robots()
 

@@ -13,7 +13,7 @@ from surefoot.scenarios.errors import LONGEST_SENTENCE, ScenarioError
 from surefoot.scenarios.file.dumped import scenario_yaml
 from surefoot.scenarios.file.schema import Scenario
 from surefoot.scenarios.setup.load import load, read_scenario
-from surefoot.scenarios.setup.robot import Robots
+from surefoot.scenarios.setup.robot.robots import Robots
 from surefoot.scenarios.setup.walk import Walk
 
 MOST_LINES = 25

@@ -6,12 +6,12 @@ from jsonschema import Draft202012Validator
 from mutations import trial
 from pydantic import ValidationError
 
-from surefoot.plugins import PluginError
+from surefoot.parts.plugins import PluginError
 from surefoot.scenarios import catalogue
 from surefoot.scenarios.file.schema import Scenario
 from surefoot.scenarios.judge.metric import Metric, metric
 from surefoot.scenarios.judge.metrics import METRICS, register, unknown_metrics
-from surefoot.scenarios.setup.criteria import criteria_problems, published
+from surefoot.scenarios.setup.checks.criteria import criteria_problems, published
 
 pytestmark = pytest.mark.unit
 

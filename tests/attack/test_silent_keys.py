@@ -33,7 +33,7 @@ WITHOUT_OCCASION = {
         "acts when feet change their load",
     ),
     **dict.fromkeys(
-        (f"wbc.separation.{name}" for name in ("clearance", "attention", "horizon", "slots")),
+        (f"wbc.body.separation.{name}" for name in ("clearance", "attention", "horizon", "slots")),
         "acts when limbs come near each other",
     ),
 }

@@ -12,7 +12,7 @@ from surefoot.scenarios.errors import ScenarioError
 from surefoot.scenarios.file.schema import Scenario
 from surefoot.scenarios.log import ChannelSpec, FieldSpec, LogWriter, read
 from surefoot.scenarios.setup.load import read_scenario
-from surefoot.scenarios.setup.robot import Robots
+from surefoot.scenarios.setup.robot.robots import Robots
 from surefoot.studies.campaigns.campaign import read_campaign
 
 pytestmark = pytest.mark.unit

@@ -21,8 +21,8 @@ from surefoot.scenarios.show.figures import ground, motion
 from surefoot.scenarios.show.replay import content, video
 from surefoot.studies.campaigns import against
 from surefoot.studies.tour import rules, world
-from surefoot.wbc import external
-from surefoot.wbc.cone import Sole
+from surefoot.wbc.contact import external
+from surefoot.wbc.contact.cone import Sole
 
 pytestmark = pytest.mark.unit
 

@@ -13,9 +13,9 @@ from surefoot.models.pinocchio import pinocchio_model
 from surefoot.models.registry import describe
 from surefoot.models.types import RobotOptions
 from surefoot.similarity import Similarity
-from surefoot.wbc.cone import Sole
-from surefoot.wbc.limits import JointLimits
-from surefoot.wbc.model import BodyFrames, RobotTerms
+from surefoot.wbc.body.limits import JointLimits
+from surefoot.wbc.body.model import BodyFrames, RobotTerms
+from surefoot.wbc.contact.cone import Sole
 from surefoot.wbc.parameters import WbcParameters
 from surefoot.wbc.tasks import DEFAULT_LAYOUT
 

@@ -4,9 +4,9 @@ from importlib.util import find_spec
 
 import pytest
 
-from surefoot import plugins
 from surefoot.models import ROBOTS, Robot, RobotError, RobotOptions, UnknownRobotError, describe, robot_names
 from surefoot.models.names import SHIPPED
+from surefoot.parts import plugins
 
 pytestmark = pytest.mark.unit
 

@@ -132,7 +132,7 @@ def test_a_name_of_ours_means_ours_whichever_floor_it_is_of(at_hand, site, name)
 
 
 def test_a_program_without_its_entry_points_says_so(at_hand, monkeypatch):
-    from surefoot import plugins
+    from surefoot.parts import plugins
 
     assert "installed" not in at_hand("swep").err
     monkeypatch.setattr(plugins, "entry_points", lambda group: ())

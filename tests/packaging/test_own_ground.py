@@ -10,9 +10,9 @@ import surefoot
 from surefoot.scenarios.errors import ScenarioError
 from surefoot.scenarios.file.schema import RobotSettings
 from surefoot.scenarios.log import read
-from surefoot.scenarios.setup.criteria import published
+from surefoot.scenarios.setup.checks.criteria import published
 from surefoot.scenarios.setup.load import Written, for_robot
-from surefoot.scenarios.setup.robot import Robots
+from surefoot.scenarios.setup.robot.robots import Robots
 from surefoot.scenarios.setup.terrain import KINDS
 from surefoot.scenarios.setup.walk import Walk
 

@@ -6,11 +6,11 @@ import numpy as np
 import pytest
 
 from surefoot.forces import NO_LOAD, ExternalLoad
-from surefoot.planner.geometry import signed_distance
+from surefoot.planner.geometry.plane import signed_distance
 from surefoot.planner.parameters import PlannerParameters, StepAdaptation
+from surefoot.planner.plan.sampling import PlanSampler
 from surefoot.planner.planner import WalkingPlanner
 from surefoot.planner.plants import IdealFeet, Pendulum
-from surefoot.planner.sampling import PlanSampler
 from surefoot.planner.steps.gait import GaitParameters
 from surefoot.planner.types import GRAVITY, CentroidalState
 

@@ -8,7 +8,7 @@ from pendulum_walk import walk_pendulum
 from surefoot.errors import ParameterError
 from surefoot.forces import Push
 from surefoot.planner.check import check_walk
-from surefoot.planner.geometry import frame_rotation
+from surefoot.planner.geometry.plane import frame_rotation
 from surefoot.planner.ground.terrain import Box, Terrain, flat
 from surefoot.planner.parameters import PlannerParameters, StepAdaptation
 from surefoot.planner.planner import WalkingPlanner

@@ -8,13 +8,13 @@ import pytest
 from surefoot.models.pinocchio import pinocchio_model
 from surefoot.models.registry import describe
 from surefoot.models.types import RobotOptions
-from surefoot.wbc.cone import Sole
+from surefoot.wbc.body.ik import PostureIk, PostureTarget
+from surefoot.wbc.body.limits import JointLimits
+from surefoot.wbc.body.model import BodyFrames
+from surefoot.wbc.contact.cone import Sole
 from surefoot.wbc.controller import WholeBodyController
-from surefoot.wbc.ik import PostureIk, PostureTarget
-from surefoot.wbc.limits import JointLimits
-from surefoot.wbc.model import BodyFrames
 from surefoot.wbc.parameters import WbcParameters
-from surefoot.wbc.qp import QpData
+from surefoot.wbc.qp.data import QpData
 from surefoot.wbc.reference import WbcReference
 from surefoot.wbc.tasks import Task
 from surefoot.wbc.types import FootSensing, RobotState

@@ -5,10 +5,10 @@ from dataclasses import replace
 import numpy as np
 import pytest
 
-from surefoot.wbc.contacts import ContactState
-from surefoot.wbc.ik import PostureTarget
+from surefoot.wbc.body.ik import PostureTarget
+from surefoot.wbc.contact.contacts import ContactState
 from surefoot.wbc.parameters import ContactGains
-from surefoot.wbc.qp import EQUALITY_ROWS, WRENCH_UNIT
+from surefoot.wbc.qp.data import EQUALITY_ROWS, WRENCH_UNIT
 from surefoot.wbc.types import FootSensing, RobotState, SolveStatus
 
 pytestmark = pytest.mark.unit

@@ -6,7 +6,7 @@ import numpy as np
 import pinocchio as pin
 import pytest
 
-from surefoot.wbc.cone import wrench_cone
+from surefoot.wbc.contact.cone import wrench_cone
 from surefoot.wbc.parameters import WbcParameters
 from surefoot.wbc.types import GRAVITY, FootSensing, RobotState, SolveStatus
 

@@ -3,7 +3,7 @@
 import numpy as np
 import pytest
 
-from surefoot.wbc.qp import UNBOUNDED
+from surefoot.wbc.qp.data import UNBOUNDED
 from surefoot.wbc.tasks.swing import AnkleStops
 from surefoot.wbc.types import FootSensing, RobotState
 

@@ -3,8 +3,8 @@
 import numpy as np
 import pytest
 
-from surefoot.wbc.qp import EQUALITY_ROWS, WRENCH_UNIT
-from surefoot.wbc.solvers import Daqp, ProxQp, equalities_only
+from surefoot.wbc.qp.data import EQUALITY_ROWS, WRENCH_UNIT
+from surefoot.wbc.qp.solvers import Daqp, ProxQp, equalities_only
 from surefoot.wbc.types import RobotState, SolveStatus
 
 pytestmark = pytest.mark.unit

@@ -10,11 +10,11 @@ from surefoot.models.registry import describe
 from surefoot.models.similar import scaled
 from surefoot.models.types import RobotOptions
 from surefoot.similarity import REFERENCE_SIZE, Similarity
-from surefoot.wbc.cone import Sole
+from surefoot.wbc.body.falling import GivingWay
+from surefoot.wbc.body.limits import JointLimits
+from surefoot.wbc.contact.cone import Sole
+from surefoot.wbc.contact.external import LoadObserver
 from surefoot.wbc.controller import WholeBodyController
-from surefoot.wbc.external import LoadObserver
-from surefoot.wbc.falling import GivingWay
-from surefoot.wbc.limits import JointLimits
 from surefoot.wbc.parameters import WbcParameters
 from surefoot.wbc.types import FootSensing, RobotState, SolveStatus
 

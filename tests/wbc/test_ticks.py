@@ -8,9 +8,9 @@ import pytest
 from surefoot.models.pinocchio import limb_shapes
 from surefoot.models.registry import describe
 from surefoot.models.types import RobotOptions
-from surefoot.wbc.contacts import ContactState
+from surefoot.wbc.body.separation import SeparationParameters
+from surefoot.wbc.contact.contacts import ContactState
 from surefoot.wbc.parameters import WbcParameters
-from surefoot.wbc.separation import SeparationParameters
 from surefoot.wbc.tasks import TaskGains, TaskWeights
 from surefoot.wbc.tasks.trunk import Torso
 from surefoot.wbc.types import FootSensing

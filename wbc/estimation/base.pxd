@@ -1,6 +1,6 @@
 cimport cython
-from surefoot cimport algebra, linear
-from surefoot.algebra cimport vector3
+from surefoot.maths cimport algebra, linear
+from surefoot.maths.algebra cimport vector3
 from surefoot.wbc.estimation.kinematics cimport SensedBody
 from surefoot.wbc.estimation.stand cimport Stand
 

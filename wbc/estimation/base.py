@@ -11,8 +11,8 @@ its translation in the axes half way through the turn.
 
 import numpy as np
 
-from surefoot import algebra, linear
-from surefoot.algebra import Vector
+from surefoot.maths import algebra, linear
+from surefoot.maths.algebra import Vector
 from surefoot.wbc.estimation.kinematics import SensedBody
 from surefoot.wbc.estimation.stand import Stand
 from surefoot.wbc.types import Array, RobotState

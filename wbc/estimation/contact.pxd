@@ -1,5 +1,5 @@
 cimport cython
-from surefoot cimport algebra
+from surefoot.maths cimport algebra
 from surefoot.readings cimport Reading
 
 cdef double CARRIES, UNLIKELY, FIRM_EDGE

@@ -5,10 +5,10 @@ from collections.abc import Sequence
 
 import numpy as np
 
-from surefoot import algebra
+from surefoot.maths import algebra
 from surefoot.readings import Reading
+from surefoot.wbc.contact.external import SPAN
 from surefoot.wbc.estimation.parameters import ContactDetection, SensorNoise
-from surefoot.wbc.external import SPAN
 from surefoot.wbc.types import Array
 
 CUT, QUIET = 100.0, 5.0

@@ -15,7 +15,7 @@ The gain of a tick is K = P Hᵀ (H P Hᵀ + N)⁻¹, and the covariance after n
 import numpy as np
 from numpy.typing import NDArray
 
-from surefoot import algebra, linear
+from surefoot.maths import algebra, linear
 from surefoot.similarity import GRAVITY
 from surefoot.wbc.estimation import stand
 from surefoot.wbc.estimation.parameters import GroundNoise, SensorNoise

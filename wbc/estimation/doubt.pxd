@@ -1,6 +1,6 @@
 cimport cython
-from surefoot cimport algebra, linear
-from surefoot.algebra cimport vector3
+from surefoot.maths cimport algebra, linear
+from surefoot.maths.algebra cimport vector3
 from surefoot.wbc.estimation cimport stand
 from surefoot.wbc.estimation.estimate cimport Deviation
 from surefoot.wbc.estimation.kinematics cimport SensedBody

@@ -4,15 +4,15 @@ import math
 
 import numpy as np
 
-from surefoot import algebra, linear
-from surefoot.algebra import Vector
+from surefoot.maths import algebra, linear
+from surefoot.maths.algebra import Vector
+from surefoot.wbc.contact.external import SPAN
 from surefoot.wbc.estimation import stand
 from surefoot.wbc.estimation.contact import SoleContact
 from surefoot.wbc.estimation.estimate import Deviation
 from surefoot.wbc.estimation.kinematics import SensedBody
 from surefoot.wbc.estimation.parameters import SensorNoise
 from surefoot.wbc.estimation.stand import Stand
-from surefoot.wbc.external import SPAN
 from surefoot.wbc.types import GRAVITY, Array
 
 LASTS = 3.0

@@ -1,6 +1,6 @@
 cimport cython
-from surefoot cimport algebra
-from surefoot.algebra cimport vector3
+from surefoot.maths cimport algebra
+from surefoot.maths.algebra cimport vector3
 from surefoot.readings cimport Reading, Readings
 from surefoot.wbc.estimation.base cimport FloatingBase
 from surefoot.wbc.estimation.contact cimport SoleContact

@@ -6,8 +6,8 @@ from typing import Any
 import numpy as np
 import pinocchio as pin
 
-from surefoot import algebra
-from surefoot.algebra import Vector
+from surefoot.maths import algebra
+from surefoot.maths.algebra import Vector
 from surefoot.readings import Reading, Readings
 from surefoot.wbc.estimation.base import FloatingBase
 from surefoot.wbc.estimation.contact import SoleContact, sprung

@@ -1,5 +1,5 @@
 cimport cython
-from surefoot cimport algebra, linear
+from surefoot.maths cimport algebra, linear
 from surefoot.wbc.estimation.covariance cimport Covariance
 from surefoot.wbc.estimation.stand cimport Stand
 

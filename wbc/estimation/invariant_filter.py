@@ -20,7 +20,7 @@ encoders and the mount less their offsets, gives for a foot that stands (eq. 33,
 import numpy as np
 import pinocchio as pin
 
-from surefoot import algebra, linear
+from surefoot.maths import algebra, linear
 from surefoot.similarity import GRAVITY
 from surefoot.wbc.estimation.covariance import Covariance
 from surefoot.wbc.estimation.parameters import GroundNoise, SensorNoise

@@ -4,7 +4,7 @@ import math
 
 import numpy as np
 
-from surefoot import linear
+from surefoot.maths import linear
 from surefoot.readings import Readings
 from surefoot.wbc.types import Array
 

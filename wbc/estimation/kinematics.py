@@ -1,18 +1,18 @@
 """Where the soles are from the IMU, how encoder zeros move them, and where the base is.
 
-Of soles that lean (see `surefoot.wbc.leaning`) the place is that of the line on which they stand: it stays where it is
-while they turn about it.
+Of soles that lean (see `surefoot.wbc.body.leaning`) the place is that of the line on which they stand: it stays where
+it is while they turn about it.
 """
 
 import numpy as np
 import pinocchio as pin
 
-from surefoot import algebra, linear
-from surefoot.algebra import Vector
-from surefoot.mimic import JointColumns
+from surefoot.engines.mimic import JointColumns
+from surefoot.maths import algebra, linear
+from surefoot.maths.algebra import Vector
+from surefoot.wbc.body.leaning import line_centre
 from surefoot.wbc.estimation.footing import ImuMount
 from surefoot.wbc.estimation.stand import AXES
-from surefoot.wbc.leaning import line_centre
 from surefoot.wbc.types import Array
 
 

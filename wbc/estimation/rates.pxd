@@ -1,5 +1,5 @@
 cimport cython
-from surefoot cimport algebra
+from surefoot.maths cimport algebra
 
 cdef double IMPACT
 

@@ -4,7 +4,7 @@ import math
 
 import numpy as np
 
-from surefoot import algebra
+from surefoot.maths import algebra
 from surefoot.wbc.types import Array
 
 IMPACT = 9.0

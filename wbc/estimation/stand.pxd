@@ -1,5 +1,5 @@
 cimport cython
-from surefoot cimport algebra, linear
+from surefoot.maths cimport algebra, linear
 
 cdef Py_ssize_t TURN_AT, VELOCITY_AT, POSITION_AT, FOOT_AT, SOLE_AT, GYRO_AT, FORCE_AT, OFFSETS_AT
 

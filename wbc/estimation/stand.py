@@ -4,7 +4,7 @@ from typing import Any
 
 import numpy as np
 
-from surefoot import algebra, linear
+from surefoot.maths import algebra, linear
 from surefoot.wbc.types import Array
 
 TURN_AT, VELOCITY_AT, POSITION_AT, FOOT_AT, SOLE_AT, GYRO_AT, FORCE_AT, OFFSETS_AT = 0, 3, 6, 9, 15, 21, 24, 27

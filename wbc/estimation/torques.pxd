@@ -1,7 +1,7 @@
 cimport cython
-from surefoot cimport algebra, linear
-from surefoot.algebra cimport vector3
-from surefoot.mimic cimport Dynamics, JointColumns
+from surefoot.maths cimport algebra, linear
+from surefoot.maths.algebra cimport vector3
+from surefoot.engines.mimic cimport Dynamics, JointColumns
 from surefoot.wbc.estimation.kinematics cimport Sole
 
 cdef double LEVER, BASE_NOISE

@@ -5,8 +5,8 @@ import math
 import numpy as np
 import pinocchio as pin
 
-from surefoot import algebra, linear
-from surefoot.mimic import Dynamics, JointColumns
+from surefoot.engines.mimic import Dynamics, JointColumns
+from surefoot.maths import algebra, linear
 from surefoot.wbc.estimation.kinematics import Sole, supporting
 from surefoot.wbc.estimation.parameters import SensorNoise
 from surefoot.wbc.types import Array, RobotState

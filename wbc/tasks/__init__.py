@@ -12,7 +12,7 @@ from typing import TYPE_CHECKING
 from surefoot.lazy import face
 
 if TYPE_CHECKING:
-    from surefoot.wbc.tasks.parameters import TaskGains, TaskWeights
+    from surefoot.wbc.parameters import TaskGains, TaskWeights
     from surefoot.wbc.tasks.registry import DEFAULT_LAYOUT, TASKS, TaskLayout
     from surefoot.wbc.tasks.stack import TaskStack
     from surefoot.wbc.tasks.task import Task, TaskFactory, Weighted, angular_acceleration
@@ -34,7 +34,7 @@ if not TYPE_CHECKING:  # a type checker shall still refuse names that are not th
     __getattr__, __dir__ = face(
         __name__,
         {
-            "parameters": ("TaskGains", "TaskWeights"),
+            ".parameters": ("TaskGains", "TaskWeights"),
             "registry": ("DEFAULT_LAYOUT", "TASKS", "TaskLayout"),
             "stack": ("TaskStack",),
             "task": ("Task", "TaskFactory", "Weighted", "angular_acceleration"),

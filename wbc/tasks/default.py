@@ -1,9 +1,8 @@
 """The tasks that every controller has."""
 
-from surefoot.wbc.balance import SupportRegion
-from surefoot.wbc.parameters import BalanceGains
+from surefoot.wbc.parameters import BalanceGains, TaskGains, TaskWeights
+from surefoot.wbc.tasks.balance import SupportRegion
 from surefoot.wbc.tasks.momentum import AngularMomentum, CentreOfMass
-from surefoot.wbc.tasks.parameters import TaskGains, TaskWeights
 from surefoot.wbc.tasks.swing import AnkleStops, SwingFoot
 from surefoot.wbc.tasks.task import Task
 from surefoot.wbc.tasks.trunk import HipStops, Pelvis, Torso
@@ -34,7 +33,7 @@ def default_tasks(
         hips: where they end; None for nowhere.
         waist: whether the torso can move against the pelvis. Without, they are one body, which the pelvis's task holds:
             twice the weight would throw the CoM up for a friction about the vertical that its yaw is not worth.
-        leaning: whether feet roll as their legs do (see `surefoot.wbc.leaning`).
+        leaning: whether feet roll as their legs do (see `surefoot.wbc.body.leaning`).
     """
     trunk = (Pelvis(weights, gains, hips), Torso(weights, gains))
     return (

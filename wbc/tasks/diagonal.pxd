@@ -1,6 +1,6 @@
 cimport cython
-from surefoot.wbc.arm_swing cimport ArmSwing
-from surefoot.wbc.model cimport RobotTerms
+from surefoot.wbc.tasks.arm_swing cimport ArmSwing
+from surefoot.wbc.body.model cimport RobotTerms
 from surefoot.wbc.reference cimport WbcReference
 
 cdef class DiagonalTerm:

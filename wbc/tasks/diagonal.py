@@ -6,10 +6,10 @@ Each costs Σ weight_i (x_i - target_i)², which adds the weights to the diagona
 import numpy as np
 from numpy.typing import NDArray
 
-from surefoot.wbc.arm_swing import ArmSwing
-from surefoot.wbc.model import RobotTerms
+from surefoot.wbc.body.model import RobotTerms
+from surefoot.wbc.parameters import TaskGains, TaskWeights
 from surefoot.wbc.reference import WbcReference
-from surefoot.wbc.tasks.parameters import TaskGains, TaskWeights
+from surefoot.wbc.tasks.arm_swing import ArmSwing
 from surefoot.wbc.types import GRAVITY, Array
 
 

@@ -1,7 +1,7 @@
 cimport cython
-from surefoot cimport algebra
-from surefoot.algebra cimport vector3
-from surefoot.wbc.model cimport RobotTerms
+from surefoot.maths cimport algebra
+from surefoot.maths.algebra cimport vector3
+from surefoot.wbc.body.model cimport RobotTerms
 from surefoot.wbc.reference cimport WbcReference
 
 cdef class TaskLaw:

@@ -4,8 +4,8 @@ from typing import TYPE_CHECKING, cast
 
 import numpy as np
 
-from surefoot import algebra
-from surefoot.wbc.model import RobotTerms
+from surefoot.maths import algebra
+from surefoot.wbc.body.model import RobotTerms
 from surefoot.wbc.reference import WbcReference
 from surefoot.wbc.types import Array
 

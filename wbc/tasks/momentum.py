@@ -2,18 +2,17 @@
 
 import numpy as np
 
-from surefoot import algebra, linear
-from surefoot.wbc.balance import BalanceLaw, SupportRegion
-from surefoot.wbc.model import RobotTerms
-from surefoot.wbc.parameters import BalanceGains
+from surefoot.maths import algebra, linear
+from surefoot.wbc.body.model import RobotTerms
+from surefoot.wbc.parameters import BalanceGains, TaskGains, TaskWeights
 from surefoot.wbc.reference import WbcReference
+from surefoot.wbc.tasks.balance import BalanceLaw, SupportRegion
 from surefoot.wbc.tasks.law import TaskLaw
-from surefoot.wbc.tasks.parameters import TaskGains, TaskWeights
 from surefoot.wbc.types import GRAVITY, Array
 
 
 class CentreOfMass(TaskLaw):
-    """CoM acceleration by the law of ``surefoot.wbc.balance``, from the forces: c'' = (Σ R_k f_k + f) / m - g.
+    """CoM acceleration by the law of ``surefoot.wbc.tasks.balance``, from the forces: c'' = (Σ R_k f_k + f) / m - g.
 
     The force f is that of a lasting load (see ``RobotTerms.bear``).
 

@@ -2,7 +2,7 @@
 
 from typing import TYPE_CHECKING
 
-from surefoot.plugins import Registry
+from surefoot.parts.plugins import Registry
 
 if TYPE_CHECKING:
     from surefoot.wbc.tasks.task import TaskFactory

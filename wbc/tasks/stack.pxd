@@ -1,6 +1,6 @@
 cimport cython
-from surefoot cimport linear
-from surefoot.wbc.model cimport RobotTerms
+from surefoot.maths cimport linear
+from surefoot.wbc.body.model cimport RobotTerms
 from surefoot.wbc.reference cimport WbcReference
 from surefoot.wbc.tasks.diagonal cimport DiagonalTerm
 from surefoot.wbc.tasks.law cimport Place

@@ -4,9 +4,9 @@ from collections.abc import Sequence
 
 import numpy as np
 
-from surefoot import linear
-from surefoot.wbc.model import RobotTerms
-from surefoot.wbc.qp import QpData
+from surefoot.maths import linear
+from surefoot.wbc.body.model import RobotTerms
+from surefoot.wbc.qp.data import QpData
 from surefoot.wbc.reference import WbcReference
 from surefoot.wbc.tasks.diagonal import DiagonalTerm
 from surefoot.wbc.tasks.law import Place

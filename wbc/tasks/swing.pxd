@@ -1,7 +1,7 @@
 cimport cython
-from surefoot cimport algebra, linear
-from surefoot.algebra cimport vector3
-from surefoot.wbc.model cimport RobotTerms
+from surefoot.maths cimport algebra, linear
+from surefoot.maths.algebra cimport vector3
+from surefoot.wbc.body.model cimport RobotTerms
 from surefoot.wbc.reference cimport WbcReference
 from surefoot.wbc.tasks cimport law
 from surefoot.wbc.tasks.law cimport TaskLaw

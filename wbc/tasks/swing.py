@@ -5,14 +5,14 @@ from functools import lru_cache
 import numpy as np
 import pinocchio as pin
 
-from surefoot import algebra, linear
-from surefoot.wbc.leaning import FREE
-from surefoot.wbc.limits import JointLimits
-from surefoot.wbc.model import BodyFrames, RobotTerms
+from surefoot.maths import algebra, linear
+from surefoot.wbc.body.leaning import FREE
+from surefoot.wbc.body.limits import JointLimits
+from surefoot.wbc.body.model import BodyFrames, RobotTerms
+from surefoot.wbc.parameters import TaskGains, TaskWeights
 from surefoot.wbc.reference import WbcReference
 from surefoot.wbc.tasks import law
 from surefoot.wbc.tasks.law import TaskLaw
-from surefoot.wbc.tasks.parameters import TaskGains, TaskWeights
 from surefoot.wbc.types import Array
 
 YIELDING = 0.1
@@ -142,7 +142,7 @@ class SwingFoot(TaskLaw):
             edges: toe edge and side edge from the sole's centre [m].
             length: size of the robot, by which rotations count [-].
             stops: where the ankles end; None for nowhere.
-            leaning: whether the foot rolls as its leg does (see `surefoot.wbc.leaning`).
+            leaning: whether the foot rolls as its leg does (see `surefoot.wbc.body.leaning`).
         """
         self._stops, self._turned = stops, -1
         self.weight = weights.swing * np.repeat([1.0, length**2], 3)

@@ -6,7 +6,7 @@ from typing import Protocol
 
 import pinocchio as pin
 
-from surefoot.wbc.model import BodyFrames, RobotTerms
+from surefoot.wbc.body.model import BodyFrames, RobotTerms
 from surefoot.wbc.reference import WbcReference
 from surefoot.wbc.tasks import law
 from surefoot.wbc.tasks.registry import TaskLayout

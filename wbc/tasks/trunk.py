@@ -6,13 +6,13 @@ from functools import lru_cache
 import numpy as np
 import pinocchio as pin
 
-from surefoot import algebra, linear
-from surefoot.wbc.limits import JointLimits
-from surefoot.wbc.model import BodyFrames, RobotTerms
+from surefoot.maths import algebra, linear
+from surefoot.wbc.body.limits import JointLimits
+from surefoot.wbc.body.model import BodyFrames, RobotTerms
+from surefoot.wbc.parameters import TaskGains, TaskWeights
 from surefoot.wbc.reference import WbcReference
 from surefoot.wbc.tasks import law
 from surefoot.wbc.tasks.law import TaskLaw
-from surefoot.wbc.tasks.parameters import TaskGains, TaskWeights
 from surefoot.wbc.types import Array
 
 SPARED, SOFTENED = 0.04, 0.02

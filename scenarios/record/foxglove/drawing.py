@@ -29,9 +29,9 @@ from google.protobuf.message import Message
 from google.protobuf.timestamp_pb2 import Timestamp
 from numpy.typing import NDArray
 
-from surefoot.engine import mujoco
-from surefoot.planner.geometry import CORNERS
-from surefoot.planner.plan import WalkPlan
+from surefoot.engines.windowless import mujoco
+from surefoot.planner.geometry.plane import CORNERS
+from surefoot.planner.plan.plan import WalkPlan
 from surefoot.planner.types import Footstep
 from surefoot.scenarios import palette
 from surefoot.scenarios.log import PublishedSchema

@@ -15,8 +15,8 @@ from google.protobuf.timestamp_pb2 import Timestamp
 from numpy.typing import ArrayLike, NDArray
 
 from surefoot.models.types import RobotDescription
-from surefoot.planner.plan import WalkPlan
-from surefoot.planner.sample import PlanSample
+from surefoot.planner.plan.plan import WalkPlan
+from surefoot.planner.plan.sample import PlanSample
 from surefoot.planner.types import SolverStatus
 from surefoot.scenarios.errors import LogError
 from surefoot.scenarios.log import Log as LogFile
@@ -26,9 +26,9 @@ from surefoot.scenarios.record.foxglove import drawing as templates
 from surefoot.scenarios.record.foxglove.drawing import NOWHERE, Outlines, force_arrow, published, scene_data
 from surefoot.sim.measurement import Measurement
 from surefoot.sim.world import World
-from surefoot.wbc.model import RobotTerms
+from surefoot.wbc.body.model import RobotTerms
+from surefoot.wbc.contact.zmp import centre_of_pressure, measured_zmp
 from surefoot.wbc.types import SolveStatus, WbcReport
-from surefoot.wbc.zmp import centre_of_pressure, measured_zmp
 
 Array = NDArray[np.float64]
 Triple = tuple[float, float, float]

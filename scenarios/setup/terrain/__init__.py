@@ -3,7 +3,7 @@
 from collections.abc import Callable, Iterable
 from typing import Any, cast
 
-from surefoot.guard import Guarded, taken_for
+from surefoot.parts.guard import Guarded, taken_for
 from surefoot.planner.ground.terrain import Terrain, flat
 from surefoot.scenarios.errors import Problem
 from surefoot.scenarios.file.registries import TERRAIN_KINDS
@@ -26,7 +26,7 @@ class FlatKind(TerrainKind):
 _OWN: tuple[TerrainKind, ...] = (FlatKind(), StairsKind(), BlocksKind(), SlopeKind())
 
 KINDS = TERRAIN_KINDS.filled(TerrainKind, {kind.name: kind for kind in _OWN})
-"""Every kind of terrain by its name: these, and those of other packages (see `surefoot.plugins`)."""
+"""Every kind of terrain by its name: these, and those of other packages (see `surefoot.parts.plugins`)."""
 
 __all__ = ["KINDS", "Ground", "TerrainKind", "kind_of"]
 

@@ -9,7 +9,7 @@ import numpy as np
 
 from surefoot.errors import at_most
 from surefoot.models.facts import RobotFacts
-from surefoot.planner.geometry import sole_corners
+from surefoot.planner.geometry.plane import sole_corners
 from surefoot.planner.ground.terrain import Box, Site, Terrain, flat
 from surefoot.planner.ground.tiles import TILE, Tiles
 from surefoot.planner.ground.tilt import FAR, Tilt

@@ -14,7 +14,7 @@ from matplotlib.lines import Line2D
 from matplotlib.patches import Patch, Rectangle
 from numpy.typing import NDArray
 
-from surefoot.planner.geometry import headings, level_corners, points_seen_from, rotations
+from surefoot.planner.geometry.plane import headings, level_corners, points_seen_from, rotations
 from surefoot.planner.types import GRAVITY
 from surefoot.scenarios.errors import LogError
 from surefoot.scenarios.judge.scenario import scenario_of

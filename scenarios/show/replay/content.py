@@ -7,7 +7,7 @@ from typing import Literal
 import numpy as np
 from numpy.typing import NDArray
 
-from surefoot.planner.geometry import level_corners, rotations
+from surefoot.planner.geometry.plane import level_corners, rotations
 from surefoot.scenarios import palette
 from surefoot.scenarios.palette import Color
 from surefoot.scenarios.show.logview import FOOT_NAMES

@@ -7,7 +7,7 @@ from pathlib import Path
 import numpy as np
 from scipy.spatial.transform import Rotation
 
-from surefoot.engine import mujoco
+from surefoot.engines.windowless import mujoco
 from surefoot.models.convert import Coordinates
 from surefoot.scenarios.columns import Reads
 from surefoot.scenarios.errors import LogError

@@ -9,10 +9,10 @@ from surefoot.apps.bridge.limits import TORQUE_RATE, Limits, blended
 from surefoot.apps.bridge.line import Disturbance
 from surefoot.apps.bridge.messages import Start
 from surefoot.joints import JointCommand, Servo
-from surefoot.scenarios.setup.stance import pressed
+from surefoot.scenarios.setup.stances.start import pressed
 from surefoot.scenarios.setup.walk import resolve
 from surefoot.similarity import REFERENCE_SIZE
-from surefoot.wbc.statics import LEVER, standing_torque
+from surefoot.wbc.body.statics import LEVER, standing_torque
 
 pytestmark = pytest.mark.unit
 

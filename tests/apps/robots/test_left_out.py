@@ -11,8 +11,8 @@ from surefoot.models.names import SHIPPED
 from surefoot.models.registry import explain
 from surefoot.scenarios import catalogue
 from surefoot.scenarios.cli import program as cli
+from surefoot.scenarios.setup.checks.notes import agenda
 from surefoot.scenarios.setup.load import load
-from surefoot.scenarios.setup.notes import agenda
 from surefoot.scenarios.setup.walk import resolve
 
 ROBOTS = ("talos", "alexander")

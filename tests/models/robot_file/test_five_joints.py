@@ -13,8 +13,8 @@ from surefoot.apps.robots.examine import examine
 from surefoot.models import RobotError, RobotOptions, describe, explain
 from surefoot.models.pinocchio import pinocchio_model
 from surefoot.scenarios.run.run import run_scenario
-from surefoot.scenarios.setup.stance import body_of, feet_at
-from surefoot.wbc.ik import PostureTarget
+from surefoot.scenarios.setup.robot.body import body_of, feet_at
+from surefoot.wbc.body.ik import PostureTarget
 
 ROLLS = "lock: ['*_ankle_roll']\n"
 BESIDE = 0.04

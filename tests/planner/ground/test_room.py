@@ -3,7 +3,7 @@
 import numpy as np
 import pytest
 
-from surefoot.planner.geometry import frame_rotation
+from surefoot.planner.geometry.plane import frame_rotation
 from surefoot.planner.ground.stairs import Direction, Stairs
 from surefoot.planner.ground.terrain import Site, flat
 from surefoot.planner.steps.step import turned_room

@@ -4,11 +4,11 @@ import numpy as np
 import pytest
 
 from surefoot.errors import ParameterError
-from surefoot.planner.geometry import frame_rotation, sole_corners, sole_pose
+from surefoot.planner.geometry.orientation import sole_rotation
+from surefoot.planner.geometry.plane import frame_rotation, sole_corners, sole_pose
 from surefoot.planner.ground.blocks import LEVEL_STEPS, Blocks
 from surefoot.planner.ground.slope import Slope
 from surefoot.planner.ground.terrain import Site, flat
-from surefoot.planner.orientation import sole_rotation
 from surefoot.planner.parameters import PlannerParameters
 from surefoot.planner.steps.footsteps import plan_footsteps
 from surefoot.planner.steps.gait import GaitParameters

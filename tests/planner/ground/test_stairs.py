@@ -1,7 +1,7 @@
 import numpy as np
 import pytest
 
-from surefoot.planner.geometry import sole_corners
+from surefoot.planner.geometry.plane import sole_corners
 from surefoot.planner.ground.stairs import Direction, Stairs
 from surefoot.planner.ground.terrain import Site
 from surefoot.planner.steps.footsteps import plan_footsteps

@@ -3,7 +3,7 @@
 import numpy as np
 import pytest
 
-from surefoot.planner.geometry import frame_rotation
+from surefoot.planner.geometry.plane import frame_rotation
 from surefoot.planner.ground.terrain import Box, Site, Terrain
 from surefoot.planner.ground.tiles import AROUND, TILE, Tiles
 from surefoot.planner.steps.footsteps import plan_footsteps

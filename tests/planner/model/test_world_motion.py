@@ -1,7 +1,7 @@
 import numpy as np
 import pytest
 
-from surefoot.planner.geometry import frame_rotation
+from surefoot.planner.geometry.plane import frame_rotation
 from surefoot.planner.model.jerk import jerk_model, predict, zmp_response
 from surefoot.planner.model.world_motion import WorldMotion, advanced
 

@@ -7,7 +7,7 @@ import numpy as np
 import pytest
 from pendulum_walk import LEGS
 
-from surefoot.planner.geometry import quintic
+from surefoot.planner.geometry.plane import quintic
 from surefoot.planner.model.dcm import viability_weights
 from surefoot.planner.model.pendulum import com_after
 from surefoot.planner.parameters import PlannerParameters, RecoveryParameters, StepAdaptation

@@ -3,10 +3,10 @@ import pytest
 
 from surefoot.planner.model.leg_chain import LegChain, Link
 from surefoot.planner.parameters import LegInertia, PlannerParameters
+from surefoot.planner.plan.sampling import PlanSampler
 from surefoot.planner.planner import WalkingPlanner
 from surefoot.planner.plants import IdealFeet
 from surefoot.planner.references.leg_offset import softening
-from surefoot.planner.sampling import PlanSampler
 from surefoot.planner.steps.gait import GaitParameters
 from surefoot.planner.swing.leg_reach import LegReach
 from surefoot.planner.types import GRAVITY, CentroidalState, Foot

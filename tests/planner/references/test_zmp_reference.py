@@ -5,7 +5,8 @@ import pytest
 from hypothesis import given
 from hypothesis import strategies as st
 
-from surefoot.planner.geometry import frame_rotation, signed_distance, sole_corners
+from surefoot.maths.polygon import convex_hull
+from surefoot.planner.geometry.plane import frame_rotation, signed_distance, sole_corners
 from surefoot.planner.ground.terrain import flat
 from surefoot.planner.parameters import PlannerParameters
 from surefoot.planner.references.zmp_reference import (
@@ -20,7 +21,6 @@ from surefoot.planner.steps.gait import GaitParameters
 from surefoot.planner.steps.schedule import Schedule
 from surefoot.planner.swing.course import Ground
 from surefoot.planner.types import Foot, Footstep, PhaseKind
-from surefoot.polygon import convex_hull
 
 pytestmark = pytest.mark.unit
 

@@ -1,7 +1,7 @@
 import numpy as np
 import pytest
 
-from surefoot.planner.geometry import seen_from
+from surefoot.planner.geometry.plane import seen_from
 from surefoot.planner.ground.terrain import Box, Terrain, flat
 from surefoot.planner.steps.footsteps import plan_footsteps
 from surefoot.planner.steps.gait import Bout, GaitParameters

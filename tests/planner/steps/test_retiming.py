@@ -9,10 +9,10 @@ from hypothesis import given, settings
 from hypothesis import strategies as st
 
 from surefoot.planner.parameters import PlannerParameters, StepAdaptation
+from surefoot.planner.plan.sampling import PlanSampler
 from surefoot.planner.planner import WalkingPlanner
 from surefoot.planner.plants import IdealFeet
 from surefoot.planner.references.com_height import Rise, SmoothHeight
-from surefoot.planner.sampling import PlanSampler
 from surefoot.planner.steps.commands import Command
 from surefoot.planner.steps.gait import GaitParameters
 from surefoot.planner.types import CentroidalState, Foot, PhaseKind, Twist

@@ -5,7 +5,7 @@ from dataclasses import replace
 import numpy as np
 import pytest
 
-from surefoot.planner.geometry import sole_pose
+from surefoot.planner.geometry.plane import sole_pose
 from surefoot.planner.ground.stairs import Direction, Stairs
 from surefoot.planner.ground.terrain import Box, Site, Terrain, flat
 from surefoot.planner.parameters import PlannerParameters

@@ -7,7 +7,7 @@ from hypothesis import given, settings
 from hypothesis import strategies as st
 
 from surefoot.errors import ParameterError
-from surefoot.planner.geometry import frame_rotation, seen_from
+from surefoot.planner.geometry.plane import frame_rotation, seen_from
 from surefoot.planner.ground.terrain import flat
 from surefoot.planner.parameters import PlannerParameters
 from surefoot.planner.steps.commands import (

@@ -2,7 +2,7 @@ import numpy as np
 import pytest
 
 from surefoot.errors import ParameterError
-from surefoot.planner.geometry import sole_corners, sole_pose
+from surefoot.planner.geometry.plane import sole_corners, sole_pose
 from surefoot.planner.ground.stairs import Direction, Stairs
 from surefoot.planner.ground.terrain import Site, flat
 from surefoot.planner.parameters import PlannerParameters

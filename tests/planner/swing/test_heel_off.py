@@ -2,16 +2,16 @@ import numpy as np
 import pytest
 from scipy.spatial.transform import Rotation
 
+from surefoot.planner.geometry.orientation import sole_rotation
 from surefoot.planner.ground.terrain import flat
 from surefoot.planner.measured import Measured
 from surefoot.planner.model.leg_chain import LegChain, Link
-from surefoot.planner.orientation import sole_rotation
 from surefoot.planner.parameters import PlannerParameters
+from surefoot.planner.plan.sampling import PlanSampler
 from surefoot.planner.planner import WalkingPlanner
 from surefoot.planner.plants import IdealFeet
 from surefoot.planner.references.com_height import SmoothHeight
 from surefoot.planner.references.nominal_feet import NominalFeet
-from surefoot.planner.sampling import PlanSampler
 from surefoot.planner.state import WalkState
 from surefoot.planner.steps.gait import GaitParameters
 from surefoot.planner.swing.course import Ground

@@ -5,7 +5,7 @@ import pytest
 from pendulum_walk import LEGS
 
 from surefoot.planner.flight import swinging_to
-from surefoot.planner.geometry import frame_rotation
+from surefoot.planner.geometry.plane import frame_rotation
 from surefoot.planner.ground.terrain import Box, Terrain
 from surefoot.planner.measured import Measured
 from surefoot.planner.parameters import PlannerParameters

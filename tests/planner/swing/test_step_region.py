@@ -5,7 +5,7 @@ import pytest
 from hypothesis import example, given
 from hypothesis import strategies as st
 
-from surefoot.planner.geometry import seen_from, sole_corners
+from surefoot.planner.geometry.plane import seen_from, sole_corners
 from surefoot.planner.ground.terrain import flat
 from surefoot.planner.steps.footsteps import plan_footsteps
 from surefoot.planner.steps.gait import Bout, GaitParameters

@@ -29,7 +29,7 @@ from surefoot.scenarios.run import interrupts, run
 from surefoot.scenarios.setup import walk
 from surefoot.scenarios.setup.keys import scenario_problem
 from surefoot.scenarios.setup.load import load
-from surefoot.scenarios.setup.robot import Robots
+from surefoot.scenarios.setup.robot.robots import Robots
 
 pytestmark = pytest.mark.unit
 

@@ -8,7 +8,7 @@ from surefoot.scenarios.cli import published as printed
 from surefoot.scenarios.cli.starter import starter
 from surefoot.scenarios.file.registries import TERRAIN_KINDS
 from surefoot.scenarios.judge.metrics import METRICS, OWN
-from surefoot.scenarios.setup.criteria import published
+from surefoot.scenarios.setup.checks.criteria import published
 from surefoot.scenarios.setup.terrain import KINDS
 
 pytestmark = pytest.mark.unit

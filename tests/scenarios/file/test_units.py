@@ -8,8 +8,8 @@ import yaml
 from surefoot.scenarios.errors import ScenarioError
 from surefoot.scenarios.file.dumped import scenario_yaml
 from surefoot.scenarios.file.schema import Scenario
+from surefoot.scenarios.setup.checks.notes import notes
 from surefoot.scenarios.setup.load import read_scenario
-from surefoot.scenarios.setup.notes import notes
 from surefoot.scenarios.setup.walk import Walk
 
 pytestmark = pytest.mark.unit

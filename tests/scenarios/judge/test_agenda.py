@@ -13,8 +13,8 @@ from surefoot.scenarios.log import read
 from surefoot.scenarios.record.provenance import AGENDA_RECORD, Agenda, Event
 from surefoot.scenarios.run.run import run_scenario
 from surefoot.scenarios.run.skeleton import End
-from surefoot.scenarios.setup import notes
-from surefoot.scenarios.setup.gait import push_time
+from surefoot.scenarios.setup.checks import notes
+from surefoot.scenarios.setup.groups.gait import push_time
 from surefoot.scenarios.setup.load import load
 from surefoot.scenarios.setup.walk import resolve
 

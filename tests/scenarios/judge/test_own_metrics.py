@@ -10,9 +10,9 @@ from types import SimpleNamespace
 import numpy as np
 import pytest
 
-from surefoot import plugins
 from surefoot.errors import ParameterError
-from surefoot.plugins import PluginError
+from surefoot.parts import plugins
+from surefoot.parts.plugins import PluginError
 from surefoot.scenarios.errors import ScenarioError
 from surefoot.scenarios.judge.inspection import Inspection, inspect
 from surefoot.scenarios.judge.metric import RESERVED, Metric, metric, reduction

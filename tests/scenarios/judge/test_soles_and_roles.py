@@ -6,7 +6,7 @@ import numpy as np
 import pytest
 from scipy.spatial.transform import Rotation
 
-from surefoot.planner.geometry import corners, forward, headings, level_corners, rotations, sole_corners
+from surefoot.planner.geometry.plane import corners, forward, headings, level_corners, rotations, sole_corners
 from surefoot.planner.types import Foot, Footstep
 from surefoot.scenarios.judge.body import knees, leg, torso
 from surefoot.scenarios.judge.digest import RunView

@@ -1,7 +1,7 @@
 import pytest
 
+from surefoot.scenarios.setup.checks.notes import notes
 from surefoot.scenarios.setup.load import load as load_scenario
-from surefoot.scenarios.setup.notes import notes
 from surefoot.scenarios.setup.walk import Walk
 
 pytestmark = pytest.mark.unit

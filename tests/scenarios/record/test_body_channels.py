@@ -8,8 +8,8 @@ import pytest
 from surefoot.scenarios.log import LogWriter, read
 from surefoot.scenarios.record.body import Recorder
 from surefoot.scenarios.record.channels import Sizes
+from surefoot.wbc.contact.zmp import centre_of_pressure, measured_zmp
 from surefoot.wbc.types import ExternalLoad, SolveStatus
-from surefoot.wbc.zmp import centre_of_pressure, measured_zmp
 
 pytestmark = pytest.mark.unit
 

@@ -16,7 +16,7 @@ from surefoot.scenarios.record.foxglove.drawing import FINEST, METRES_PER_NEWTON
 from surefoot.scenarios.record.foxglove.views import RATE
 from surefoot.scenarios.run.run import run_scenario
 from surefoot.scenarios.setup.load import load as load_scenario
-from surefoot.scenarios.setup.robot import describe
+from surefoot.scenarios.setup.robot.robots import describe
 from surefoot.sim.bodies import BodyPoses
 from surefoot.sim.world import World
 

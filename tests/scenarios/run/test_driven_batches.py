@@ -7,9 +7,9 @@ import surefoot
 from surefoot.joints import JointCommand, Servo
 from surefoot.models import RobotOptions, describe
 from surefoot.scenarios.setup.load import load
-from surefoot.scenarios.setup.stance import pressed
+from surefoot.scenarios.setup.stances.start import pressed
 from surefoot.sim.world import World
-from surefoot.wbc.statics import LEVER, standing_torque
+from surefoot.wbc.body.statics import LEVER, standing_torque
 
 ARMS = {".*(shoulder|elbow|wrist).*": [14.0, 0.9]}
 ROBOTS = {

@@ -8,7 +8,7 @@ import pytest
 
 from surefoot.planner.types import Foot, PhaseKind
 from surefoot.scenarios.run.felt import GRAZE, STILL, FeltGait
-from surefoot.scenarios.setup.gait import PushPoint
+from surefoot.scenarios.setup.groups.gait import PushPoint
 
 pytestmark = pytest.mark.unit
 

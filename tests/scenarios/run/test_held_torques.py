@@ -1,6 +1,6 @@
 import pytest
 
-from surefoot.planner.sampling import PlanSampler
+from surefoot.planner.plan.sampling import PlanSampler
 from surefoot.scenarios.run import planning
 from surefoot.scenarios.run.simulation import Simulation
 from surefoot.scenarios.setup.load import load as load_scenario

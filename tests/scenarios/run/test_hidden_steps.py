@@ -6,7 +6,7 @@ import pytest
 from surefoot.scenarios.log import read
 from surefoot.scenarios.run.run import run_scenario
 from surefoot.scenarios.setup.load import load as load_scenario
-from surefoot.scenarios.setup.stance import SOLE_SINKAGE
+from surefoot.scenarios.setup.stances.start import SOLE_SINKAGE
 
 pytestmark = pytest.mark.physics
 

@@ -9,9 +9,9 @@ import pytest
 
 import surefoot
 from surefoot.scenarios.run.planning import RunFault
-from surefoot.scenarios.setup.stance import pressed
+from surefoot.scenarios.setup.stances.start import pressed
 from surefoot.sim.world import World
-from surefoot.wbc.statics import LEVER, standing_torque
+from surefoot.wbc.body.statics import LEVER, standing_torque
 
 pytestmark = pytest.mark.unit
 

@@ -14,10 +14,10 @@ from surefoot.scenarios.run.run import closed_loop
 from surefoot.scenarios.setup.walk import resolve
 from surefoot.sim.sensor_errors import CHEAP, GOOD, PERFECT
 from surefoot.wbc import controller
+from surefoot.wbc.contact.external import LoadObserver
 from surefoot.wbc.estimation import estimator
 from surefoot.wbc.estimation.estimate import Deviation, Estimate, Planned
 from surefoot.wbc.estimation.torques import TorqueWrench
-from surefoot.wbc.external import LoadObserver
 from surefoot.wbc.types import RobotState
 
 STAND = {"gait.steps": 0, "duration": 0.1}

@@ -6,7 +6,7 @@ import pytest
 
 import surefoot
 from surefoot.planner.steps import adaptation
-from surefoot.wbc import solvers
+from surefoot.wbc.qp import solvers
 from surefoot.wbc.types import SolveStatus
 
 pytestmark = pytest.mark.physics

@@ -23,7 +23,7 @@ from surefoot.scenarios.run.run import one_thread
 from surefoot.scenarios.setup import feasible
 from surefoot.scenarios.setup.feasible import made_ready
 from surefoot.scenarios.setup.load import load
-from surefoot.scenarios.setup.stance import body_of
+from surefoot.scenarios.setup.robot.body import body_of
 from surefoot.scenarios.setup.walk import resolve
 from surefoot.sim.world import World
 

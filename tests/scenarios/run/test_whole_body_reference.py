@@ -8,10 +8,10 @@ import pytest
 from pendulum_walk import walk_pendulum
 
 import surefoot
+from surefoot.planner.geometry.orientation import sole_rates, sole_rotation
 from surefoot.planner.model.time_scaling import TimeScaling
-from surefoot.planner.orientation import sole_rates, sole_rotation
+from surefoot.planner.plan.sampling import PlanSampler
 from surefoot.planner.planner import WalkingPlanner
-from surefoot.planner.sampling import PlanSampler
 from surefoot.planner.steps.gait import Bout, GaitParameters
 from surefoot.planner.types import FeetState, PhaseKind, Twist
 from surefoot.scenarios.run.reference import planned, whole_body_reference

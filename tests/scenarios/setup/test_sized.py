@@ -16,9 +16,9 @@ from surefoot.models.types import Robot, RobotOptions
 from surefoot.scenarios.errors import ScenarioError
 from surefoot.scenarios.file.schema import Rates, RobotSettings
 from surefoot.scenarios.run.run import run_scenario
+from surefoot.scenarios.setup.checks.notes import notes
 from surefoot.scenarios.setup.load import load, read_scenario
-from surefoot.scenarios.setup.notes import notes
-from surefoot.scenarios.setup.robot import Robots, nearer_landings
+from surefoot.scenarios.setup.robot.robots import Robots, nearer_landings
 from surefoot.scenarios.setup.sized import clock
 from surefoot.scenarios.setup.walk import Walk, resolve
 from surefoot.similarity import Similarity

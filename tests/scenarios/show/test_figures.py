@@ -27,7 +27,7 @@ from surefoot.scenarios.show.figures.motion import strips, support_bounds, true_
 from surefoot.scenarios.show.figures.page import FIGURES, page, plot, single
 from surefoot.scenarios.show.kit.shading import background, stretches
 from surefoot.scenarios.show.logview import LogView, MissingError
-from surefoot.wbc.cone import wrench_cone
+from surefoot.wbc.contact.cone import wrench_cone
 
 pytestmark = pytest.mark.unit
 

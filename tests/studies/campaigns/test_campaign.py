@@ -7,9 +7,9 @@ import pytest
 
 from surefoot.scenarios.errors import ScenarioError
 from surefoot.scenarios.file.schema import RobotSettings
-from surefoot.scenarios.setup import robot
 from surefoot.scenarios.setup.load import read_scenario
-from surefoot.scenarios.setup.robot import Robots
+from surefoot.scenarios.setup.robot import robots
+from surefoot.scenarios.setup.robot.robots import Robots
 from surefoot.studies.campaigns.campaign import read_campaign
 from surefoot.studies.campaigns.points import Record, cells
 from surefoot.studies.campaigns.shipped import shipped
@@ -252,8 +252,8 @@ def test_another_robot_is_looked_at_once_for_all_points(campaign, monkeypatch):
     """Its meshes take a third of a second, and where its knees bend as the other one's another."""
     looked = []
     for name in ("describe", "facts_of"):
-        plain = getattr(robot, name)
-        monkeypatch.setattr(robot, name, lambda *given, plain=plain, name=name: looked.append(name) or plain(*given))
+        plain = getattr(robots, name)
+        monkeypatch.setattr(robots, name, lambda *given, plain=plain, name=name: looked.append(name) or plain(*given))
     text = "scenario: walk\nset: {robot: g1, sized_for: humanoid100}\ngrid: {gait.steps: [%s]}\n"
     counts = []
     for steps in ("4", "4, 5, 6, 7"):

@@ -12,7 +12,7 @@ from surefoot.planner.swing.leg_reach import ANYWHERE
 from surefoot.planner.types import GRAVITY
 from surefoot.scenarios.log import read
 from surefoot.scenarios.run.run import run_scenario
-from surefoot.scenarios.setup.gait import push_time
+from surefoot.scenarios.setup.groups.gait import push_time
 from surefoot.scenarios.setup.load import load, read_scenario
 from surefoot.scenarios.setup.walk import resolve
 from surefoot.scenarios.show.logview import LogView

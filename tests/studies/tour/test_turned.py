@@ -7,7 +7,7 @@ import pytest
 
 from surefoot.planner.swing import leg_reach
 from surefoot.studies.tour import ride, rows, rules
-from surefoot.wbc.tasks.parameters import TaskWeights
+from surefoot.wbc.parameters import TaskWeights
 
 pytestmark = pytest.mark.physics
 

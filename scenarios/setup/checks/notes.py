@@ -1,0 +1,152 @@
+"""What to know of a scenario that passes the checks: keys without effect, odd times, and what its robot lacks."""
+
+from collections.abc import Iterable, Iterator
+
+from pydantic import BaseModel
+
+from surefoot.parts.plugins import PluginError
+from surefoot.scenarios.file.registries import DEFAULTS
+from surefoot.scenarios.file.schema import PendulumSettings, Rates, Scenario, TerrainSettings
+from surefoot.scenarios.file.units import meant
+from surefoot.scenarios.record.provenance import Agenda, AskedPush
+from surefoot.scenarios.setup.events import events
+from surefoot.scenarios.setup.groups.gait import EQUAL_STEPS, commanded
+from surefoot.scenarios.setup.sized import clock, default_of
+from surefoot.scenarios.setup.walk import Walk
+
+_PLANT_READS = {"pendulum": ("feedback",), "cart_table": ()}
+"""Keys of `pendulum` that each of its plants reads."""
+
+
+def notes(walk: Walk, driven: bool = False) -> tuple[str, ...]:
+    """List them, one sentence each; those of a robot that was told by hand how to walk if it was ``driven``."""
+    still = () if driven or walk.keys.gait.steps or commanded(walk.keys.gait) or walk.told else _without_steps(walk)
+    keys = (*_unlikely(walk), *_without_effect(walk), *_without_occasion(walk), *still, *_cut_short(walk))
+    return (*keys, *_left_out(walk))
+
+
+def agenda(walk: Walk) -> Agenda:
+    """What is to happen in a run, as its log tells it."""
+    said, driven = notes(walk), notes(walk, driven=True)
+    pushes = (*walk.pushes, *(push for _, push in walk.gait_pushes))
+    return Agenda(
+        events=events(walk),
+        bodies=tuple(dict.fromkeys(push.body for push in pushes)),
+        notes=said,
+        standing=tuple(note for note in said if note not in driven),
+        pushes=tuple(map(AskedPush.of, walk.pushes)),
+    )
+
+
+_LONG = 60.0
+"""Time from which a stand or a push may have been meant in milliseconds [s]."""
+
+
+def _unlikely(walk: Walk) -> Iterator[str]:
+    """Tell times that are what they say and were perhaps meant in another unit."""
+    times = {f"pushes.{index}.duration": push.duration for index, push in enumerate(walk.keys.pushes)}
+    for name, value in {"gait.initial_stand": walk.keys.gait.initial_stand, **times}.items():
+        hint = meant(value, "s", _LONG)
+        if hint:
+            yield f"{name} is {value:g} s{hint}"
+
+
+def _left_out(walk: Walk) -> Iterator[str]:
+    """Tell what the model of the robot has and the robot has not."""
+    if walk.walker.has_body:
+        yield from (f"robot {walk.robot.name}, {line}" for line in walk.robot.left_out)
+
+
+def _without_effect(walk: Walk) -> Iterator[str]:
+    keys = walk.keys
+    yield from _no_equal_steps(walk)
+    yield from _unshaped(walk)
+    walker = walk.walker
+    yield from () if walker.has_body else _not_felt(walk)
+    for group, name in walker.unfelt:
+        yield from (f"{key} has no effect on a {walker.thing}" for key in _given(walk, group, (name,)))
+    if walk.seat is not None:
+        yield from (f"{group} has no effect beside controller" for group in ("control", "wbc") if getattr(keys, group))
+    if walker.has_body:
+        return
+    for group in ("control", "motors", "plant", "wbc"):
+        if getattr(keys, group) is not None:
+            yield f"{group} has no effect on a pendulum"
+    if keys.rates.physics not in (Rates().physics, clock(Rates(), walk.size.time).physics):
+        yield "rates.physics has no effect on a pendulum"
+
+
+def _given(walk: Walk, group: str, names: Iterable[str]) -> Iterator[str]:
+    """Those of a group's keys, dotted, that are not the defaults of a robot of this size."""
+    settings = getattr(walk.keys, group)
+    model: type[BaseModel] = type(Scenario.model_fields[group].default)
+    return (f"{group}.{name}" for name in names if getattr(settings, name) != default_of(model, name, walk.size))
+
+
+def _no_equal_steps(walk: Walk) -> Iterator[str]:
+    """Tell keys of equal steps in a walk whose steps are given in another way."""
+    gait, commands = walk.keys.gait, walk.keys.commands
+    instead = next((f"gait.{name}" for name in ("velocity", "footsteps", "waypoints") if getattr(gait, name)), None)
+    names: tuple[str, ...] = EQUAL_STEPS
+    if instead is None and not gait.steps and any(not command.live for command in commands):
+        instead, names = "commands and gait.steps 0", EQUAL_STEPS[1:]
+    # Of a walk to a place it is the longest stride.
+    bound = gait.waypoints or any(command.place is not None for command in commands)
+    taken = [name for name in names if instead and not (bound and name == "step_length")]
+    yield from (f"{key} has no effect beside {instead}" for key in _given(walk, "gait", taken))
+
+
+def _not_felt(walk: Walk) -> Iterator[str]:
+    """Tell what a pendulum, which is one body, and its plant make nothing of."""
+    pendulum, load = walk.keys.pendulum, walk.keys.errors.payload
+    unread = [name for name in PendulumSettings.model_fields if name not in ("plant", *_PLANT_READS[pendulum.plant])]
+    yield from (f"{key} has no effect on pendulum.plant {pendulum.plant}" for key in _given(walk, "pendulum", unread))
+    bodies = {f"pushes.{index}.body": push.body for index, push in enumerate(walk.keys.pushes)}
+    bodies["errors.payload.body"] = None if load is None else load.body
+    if walk.keys.sensing.preset is None:  # else it follows from that, and is told with it
+        yield from (f"{key} has no effect on a pendulum" for key in _given(walk, "sensing", ("source", "options")))
+    yield from (f"{name} has no effect on a pendulum" for name, body in bodies.items() if body is not None)
+
+
+_STEPPING = ("step_length", "lateral_step", "turn", "swing_height", "apex_single", "apex_double", "heel_off")
+"""Keys of a gait that say how steps are taken."""
+
+_TIMES = ("single_support", "double_support", "initial_stand")
+"""Those that say when, by which a run lasts that has no duration of its own."""
+
+
+def _without_steps(walk: Walk) -> Iterator[str]:
+    """Tell what a robot that takes no step has no use for."""
+    names = (*_STEPPING, *(() if walk.keys.duration is None else _TIMES))
+    yield from (f"{key} has no effect on a robot that takes no step" for key in _given(walk, "gait", names))
+
+
+def _without_occasion(walk: Walk) -> Iterator[str]:
+    """Tell keys that shape what this scenario has not got: a climb, a load."""
+    keys, load = walk.keys, walk.keys.errors.payload
+    if keys.planner.rise is not None and keys.terrain.kind == "flat":
+        yield "planner.rise has no effect on level ground"
+    if keys.robot_options.payload_body is not None and keys.robot_options.payload_mass == 0.0:
+        yield "robot_options.payload_body has no effect without robot_options.payload_mass"
+    if load is not None and load.mass == 0.0:
+        yield "errors.payload has no effect without a mass"
+    if walk.walker.has_body and keys.sensing.preset is not None and keys.sensing.source == DEFAULTS["sensing"]:
+        yield f"sensing.preset has no effect beside sensing.source {keys.sensing.source}, which reads no sensor"
+
+
+def _unshaped(walk: Walk) -> Iterator[str]:
+    terrain = walk.keys.terrain
+    try:
+        shaping = ("kind", "friction", *walk.ground.kind.keys)
+        yield from walk.ground.kind.notes(walk.ground)
+    except PluginError:  # a package that is broken where the log is judged, which needs nothing of it
+        return
+    elsewhere = [name for name in TerrainSettings.model_fields if name not in shaping]
+    yield from (f"{key} has no effect on terrain.kind {terrain.kind}" for key in _given(walk, "terrain", elsewhere))
+
+
+def _cut_short(walk: Walk) -> Iterator[str]:
+    duration = walk.keys.duration
+    whole = walk.gait_duration
+    if duration is not None and duration < whole:
+        yield f"duration {duration:g} s ends before the gait does, which takes {whole:g} s"

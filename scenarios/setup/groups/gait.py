@@ -1,0 +1,202 @@
+"""The keys of a gait in the planner's terms, whichever way it is commanded, and the gait's place in time."""
+
+import math
+from collections.abc import Sequence
+from dataclasses import dataclass
+
+import numpy as np
+
+from surefoot.errors import ParameterError
+from surefoot.planner.geometry.plane import frame_rotation
+from surefoot.planner.parameters import PlannerParameters
+from surefoot.planner.steps.commands import Command, footstep_bouts, leading_foot, velocity_bouts, walk_of
+from surefoot.planner.steps.gait import GaitParameters
+from surefoot.planner.steps.source import CommandSource, steps_ordered
+from surefoot.planner.swing.step_region import StepRegion
+from surefoot.planner.types import Array, Foot, Footstep, PhaseInfo, PhaseKind, Twist
+from surefoot.scenarios.file import schema
+
+EQUAL_STEPS = ("steps", "step_length", "lateral_step", "turn")
+"""Keys of a gait of equal steps, which say nothing beside a velocity or footsteps."""
+
+_STOPPING = 3.0
+"""Steps that a robot takes at most after it was told to stop [-]."""
+
+_LARGEST_SOLE = (0.3, 0.15)
+"""Length and width of soles where a scenario says nothing of them; smaller ones do not make strides shorter [m]."""
+
+FINAL_STAND = 2.5
+"""Standing after the last double support that ends a run whose duration is not given, of the reference robot [s]."""
+
+
+def commanded(keys: schema.Gait) -> bool:
+    """Whether the gait is given by a velocity or by footsteps."""
+    return bool(keys.velocity or keys.footsteps)
+
+
+def uncommanded(keys: schema.Gait) -> schema.Gait:
+    """The same gait without velocity and footsteps."""
+    return keys.model_copy(update={"velocity": (), "footsteps": ()})
+
+
+def gait_of(keys: schema.Gait) -> GaitParameters:
+    """The gait in the planner's terms; the widths of its strides are not yet fitted to where feet may land.
+
+    Raises:
+        ParameterError: velocity or footsteps cannot be walked.
+    """
+    plain = GaitParameters(
+        steps=0 if commanded(keys) or keys.waypoints else keys.steps,
+        step_length=keys.step_length,
+        step_width=keys.step_width,
+        lateral_step=keys.lateral_step,
+        turn=keys.turn,
+        single_support=keys.single_support,
+        double_support=keys.double_support,
+        swing_height=keys.swing_height,
+        com_height=keys.com_height,
+        initial_stand=keys.initial_stand,
+        apex_ss=keys.apex_single,
+        apex_ds=keys.apex_double,
+        heel_off=keys.heel_off,
+    )
+    if keys.velocity:
+        bouts = velocity_bouts(velocities_of(keys.velocity), plain)
+        return walk_of(plain, bouts, leading_foot(bouts))
+    if keys.footsteps:
+        footsteps = footsteps_of(keys.footsteps)
+        return walk_of(plain, footstep_bouts(footsteps, plain), footsteps[0].foot)
+    return plain
+
+
+def longest_landing(gait: GaitParameters) -> float:
+    """How far ahead of or behind its stance foot a step lands at most, either foot leading [m]."""
+    places = [stride.landing(foot) for stride in gait.strides for foot in Foot]
+    return max((abs(float(place.position[0])) for place in places), default=0.0)
+
+
+def twist_of(command: schema.VelocitySettings) -> Twist:
+    """The velocity that a command asks for."""
+    return Twist(command.v_x, command.v_y, command.yaw_rate)
+
+
+def velocities_of(commands: Sequence[schema.VelocitySettings]) -> list[Command]:
+    """Velocity commands in the planner's terms."""
+    return [Command(twist_of(command), time=command.time) for command in commands]
+
+
+def footsteps_of(footsteps: Sequence[schema.FootstepSettings]) -> list[Footstep]:
+    """Footsteps in the planner's terms, in the frame between the start feet."""
+    return [Footstep(Foot[step.foot.upper()], np.array([step.x, step.y, 0.0]), step.yaw) for step in footsteps]
+
+
+def command_of(settings: schema.CommandSettings) -> Command:
+    """A command in the planner's terms; of a velocity that is given in part, the rest is zero."""
+    velocity = (settings.v_x, settings.v_y, settings.yaw_rate)
+    twist = (
+        None if velocity == (None, None, None) and not settings.march else Twist(*(value or 0.0 for value in velocity))
+    )
+    place = settings.place
+    places = None if place is None else (Twist(place.x, place.y, place.yaw),)
+    gait = (settings.single_support, settings.double_support, settings.swing_height)
+    return Command(twist, places, *gait, time=settings.time, march=settings.march is True)
+
+
+def waypoints_of(keys: schema.Gait, start: schema.Start) -> tuple[Twist, ...]:
+    """The places of `gait.waypoints` in the world frame."""
+    origin, rotation = np.array([start.x, start.y]), frame_rotation(start.yaw)
+    places = ((origin + rotation @ (to.x, to.y), to.yaw + start.yaw) for to in keys.waypoints)
+    return tuple(Twist(float(place[0]), float(place[1]), heading) for place, heading in places)
+
+
+def told_until(gait: GaitParameters, command: schema.CommandSettings) -> float:
+    """Time at which the robot stands after a command that lets it stop, or a little later [s]."""
+    return command.time + _STOPPING * gait.period
+
+
+def there_at(gait: GaitParameters, start: Twist, places: tuple[Twist, ...], parameters: PlannerParameters) -> float:
+    """Time at which the robot stands at the last of some places, where nothing comes between, or a little later [s]."""
+    sole = parameters.size.times(_LARGEST_SOLE, "m")
+    source = CommandSource(gait, step_region(parameters, sole, sole[1]), places=places, size=parameters.size)
+    return gait.initial_stand + gait.double_support + (steps_ordered(source, gait, start) + 1) * gait.period
+
+
+def step_region(
+    parameters: PlannerParameters,
+    sole: tuple[float, float],
+    shank_spacing: float,
+    leg_span: float = math.inf,
+    hip_width: float = 0.0,
+) -> StepRegion:
+    """Where commanded steps may land: within the planner's reach, and the legs' if they are given."""
+    near, far = parameters.reach_width
+    width = (max(near, shank_spacing), far)
+    gap = parameters.recovery.sole_gap
+    return StepRegion(parameters.reach_length, width, sole, gap, leg_span=leg_span, hip_width=hip_width)
+
+
+def push_time(gait: GaitParameters, push: schema.PushSettings) -> float:
+    """Begin [s] of a push, given directly or by step, phase and fraction of that phase.
+
+    Raises:
+        ParameterError: it has neither a time nor a step and a phase.
+    """
+    if push.time is not None:
+        return push.time
+    if push.step is None or push.phase is None:
+        raise ParameterError(("pushes",), "a push without a begin", "give time, or step, phase and fraction")
+    start, duration = phase_of(gait, push.step, push.phase)
+    return start + (push.fraction or 0.0) * duration
+
+
+@dataclass(frozen=True, slots=True)
+class PushPoint:
+    """The point of the gait at which a push begins, whenever that is reached.
+
+    Attributes:
+        step: number of the step.
+        kind: single support, or the double support before it.
+        fraction: of that phase that has gone by [-].
+        promised: whether the run is no pass unless it comes to act, wholly.
+    """
+
+    step: int
+    kind: PhaseKind
+    fraction: float
+    promised: bool = True
+
+    @classmethod
+    def of(cls, push: schema.PushSettings) -> "PushPoint | None":
+        """The point of a push; None of one that begins at a time."""
+        if push.step is None or push.phase is None:
+            return None
+        kind = PhaseKind.SINGLE if push.phase == "single" else PhaseKind.DOUBLE
+        return cls(push.step, kind, push.fraction or 0.0, not push.live)
+
+    def left(self, phase: PhaseInfo) -> float:
+        """Time until it is reached, on the clock of the gait; infinite in other phases [s]."""
+        here = phase.kind is self.kind and phase.leads_to == self.step
+        return self.fraction * phase.duration - phase.elapsed if here else math.inf
+
+    def __str__(self) -> str:
+        """In the words of a scenario."""
+        return f"fraction {self.fraction:g} of the {self.kind.name.lower()} support of step {self.step}"
+
+
+def push_force(push: schema.PushSettings, mass: float) -> Array:
+    """Force of a push, given directly or by its impulse per mass [kg], shape (3,) [N]."""
+    if push.impulse is None:
+        return np.array(push.force or np.zeros(3))
+    size = mass * push.impulse / push.duration
+    direction, elevation = push.direction or 0.0, push.elevation or 0.0
+    level = math.cos(elevation)
+    return size * np.array([level * math.cos(direction), level * math.sin(direction), math.sin(elevation)])
+
+
+def phase_of(gait: GaitParameters, step: int, phase: str) -> tuple[float, float]:
+    """Begin and duration [s] of a support phase of a footstep; step 1 is the first, its double support comes first."""
+    lift_off = gait.lift_off(step)
+    if phase == "single":
+        return lift_off, gait.single_support
+    before = gait.support_before(step)
+    return lift_off - before, before

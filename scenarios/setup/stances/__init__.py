@@ -1,0 +1,1 @@
+"""Stances and first steps that a walk asks of its robot, before it begins."""

@@ -1,0 +1,272 @@
+"""Whether the joints reach the stances that a walk goes through, and hold them, before it begins.
+
+Between touchdown and lift-off both feet stand, far apart: there joints come to the ends of their ranges. Where the CoM
+then is follows from the pendulum on its periodic walk: with the ZMP going evenly from one foot to the
+other in double support (duration T_d), and standing still in single support (T_s),
+
+    at the ends of a double support it is (1/2 + k) of the way between the feet from their middle,
+    along the walk  k = -S_d / (ω T_d (C_d + S_d C_s / S_s)),  sideways  k = -S_d / (ω T_d (C_d + S_d S_s / C_s)),
+
+with C, S = cosh, sinh of ω T / 2, by matching place and velocity where the supports meet. There one foot bears all,
+with a force that goes from its sole through the CoM (`surefoot.wbc.body.statics.bearing_torque`).
+"""
+
+import math
+from collections.abc import Iterator
+from dataclasses import dataclass, replace
+from typing import Any
+
+import numpy as np
+
+from surefoot.errors import ParameterError
+from surefoot.models.facts import knee_turn
+from surefoot.planner.geometry.plane import frame_rotation, sole_angles, sole_pose
+from surefoot.planner.steps.footsteps import plan_footsteps
+from surefoot.planner.steps.gait import GaitParameters
+from surefoot.planner.swing.heel_off import FootRoll, roll_span, rolls
+from surefoot.planner.types import GRAVITY, Array, Foot, Footstep
+from surefoot.scenarios.file.group import RecoverySettings
+from surefoot.scenarios.file.schema import Scenario
+from surefoot.scenarios.setup.robot.body import Body, body_of
+from surefoot.scenarios.setup.robot.robots import Robots
+from surefoot.scenarios.setup.stances.start import start_posture
+from surefoot.scenarios.setup.walk import Walk, resolve
+from surefoot.wbc.body.ik import PostureIk, PostureResult, PostureTarget
+from surefoot.wbc.body.statics import bearing_torque
+
+MISSING = 0.01
+"""What a stance may lack before a walk is refused: the controller lets trunk and CoM give way by as much [m, rad]."""
+
+SPARE = 0.06
+"""How far from the ends of their ranges the legs' joints are to stay in these stances: the walk itself needs some way
+beside what its periodic likeness does [rad]."""
+
+_LOOKED_AT = 1000
+"""Footsteps that are looked at; equal ones once."""
+
+_EXACTLY = 1e-4
+"""What a stance may lack whose knees are measured [m, rad]."""
+
+_AT_END = 0.01
+"""A joint that is nearer to the end of its range is at it [rad]."""
+
+
+@dataclass(frozen=True, slots=True)
+class Stance:
+    """Both feet on the ground at an end of a double support.
+
+    Attributes:
+        number: of the footstep that begins it.
+        soles: left and right sole, x y z, heading, pitch and roll, shape (2, 6) [m, rad].
+        com: where the CoM is, shape (3,) [m].
+        heading: of the trunk [rad].
+        landing: whether the foot has just landed, or the other one is about to leave.
+        bearing: the foot that bears all, 0 the left one.
+        rolled: whether the other one stands on its toe edge.
+    """
+
+    number: int
+    soles: Array
+    com: Array
+    heading: float
+    landing: bool
+    bearing: int
+    rolled: bool
+
+    @property
+    def moment(self) -> str:
+        """What its footstep does there."""
+        return "lands" if self.landing else "bears the other one's lift-off"
+
+
+def check_stances(walk: Walk, body: Body, q: Array) -> None:
+    """Refuse a walk some stance of which a body's joints do not reach or hold; ``q`` is its start, shape (nq,).
+
+    Raises:
+        ParameterError: says at which footstep, and which joint is at the end of its range or would need more than its
+            largest torque.
+    """
+    spare = np.where(body.leg_joints, SPARE, 0.0)
+    limits = replace(body.limits, lower=body.limits.lower + spare, upper=body.limits.upper - spare)
+    ik = replace(body, limits=limits).ik(body.robot.nominal_joint_positions)
+    for stance in _stances(walk):
+        found = _taken(ik, walk, stance, q)
+        if not found.reached and stance.rolled:
+            continue  # how far ankles come while a foot rolls is for the rehearsal to say
+        if not found.reached:
+            raise _unreached(walk, body, stance, found.q, found.error)
+        _check_torque(walk, body, stance, found.q)
+
+
+def least_bend(walk: Walk, body: Body) -> float | None:
+    """By how much the straighter knee is bent at least in a walk's stances [rad]; None where none is known beforehand.
+
+    Raises:
+        ParameterError: the legs do not reach where it begins.
+    """
+    q, ik = start_posture(walk, body), body.ik(body.robot.nominal_joint_positions)
+    knees = list(body.robot.joint_indices(body.robot.roles.knees))
+    straight, turn = body.robot.straight_joint_positions[knees], np.array([knee_turn(body.robot, k) for k in (0, 1)])
+    taken = [_taken(ik, walk, stance, q, _EXACTLY).q for stance in _stances(walk)]
+    return min((float((turn * np.abs(one[7:][knees] - straight)).min()) for one in taken), default=None)
+
+
+_WAYS = (-0.06, 0.03)
+"""How far lower and higher it is sought, of the leg's length [-]."""
+
+_DECIMALS = 4
+"""Of a height [m]."""
+
+
+_NO_STANCE: dict[str, Any] = dict.fromkeys(("name", "pushes", "faults", "criteria"), True) | {
+    "planner": {"recovery": set(RecoverySettings.model_fields) - {"sole_gap"}}
+}
+"""Of a scenario: what moves none of the stances that its gait goes through."""
+
+
+def bent_once(before: Scenario, after: Scenario, robots: Robots) -> float:
+    """The height of `bent_alike`, sought once for each pair of walks: the points of a campaign ask for the same two."""
+    key = before.model_dump_json(exclude=_NO_STANCE), after.model_dump_json(exclude=_NO_STANCE)
+    if key not in robots.heights:
+        robots.heights[key] = bent_alike(before, after)
+    return robots.heights[key]
+
+
+def bent_alike(before: Scenario, after: Scenario) -> float:
+    """CoM height with which the straightest knee is bent as that of another robot on its walk [m].
+
+    Equal legs alone do not say it. Where the CoM is beside the hips, how much of the mass is in the legs, how long the
+    soles are and how far apart the hips, all of that moves the hips over the feet. So both robots stand as they would.
+
+    Args:
+        before: the walk of the other one.
+        after: the same walk of the one in question, at about that height.
+
+    Returns:
+        The height; as it is where no stance is known beforehand, or none near it makes them alike.
+
+    Raises:
+        ParameterError: the other one cannot stand so.
+    """
+    from scipy.optimize import brentq
+
+    of, walk = resolve(before), resolve(after)
+    body, leg, height = body_of(walk.robot), walk.robot.leg_length, walk.gait.com_height
+
+    def bend(tried: float) -> float:
+        """With the CoM at a height; none where the legs do not reach."""
+        gait = after.gait.model_copy(update={"com_height": tried})
+        try:
+            return least_bend(replace(walk, keys=after.model_copy(update={"gait": gait})), body) or 0.0
+        except ParameterError:
+            return 0.0
+
+    wanted = least_bend(of, body_of(of.robot))
+    if wanted is None:
+        return height
+    low, high = (height + leg * way for way in _WAYS)
+    try:
+        found = brentq(lambda tried: bend(tried) - wanted, low, high, xtol=0.5 * 10.0**-_DECIMALS)
+    except ValueError:  # nowhere between them
+        return height
+    return round(float(found), _DECIMALS)
+
+
+def _taken(ik: PostureIk, walk: Walk, stance: Stance, q: Array, tolerance: float = MISSING) -> PostureResult:
+    """A stance, from where the walk begins, to a tolerance [m, rad]."""
+    begin, soles = q.copy(), stance.soles
+    begin[:2] = stance.com[:2]
+    begin[2] += stance.com[2] - walk.start_com_height
+    begin[3:7] = 0.0, 0.0, math.sin(0.5 * stance.heading), math.cos(0.5 * stance.heading)
+    target = PostureTarget(soles[:, :3], soles[:, 3], stance.com, stance.heading, soles[:, 4:])
+    return ik.solve(target, begin, tolerance=tolerance)
+
+
+def _check_torque(walk: Walk, body: Body, stance: Stance, q: Array) -> None:
+    robot = body.robot
+    needed = np.where(body.leg_joints, np.abs(bearing_torque(body.model, body.frames, q, stance.bearing)), 0.0)
+    worst = int(np.argmax(needed / robot.torque_limit))
+    if needed[worst] > robot.torque_limit[worst]:
+        raise _refusal(
+            walk,
+            stance,
+            f"joint '{robot.joint_names[worst]}' of robot '{robot.name}' would need {needed[worst]:.0f} N m when "
+            f"footstep {stance.number} {stance.moment}, its limit is {robot.torque_limit[worst]:.0f} N m",
+            "take shorter steps, or a higher gait.com_height",
+        )
+
+
+def _unreached(walk: Walk, body: Body, stance: Stance, q: Array, error: float) -> ParameterError:
+    robot = body.robot
+    left = np.minimum(q[7:] - robot.position_lower, robot.position_upper - q[7:])
+    ends = [robot.joint_names[j] for j in np.flatnonzero((left < SPARE + _AT_END) & body.leg_joints)]
+    what = (
+        f"robot '{robot.name}' cannot stand as it would when footstep {stance.number} {stance.moment}: "
+        f"{error:.3f} m or rad are missing"
+    )
+    if ends:
+        what += f" with {' and '.join(repr(name) for name in ends)} at the end of their range"
+    return _refusal(walk, stance, what, "take shorter or narrower steps, or another gait.com_height")
+
+
+def _refusal(walk: Walk, stance: Stance, what: str, right: str) -> ParameterError:
+    if np.any(stance.soles[:, 4:]):
+        return ParameterError(("terrain", "angle"), what, "give less steep ground, or another gait.com_height")
+    if walk.ground.terrain.has_edges and abs(float(np.ptp(stance.soles[:, 2]))) > 1e-3:
+        right = "give lower stairs, another gait.com_height, or feet that roll (gait.heel_off)"
+        return ParameterError(("terrain", "riser"), what, right)
+    return ParameterError(("gait", "step_length"), what, right)
+
+
+def _stances(walk: Walk) -> Iterator[Stance]:
+    """Both ends of each double support between two steps; of alike ones the first."""
+    gait = replace(walk.gait, steps=min(walk.gait.steps, _LOOKED_AT)) if not walk.gait.bouts else walk.gait
+    footsteps = plan_footsteps(gait, walk.ground.stance, walk.ground.terrain)
+    seen: set[tuple[float, ...]] = set()
+    for row in range(2, min(len(footsteps), _LOOKED_AT + 2)):
+        stands, lands, lifted = (footsteps[one] for one in (row - 1, row, row - 2))
+        way, lead = lands.position - stands.position, 0.5 * (lands.position - lifted.position)
+        R = frame_rotation(stands.yaw)
+        tilts = (tilt for step in (stands, lands) for tilt in sole_angles(step.normal, step.yaw))
+        kind = (*way[:2] @ R, way[2], *lead[:2] @ R, lands.yaw - stands.yaw, lands.foot, *tilts)
+        key = tuple(round(float(value), 3) for value in kind)
+        if key in seen:
+            continue
+        seen.add(key)
+        last = row == len(footsteps) - 1
+        for landing in (True,) if last else (True, False):
+            yield _stance(walk, stands, lands, (way, lead), row - 1, landing)
+
+
+def _stance(
+    walk: Walk, stands: Footstep, lands: Footstep, ways: tuple[Array, Array], number: int, landing: bool
+) -> Stance:
+    (way, lead), gait, toe = ways, walk.gait, 0.5 * walk.sole[0]
+    low = min(float(stands.position[2]), float(lands.position[2]))
+    ahead, aside = (0.5 + share for share in _shares(gait))
+    off = ahead * lead[:2] + aside * (way - lead)[:2]
+    middle = 0.5 * (stands.position + lands.position)[:2]
+    com = np.append(middle + (-off if landing else off), low + gait.com_height)
+    rolled = not landing and gait.heel_off > 0.0 and rolls(stands, lands, toe)
+    poses = {step.foot: sole_pose(step.position, step.yaw, step.normal) for step in (stands, lands)}
+    heading = float(np.mean([pose[3] for pose in poses.values()]))
+    if rolled:
+        poses[stands.foot] = _on_toe(poses[stands.foot], gait, toe)
+    soles = np.array([poses[foot] for foot in sorted(poses)])
+    return Stance(number, soles, com, heading, landing, int((stands if landing else lands).foot), rolled)
+
+
+def _on_toe(sole: Array, gait: GaitParameters, toe: float) -> Array:
+    """A sole, turned about its toe edge as far as it is when it leaves the ground, shape (6,) [m, rad]."""
+    span = roll_span(gait.double_support, 0.0, gait.single_support, gait.heel_off)
+    roll = FootRoll(Foot.LEFT, span.start, span.end, span.angle, toe)
+    centre, _ = roll.centre(0.0, sole, np.zeros(6))
+    return np.concatenate((centre, (sole[3], sole[4] + roll.evaluate(0.0)[0], sole[5])))
+
+
+def _shares(gait: GaitParameters) -> tuple[float, float]:
+    """The two k of the module's equation, along the walk and sideways [-]."""
+    omega = math.sqrt(GRAVITY / gait.com_height)
+    double, single = (0.5 * omega * time for time in (gait.double_support, gait.single_support))
+    C, S, t = math.cosh(double), math.sinh(double), math.tanh(min(single, 50.0))
+    return -S / (2.0 * double * (C + S / t)), -S / (2.0 * double * (C + S * t))

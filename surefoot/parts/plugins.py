@@ -1,0 +1,279 @@
+"""What other packages bring: objects found by entry point, and registered in the running process.
+
+A package says in its ``pyproject.toml`` what it has, and every command finds it:
+
+    [project.entry-points."surefoot.profiles"]
+    my-law = "my_package.laws:PROFILE"
+
+Nothing is imported before the name is asked for. Whatever such an object does, a `Guard` stands around its calls.
+"""
+
+import os
+import sys
+from collections.abc import Callable, Collection, Iterator, Mapping
+from contextlib import redirect_stdout
+from functools import lru_cache
+from importlib import import_module
+from typing import TYPE_CHECKING, TypeVar, cast
+
+from surefoot.errors import PluginError
+from surefoot.parts.guard import OWN_GUARD, OWN_PACKAGE, Guard, said
+
+if TYPE_CHECKING:
+    from importlib.metadata import EntryPoint, EntryPoints
+
+__all__ = ["OWN_PACKAGE", "Declared", "PluginError", "Registry", "entry_points", "package_of"]
+
+AFRESH = "install its package again where entry points have changed"
+"""What makes entry points known that were added or renamed in a package which is installed already."""
+
+T = TypeVar("T")
+S = TypeVar("S")
+
+
+class Registry(Mapping[str, T]):
+    """Objects of one kind by name: those of this package, those registered by code, those found by entry point.
+
+    A name of this package always means this package's object. The order of names is: own ones as given, then others
+    sorted.
+
+    Args:
+        group: group of entry points, such as ``surefoot.profiles``.
+        kind: class that every object must be an instance of; None for what is called, a function or a class.
+        own: the objects of this package.
+    """
+
+    def __init__(self, group: str, kind: type[T] | None, own: Mapping[str, T]) -> None:
+        self.group = group
+        self._kind = kind
+        self._own: dict[str, T] = dict(own)
+        self._added: dict[str, T] = {}
+        self._loaded: dict[str, T] = {}
+
+    @property
+    def _names(self) -> Collection[str]:
+        """Own names."""
+        return self._own
+
+    def _find(self, name: str) -> T | None:
+        """The object of an own name; None for others."""
+        return self._own.get(name)
+
+    def others(self) -> list[str]:
+        """Names that are not this package's own, sorted."""
+        found = {entry.name for entry in entry_points(group=self.group)} | set(self._added)
+        return sorted(found - set(self._names)) if found else []
+
+    @property
+    def hint(self) -> str:
+        """What may be wrong with a name that there is not, to be said after the names; empty where no package is."""
+        return f"; if a package brings it, {AFRESH}" if self.others() else ""
+
+    def add(self, name: str, thing: T) -> T:
+        """Register an object for the running process, over one of the same name that was added before.
+
+        Raises:
+            PluginError: the name is taken by this package, or the object is of another kind.
+        """
+        if name in self._names:
+            raise PluginError(f"'{name}' of {self.group} is surefoot's own", "choose another name")
+        self._added[name] = self._checked(thing, f"'{name}'")
+        return thing
+
+    def discard(self, name: str) -> None:
+        """Take back what was added, if it was."""
+        self._added.pop(name, None)
+
+    def __getitem__(self, name: str) -> T:
+        """The object of that name.
+
+        Raises:
+            KeyError: there is none.
+            PluginError: its package cannot be loaded, or gives something of another kind, or two packages have it.
+        """
+        if (own := self._find(name)) is not None:
+            return own
+        for known in (self._added, self._loaded):
+            if name in known:
+                return known[name]
+        entries = self._entries(name)
+        if not entries:
+            raise KeyError(name)
+        packages = [package_of(entry) for entry in entries]
+        if len(entries) > 1:
+            raise PluginError(f"'{name}' in {self.group} is of packages {' and '.join(packages)}", "remove one of them")
+        self._loaded[name] = thing = self._checked(_load(entries[0]), f"'{name}' of package {packages[0]}")
+        return thing
+
+    def __iter__(self) -> Iterator[str]:
+        return iter((*self._names, *self.others()))
+
+    def __len__(self) -> int:
+        return sum(1 for _ in self)
+
+    def __contains__(self, name: object) -> bool:
+        return any(name in known for known in (self._names, self._added, self._loaded)) or name in list(self)
+
+    def package(self, name: str) -> str:
+        """Which package brings a name; empty for what was registered by code, both where two bring it."""
+        if name in self._names:
+            return OWN_PACKAGE
+        return "" if name in self._added else " and ".join(map(package_of, self._entries(name)))
+
+    def guard(self, name: str) -> Guard:
+        """What stands around the calls of the object of a name, which is one of those that there are."""
+        if name in self._names:
+            return OWN_GUARD
+        package = self.package(name)
+        if package == OWN_PACKAGE:
+            return OWN_GUARD
+        kind = self.group.removeprefix(f"{OWN_PACKAGE}.").removesuffix("s")
+        return Guard(f"{kind} '{name}' of {f'package {package}' if package else 'this program'}")
+
+    def owns(self, thing: object) -> bool:
+        """Whether an object is one of this package's own."""
+        return any(thing is one for one in self._own.values())
+
+    def clashes(self) -> dict[str, PluginError]:
+        """What to say of each name of surefoot's own under which another package has something too.
+
+        The name goes on meaning surefoot's; the other thing is never looked at.
+        """
+        entries = entry_points(group=self.group)
+        brought = {entry.name for entry in entries if package_of(entry) == OWN_PACKAGE}
+        return {
+            entry.name: PluginError(
+                f"'{entry.name}' of package {package_of(entry)} in {self.group} has the name of one of surefoot's own",
+                "give it another name there, or remove it",
+            )
+            for entry in entries
+            if package_of(entry) != OWN_PACKAGE and (entry.name in brought or entry.name in self._names)
+        }
+
+    def refusal(self, name: str) -> PluginError | None:
+        """Why a name cannot be used as it is; None where nothing is wrong with it, or there is none.
+
+        Its package cannot be used, or has something else under a name of surefoot's own.
+        """
+        if name in self._names:
+            return self.clashes().get(name)
+        try:
+            _ = self[name]
+        except KeyError:
+            return None
+        except PluginError as refusal:
+            return refusal
+        return None
+
+    def _entries(self, name: str) -> "list[EntryPoint]":
+        """Entry points of a name; of several, the one of this package alone."""
+        found = [entry for entry in entry_points(group=self.group) if entry.name == name]
+        return [entry for entry in found if package_of(entry) == OWN_PACKAGE] or found
+
+    def _checked(self, thing: object, who: str) -> T:
+        wanted = "a function or a class" if self._kind is None else f"a {self._kind.__name__}"
+        if callable(thing) if self._kind is None else isinstance(thing, self._kind):
+            return cast("T", thing)
+        if self._kind is not None and isinstance(thing, type) and issubclass(thing, self._kind):
+            raise PluginError(f"{who} in {self.group} is the class {thing.__name__}", "register an instance of it")
+        raise PluginError(f"{who} in {self.group} is of type {type(thing).__name__}", f"it must be {wanted}")
+
+
+class Declared(Registry[T]):
+    """A registry whose own objects are brought by a module that need not be imported to know of them.
+
+    Args:
+        group: group of entry points.
+        said: what is said of each of its own, by name, in one line; None where its home alone knows its names.
+        home: module that brings the objects by `filled`, imported when one is asked for; empty where a room above has
+            it, which must have been imported before.
+    """
+
+    def __init__(self, group: str, said: Mapping[str, str] | None, home: str = "") -> None:
+        super().__init__(group, None, {})
+        self._said, self._home = said, home
+
+    @property
+    def said(self) -> Mapping[str, str]:
+        """What is said of each of its own, by name."""
+        if self._said is None:
+            self._come_home()
+        return self._said or {}
+
+    @property
+    def _names(self) -> Collection[str]:
+        return self.said
+
+    def _find(self, name: str) -> T | None:
+        if name in self.said and not self._own:
+            self._come_home()
+        return self._own.get(name)
+
+    def _come_home(self) -> None:
+        if self._home:
+            import_module(self._home)
+
+    def filled(
+        self, kind: type[S] | None, own: Mapping[str, S], said: Callable[[S], str] | None = None
+    ) -> "Declared[S]":
+        """The same registry with the objects of its own names.
+
+        Args:
+            kind: class of all objects, as of a registry.
+            own: the objects of this package.
+            said: what is said of one, where that was not declared.
+
+        Raises:
+            ValueError: these are not its own names.
+        """
+        if said is not None:
+            self._said = {name: said(one) for name, one in own.items()}
+        elif list(own) != list(self._said or ()):
+            raise ValueError(f"{self.group} has of its own {', '.join(self._said or ())}, not {', '.join(own)}")
+        made = cast("Declared[S]", self)
+        made._kind, made._own = kind, dict(own)
+        return made
+
+
+def entry_points(group: str) -> "EntryPoints":
+    """Every entry point of a group, of the packages on ``sys.path``."""
+    return _entry_points(tuple((place, _changed(place)) for place in sys.path))(group)
+
+
+@lru_cache(maxsize=1)
+def _entry_points(_places: tuple[tuple[str, int], ...]) -> "Callable[[str], EntryPoints]":
+    """Those of any group, found once, and again when a package was installed since, which alters one of the places."""
+    from importlib import metadata  # which imports what reads letters, and a command may need no package
+
+    found = metadata.entry_points()
+    return lru_cache(maxsize=None)(lambda group: found.select(group=group))
+
+
+def _changed(place: str) -> int:
+    try:
+        return os.stat(place or ".").st_mtime_ns  # noqa: PTH116  twenty paths for each look, and several looks a run
+    except OSError:
+        return 0
+
+
+def package_of(entry: "EntryPoint") -> str:
+    """Name of the package that an entry point is of, for messages."""
+    return entry.dist.name if entry.dist is not None else entry.value
+
+
+def _load(entry: "EntryPoint") -> object:
+    """What an entry point leads to; what its package prints meanwhile goes to where messages go.
+
+    Raises:
+        PluginError: it cannot be loaded, whatever the reason.
+    """
+    try:
+        with redirect_stdout(sys.stderr):
+            return entry.load()
+    except KeyboardInterrupt:
+        raise
+    except BaseException as error:
+        what = f"'{entry.name}' of package {package_of(entry)} cannot be loaded, {said(error)}"
+        # Of an editable package the entry points are those of its installation, whatever has been written since.
+        gone = isinstance(error, ImportError | AttributeError)
+        raise PluginError(what, f"mend or remove it, and {AFRESH}" if gone else "mend or remove it") from error

@@ -7,7 +7,6 @@ from collections.abc import Callable, Iterator, Sequence
 from functools import partial
 from itertools import groupby
 from pathlib import Path
-from statistics import fmean
 from typing import Any
 
 from measured import HEEL_OFF, HIDDEN, RESULTS, ROUGH, SENSED, WITHOUT, head, limit_of, rows, searches

@@ -85,7 +85,7 @@ def _begun(state: WalkState, landing: Footstep, time: float, feet: FeetState, as
     pose = sole_pose(feet.position[foot], yaw, leaving.normal)
     unsure, course = (feet.height_deviation, astray), state.schedule.step(state.phase.step).course
     model = state.model
-    return start_swing(foot, pose, target, time, state.left, course, model.parameters, unsure, model.hardest)
+    return start_swing(foot, (pose, target), (time, state.left), course, model.parameters, unsure, model.hardest)
 
 
 def _aimed(state: WalkState, swing: SwingTrajectory, landing: Footstep, time: float) -> SwingTrajectory:

@@ -154,8 +154,7 @@ class WalkingPlanner:
             view = rule(view)
         # TVMPC, or the law that stands in its place.
         self.motion = self._law.plan(problem_of(view))
-        walk, plan = planned(view, self.motion)
-        self.state = replace(walk, plan=plan)
+        self.state, plan = planned(view, self.motion)
         return plan
 
 
@@ -170,7 +169,9 @@ def planned(view: View, motion: Motion) -> tuple[WalkState, WalkPlan]:
         balance = replace(balance, shift=shift, catching=catching)
     if state.phase.swing_foot is not None:
         state = swinging_to(state, footsteps[0], measured, motion.solver is SolverStatus.HELD)
-    return state, _world_plan(view, state, motion, footsteps, balance)
+    plan = _world_plan(view, state, motion, footsteps, balance)
+    told = None if motion.memory is None else support.rotation @ motion.memory
+    return replace(state, plan=plan, told=told), plan
 
 
 def _world_plan(

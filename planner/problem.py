@@ -14,7 +14,7 @@ def problem_of(view: View) -> MotionProblem:
     state, window = view.state, view.window
     before = np.zeros((state.model.parameters.horizon, 2)) if state.plan is None else state.plan.jerk
     ahead = window.stiffness, window.omega, window.driving
-    return MotionProblem.after(before, view.local, ahead, _steps(view), view.support.rotation)
+    return MotionProblem.after(before, view.local, ahead, _steps(view), view.support.rotation, state.told)
 
 
 def _steps(view: View) -> StepContext:

@@ -121,6 +121,7 @@ class WalkState:
         memory: of the last look.
         orders: what the walk has been told.
         plan: the last one; None before the first.
+        told: vectors that the law's last motion left to be told, in the world frame; None where it left none.
     """
 
     model: WalkModel
@@ -136,6 +137,7 @@ class WalkState:
     memory: Memory = field(default_factory=Memory)
     orders: Orders = field(default_factory=Orders)
     plan: WalkPlan | None = None
+    told: Array | None = None
 
     @classmethod
     def start(cls, model: WalkModel, feet: FeetState) -> "WalkState":

@@ -2,15 +2,12 @@
 
 import difflib
 import importlib
-import json
-import shutil
-import sys
 from collections.abc import Callable, Iterable, Iterator
 from dataclasses import dataclass, replace
-from pathlib import Path
-from shlex import quote
 from types import ModuleType
 from typing import Any
+
+from surefoot.version import install_command
 
 Key = tuple[str | int, ...]
 """Path of a value in a scenario: keys and list indices."""
@@ -134,29 +131,6 @@ def require(module: str, extra: str, purpose: str, otherwise: str = "") -> Modul
     except ImportError:
         right = f"install it with: {install_command(extra)}" + (f", or {otherwise}" if otherwise else "")
         raise MissingExtraError(f"{purpose} needs the package {module}; {right}") from None
-
-
-def install_command(extra: str) -> str:
-    """What installs an extra of Surefoot where this Surefoot came from: its clone, what pip was given, or an index."""
-    here, clone = Path(sys.executable).parent, Path(__file__).parents[2]
-    pip = "pip" if Path(shutil.which("pip") or "").parent == here else f"{quote(sys.executable)} -m pip"
-    if (clone / "constraints.txt").is_file():
-        folder = Path() if Path.cwd() == clone else clone
-        return f"{pip} install -c {quote(str(folder / 'constraints.txt'))} -e {quote(f'{folder}[{extra}]')}"
-    source = _installed_from()
-    return f"{pip} install {quote(f'surefoot[{extra}] @ {source}' if source else f'surefoot[{extra}]')}"
-
-
-def _installed_from() -> str:
-    """Address of the archive, folder or repository that pip was given; empty when it came from an index."""
-    from importlib.metadata import PackageNotFoundError, distribution
-
-    try:
-        origin = json.loads(distribution("surefoot").read_text("direct_url.json") or "{}")
-    except PackageNotFoundError:
-        return ""
-    repository = origin.get("vcs_info", {}).get("vcs")
-    return f"{repository}+{origin['url']}" if repository else str(origin.get("url", ""))
 
 
 def nearest(name: str, valid: Iterable[str]) -> str:

@@ -63,6 +63,21 @@ class WholeBodyController:
         status, solution = controller.solve(qp)
         answer = controller.interpret(terms, solution)
 
+    Args:
+        model: the robot, with a free-flyer base.
+        frames: what to steer.
+        sole: contact geometry and friction.
+        limits: of the joints.
+        posture: joint positions the upper body returns to, shape (nj,) [rad].
+        leg_joints: which joints are leg joints, bool, shape (nj,).
+        control_period: time between two updates [s].
+        parameters: weights and gains.
+        limbs: shapes with the collision pairs that are kept apart; None looks at none.
+        arm_joints: which joints are the left and the right shoulder pitch; None for arms that do not swing.
+        arm_back: sign of the angles of these that swing the arms back [-].
+        driven: which joints somebody else drives, bool, shape (nj,); None for none.
+        tasks: others, after the default ones.
+
     Attributes:
         terms: of the state last observed.
         layout: where everything is in the QP.
@@ -72,6 +87,9 @@ class WholeBodyController:
         driven: rows of joints that somebody else drives; None without such joints.
         region: where the commanded ZMP may lie.
         solvers: in the order in which they are asked.
+
+    Raises:
+        ValueError: a frame does not exist, a sole has no extent, or a task no name of its own, size or weight.
     """
 
     def __init__(
@@ -90,59 +108,31 @@ class WholeBodyController:
         arm_back: tuple[float, float] = (1.0, 1.0),
         driven: NDArray[np.bool_] | None = None,
     ) -> None:
-        """Build the QP for a robot.
-
-        Args:
-            model: the robot, with a free-flyer base.
-            frames: what to steer.
-            sole: contact geometry and friction.
-            limits: of the joints.
-            posture: joint positions the upper body returns to, shape (nj,) [rad].
-            leg_joints: which joints are leg joints, bool, shape (nj,).
-            control_period: time between two updates [s].
-            parameters: weights and gains.
-            limbs: shapes with the collision pairs that are kept apart; None looks at none.
-            arm_joints: which joints are the left and the right shoulder pitch; None for arms that do not swing.
-            arm_back: sign of the angles of these that swing the arms back [-].
-            driven: which joints somebody else drives, bool, shape (nj,); None for none.
-            tasks: others, after the default ones.
-
-        Raises:
-            ValueError: a frame does not exist, a sole has no extent, or a task no name of its own, size or weight.
-        """
         size, limits = parameters.size, parameters.size.scaled(limits)
         if driven is not None and limbs is not None:
             limbs = without_driven(model, limbs, driven)
-        self.terms = RobotTerms(model, frames, WRENCH_UNIT * size.factor("N"))
-        self.layout = QpLayout(model.nv, CONE_ROWS, parameters.separation.slots if limbs is not None else 0)
-        self.qp: QpData = allocate(self.layout)
-        shapes = pin.GeometryModel() if limbs is None else limbs
-        self._separation = Separation(model, shapes, parameters.separation)
-        gaps = self.layout.separation
-        self._gap_rows = self.qp.A[gaps, : model.nv]
-        self._gap_lower = self.qp.bounds_lower[self.layout.variables :][gaps]
-        stops = AnkleStops(model, frames, limits), HipStops(model, frames, limits)
         leaning = frames.leaning is not None
         if leaning:
             sole = replace(sole, half_width=TOE_DEPTH * size.length)
-        cones, ankles = sole.cones(TOE_DEPTH * size.length), stops[0].columns
-        self._hard = HardConstraints(
-            self.qp, self.layout, cones, limits, parameters.contact, ankles, stops[0].rolling, leaning
-        )
+        self.terms = RobotTerms(model, frames, WRENCH_UNIT * size.factor("N"))
+        self.layout = QpLayout(model.nv, CONE_ROWS, parameters.separation.slots if limbs is not None else 0)
+        self.qp: QpData = allocate(self.layout)
+        self._separation = Separation(model, pin.GeometryModel() if limbs is None else limbs, parameters.separation)
+        gaps = self.layout.separation
+        self._gap_rows = self.qp.A[gaps, : model.nv]
+        self._gap_lower = self.qp.bounds_lower[self.layout.variables :][gaps]
+        ankles, cones = AnkleStops(model, frames, limits), sole.cones(TOE_DEPTH * size.length)
+        self._hard = HardConstraints(self.qp, self.layout, cones, limits, parameters.contact, ankles, leaning)
         self.region = SupportRegion(sole.half_length, sole.half_width, parameters.balance.polygon_share)
         self._region_contacts: tuple[tuple[bool, bool], int] | None = None
         self._contacts: ContactState | None = None
-        swings = arm_joints and parameters.arm_swing and not (driven is not None and driven[list(arm_joints)].any())
-        arms = ArmSwing(arm_joints, parameters.arm_swing, arm_back) if arm_joints and swings else None
-        weights, gains, edges = parameters.weights, parameters.gains, (sole.half_length, sole.half_width)
-        balance, waist = parameters.balance, self.terms.waist
-        default = default_tasks(
-            weights, gains, balance, self.region, edges, size.length, *stops, waist=waist, leaning=leaning
-        )
+        edges, hips = (sole.half_length, sole.half_width), HipStops(model, frames, limits)
+        default = default_tasks(parameters, self.region, edges, ankles, hips, self.terms.waist, leaning)
+        arms = _swinging(arm_joints, arm_back, parameters, driven)
         diagonal = (
-            Regularisation(weights, size.length),
-            Posture(weights, gains, posture, leg_joints, arms, driven),
-            ForceDistribution(weights, self.terms.wrench_unit),
+            Regularisation(parameters.weights, size.length),
+            Posture(parameters.weights, parameters.gains, posture, leg_joints, arms, driven),
+            ForceDistribution(parameters.weights, self.terms.wrench_unit),
         )
         self.tasks = TaskStack(self.qp, (*default, *tasks), diagonal)
         self.schedule = ContactSchedule(parameters.schedule, self.terms.mass * GRAVITY, control_period)
@@ -261,3 +251,15 @@ class WholeBodyController:
                 self._seen.append((foot, terms.shift_foot(foot, 0.0, 0.0)))
             else:
                 terms.unshift(foot)
+
+
+def _swinging(
+    joints: tuple[int, int] | None,
+    back: tuple[float, float],
+    parameters: WbcParameters,
+    driven: NDArray[np.bool_] | None,
+) -> ArmSwing | None:
+    """Arms that swing; None where none are named, they are not to swing, or somebody else drives one of them."""
+    if joints is None or not parameters.arm_swing or (driven is not None and driven[list(joints)].any()):
+        return None
+    return ArmSwing(joints, parameters.arm_swing, back)

@@ -1,7 +1,5 @@
 """Hard rows of the whole-body QP: floating-base dynamics, rigid contacts, wrench cones, torque and joint limits."""
 
-from collections.abc import Sequence
-
 import numpy as np
 
 from surefoot.maths import algebra, linear
@@ -12,6 +10,7 @@ from surefoot.wbc.contact.contacts import ContactState
 from surefoot.wbc.parameters import ContactGains
 from surefoot.wbc.qp.data import UNBOUNDED, QpData, QpLayout
 from surefoot.wbc.reference import WbcReference
+from surefoot.wbc.tasks.swing import AnkleStops
 from surefoot.wbc.types import Array
 
 
@@ -36,8 +35,7 @@ class HardConstraints:
         cones: tuple[Array, Array],
         limits: JointLimits,
         gains: ContactGains,
-        ankles: Sequence[Sequence[int]] = ((), ()),
-        tipping: tuple[int, ...] = (-1, -1),
+        stops: AnkleStops,
         leaning: bool = False,
     ) -> None:
         """Write the rows that change with the contacts only.
@@ -48,16 +46,15 @@ class HardConstraints:
             cones: of the sole and of its toe edge, shape (rows, 6) each.
             limits: of the joints.
             gains: of the contacts.
-            ankles: columns of the generalised velocity that belong to the left and to the right ankle.
-            tipping: of these, that of the joint that rolls each foot; -1 for none.
+            stops: where the ankles end; of these, the joints that rest, and those that roll each foot.
             leaning: whether feet roll as their legs do (see `surefoot.wbc.body.leaning`).
         """
         self._damping, self._levelling = gains.damping, gains.levelling
         self._softening, self._sinking = gains.softening, gains.sinking
         self._free = FREE if leaning else -1
         self._joints, self._unbounded = AccelerationBounds(limits), UNBOUNDED
-        self._ankles = np.array([list(columns) for columns in ankles], dtype=np.int64).reshape(2, -1)
-        self._tipping = np.array(tipping, dtype=np.int64)
+        self._ankles = np.array([list(columns) for columns in stops.columns], dtype=np.int64).reshape(2, -1)
+        self._tipping = np.array(stops.rolling, dtype=np.int64)
         self._torque_span, self._rates = np.concatenate([np.zeros(6), limits.torque]), np.zeros(layout.nv)
         n, first = layout.variables, layout.torque_rows.stop
         rows = [slice(first + k * layout.cone_rows, first + (k + 1) * layout.cone_rows) for k in (0, 1)]

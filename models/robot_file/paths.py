@@ -9,13 +9,14 @@ from pathlib import Path
 from urllib.parse import unquote
 
 from surefoot.models.types import RobotError
+from surefoot.version import install_command
 
 SCHEME = "package://"
 _PACKAGES = ("package", "model")
 """Schemes of what is in a package, by ROS and by Gazebo."""
 
-_EXTRA = ("jvrc_description", "fourier_robot_descriptions")
-"""Packages of the extra that brings more robots."""
+_EXTRA = ("example-robot-data", "jvrc_description", "fourier_robot_descriptions")
+"""Packages of the extra that brings robots."""
 
 _NAME = re.compile(r"[A-Za-z0-9_][A-Za-z0-9._-]{0,99}")
 """Of a package: it is a folder's name, and none above it."""
@@ -96,7 +97,7 @@ def _in_package(reference: str, path: str, beside: Path, key: str) -> Path:
         return first / rest
     what = f"{key} {reference}: package '{name}' is not installed"
     if name in _EXTRA:
-        raise RobotError((key,), what, "pip install 'surefoot[robots]'")
+        raise RobotError((key,), what, f"install it with: {install_command('robots')}")
     raise RobotError((key,), what, f"install it, or name in ROS_PACKAGE_PATH the folder that holds '{name}'")
 
 

@@ -31,43 +31,45 @@ class BoundedQp(DualMethod):
     Args:
         rows: of G, m.
         variables: n.
+
+    Attributes:
+        is_definite: whether the P taken last is positive definite.
     """
 
     def __init__(self, rows: int, variables: int) -> None:
         # No more than n normals are independent of each other.
         super().__init__(2 * variables + rows, variables + 1, MOST_ROUNDS, DEPENDENT)
-        self._n, self._rows, self._tolerance = variables, rows, TOLERANCE
+        self._n, self._rows, self._tolerance, self.is_definite = variables, rows, TOLERANCE, False
         self._U, self._R = np.zeros((variables, variables)), np.zeros((variables, variables))
         # Transposed, since both are used by columns.
         self._U_inverse, self._J = np.zeros((variables, variables)), np.zeros((variables, variables))
         self._share, self._values = np.zeros(rows), np.zeros(rows)
         self._x, self._normal, self._d, self._z = np.zeros((4, variables))
 
-    @property
-    def x(self) -> Array:
-        """The solution found last, in fresh memory, shape (n,)."""
-        return np.array(self._x)
-
-    def factorise(self, P: Array, G: Array) -> bool:
-        """Take P, shape (n, n), and G, shape (m, n), for the QPs that come; returns whether P is positive definite."""
+    def factorise(self, P: Array, G: Array) -> None:
+        """Take P, shape (n, n), and G, shape (m, n), for the QPs that come; `is_definite` says whether P allows it."""
         self._G = G
         self._U[:] = P
-        if linear.factor(self._U):
-            return False
+        self.is_definite = not linear.factor(self._U)
+        if not self.is_definite:
+            return
         linear.inverse_columns(self._U, self._U_inverse)
         linear.row_sizes(G, self._share)
         for i in range(self._rows):
             self._share[i] = 1.0 / self._share[i] if self._share[i] > 0.0 else 0.0
-        return True
 
-    def minimise(self, q: Array, h: Array, lower: Array, upper: Array) -> bool:
-        """Solve with q, shape (n,), h, shape (m,), and bounds, shape (n,); returns whether there is a solution."""
+    def minimised(self, q: Array, h: Array, lower: Array, upper: Array) -> Array | None:
+        """The solution for q, shape (n,), h, shape (m,), and bounds, shape (n,), in fresh memory; None without one."""
+        if not self.is_definite:
+            return None
         self._h, self._lower, self._upper = h, lower, upper
         self._J[:] = self._U_inverse
         self._x[:] = 0.0
         linear.multiply(self._J, q, self._d)
         linear.add_transposed_product(-1.0, self._J, self._d, self._x)
-        return self.iterate() >= 0 and math.isfinite(linear.dot(self._x, self._x))
+        if self.iterate() < 0 or not math.isfinite(linear.dot(self._x, self._x)):
+            return None
+        return np.array(self._x)
 
     def _violated(self) -> int:
         """Bounds come before rows."""

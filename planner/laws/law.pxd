@@ -6,12 +6,12 @@ cdef class StepContext:
     cdef readonly object lower, upper
 
 cdef class MotionProblem:
-    cdef readonly object state, stiffness, omega, reference, steps, last_jerk, fallback, rotation
+    cdef readonly object state, stiffness, omega, reference, steps, last_jerk, fallback, rotation, memory
 
 cdef class Motion:
     cdef readonly object jerk, shifts, zmp_slack, terminal_slack, solver
     cdef readonly bint infeasible
-    cdef readonly object qps
+    cdef readonly object qps, memory
 
 cdef class BuiltQps:
     cdef readonly object axes, jerk, shifts

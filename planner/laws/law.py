@@ -58,7 +58,8 @@ class MotionProblem:
         last_jerk: jerk applied until now, u(-1), shape (2,) [m/s^3].
         fallback: the previous jerk sequence shifted by one sample, to go on with when no solver answers, shape (N, 2)
             [m/s^3].
-        rotation: plan frame to world, for a law that remembers something from tick to tick, shape (2, 2) [-].
+        rotation: plan frame to world, shape (2, 2) [-].
+        memory: vectors that the law's last motion left to be told, shape (k, 2) or (2,); None where it left none.
     """
 
     state: Array
@@ -69,6 +70,7 @@ class MotionProblem:
     last_jerk: Array
     fallback: Array
     rotation: Array
+    memory: Array | None = None
 
     @classmethod
     def after(
@@ -78,6 +80,7 @@ class MotionProblem:
         window: tuple[Array, Array, ZmpReference],
         steps: StepContext,
         rotation: Array,
+        memory: Array | None = None,
     ) -> "MotionProblem":
         """That after a jerk sequence, of which the jerk and the fallback follow.
 
@@ -87,10 +90,12 @@ class MotionProblem:
             window: stiffness and omega, shape (N + M + 1,) each [1/s^2, 1/s], and reference.
             steps: as of the attribute.
             rotation: likewise, shape (2, 2) [-].
+            memory: vectors that the law's last motion left, turned to the world frame.
         """
         turned, (stiffness, omega, reference) = np.zeros((len(before) + 1, 2)), window
+        seen = None if memory is None else memory @ rotation
         linear.fused_product(before, rotation, turned[: len(before)])
-        return cls(state, stiffness, omega, reference, steps, turned[0], turned[1:], rotation)
+        return cls(state, stiffness, omega, reference, steps, turned[0], turned[1:], rotation, seen)
 
 
 @dataclass(frozen=True)
@@ -106,6 +111,8 @@ class Motion:
         solver: the worse status of the two axes.
         infeasible: a hard problem had no solution and was softened.
         qps: the problems that were solved, x and y axis, to be looked at or stored; none where a law needs no QP.
+        memory: vectors that the law is to be told in the next tick, in the frame of its plan, shape (k, 2) or (2,); a
+            law itself remembers nothing.
     """
 
     jerk: Array
@@ -115,10 +122,11 @@ class Motion:
     solver: SolverStatus = SolverStatus.SOLVED
     infeasible: bool = False
     qps: Sequence[Qp] = ()
+    memory: Array | None = None
 
 
 class MotionPlanner(Protocol):
-    """A law of motion: the one thing in which the planner profiles differ."""
+    """A law of motion: the one thing in which the planner profiles differ. The same problem has the same motion."""
 
     def plan(self, problem: MotionProblem) -> Motion:
         """The jerk over the horizon, and where the next footsteps go."""

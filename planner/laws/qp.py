@@ -93,7 +93,6 @@ class AxesSolver:
     def __init__(self, solvers: tuple[str, ...]) -> None:
         self._solvers = solvers
         self._bounded, self._shape = BoundedQp(0, 0), (0, 0)
-        self._is_factorised = False
 
     def solve(self, x: Qp, y: Qp) -> tuple[QpSolution, QpSolution]:
         """Their solutions, as those of `solve`."""
@@ -108,13 +107,12 @@ class AxesSolver:
     def _factorise(self, qp: Qp) -> None:
         if self._shape != qp.G.shape:
             self._bounded, self._shape = BoundedQp(*qp.G.shape), qp.G.shape
-        self._is_factorised = self._bounded.factorise(np.ascontiguousarray(qp.P), np.ascontiguousarray(qp.G))
+        self._bounded.factorise(np.ascontiguousarray(qp.P), np.ascontiguousarray(qp.G))
 
     def _solved(self, qp: Qp) -> QpSolution:
         vectors = (np.ascontiguousarray(vector) for vector in (qp.q, qp.h, qp.lower, qp.upper))
-        if self._is_factorised and self._bounded.minimise(*vectors):
-            return QpSolution(qp, self._bounded.x, 0)
-        return solve(qp, self._solvers)
+        z = self._bounded.minimised(*vectors)
+        return solve(qp, self._solvers) if z is None else QpSolution(qp, z, 0)
 
 
 def _wrapped(qp: Qp, name: str) -> Array | None:

@@ -70,7 +70,7 @@ def preview_gains(
 
 
 class ZmpPreview:
-    """The law in closed loop with its own model, over the horizon; only its summed error goes on from tick to tick.
+    """The law in closed loop with its own model, over the horizon; its memory is the summed error of both axes.
 
     It knows a pendulum of constant height, no bounds and no footstep shifts.
 
@@ -84,18 +84,16 @@ class ZmpPreview:
         self._stiffness = softening(parameters.leg) * GRAVITY / com_height
         weight = parameters.size.times(_JERK_WEIGHT, "s^6")
         self._gains = preview_gains(parameters.sample_time, self._stiffness, min(_PREVIEW, parameters.preview), weight)
-        self._summed = np.zeros(2)
 
     def plan(self, problem: MotionProblem) -> Motion:
         """See `MotionPlanner`."""
         p, gains, point = self._parameters, self._gains, problem.reference.point
         ahead = np.lib.stride_tricks.sliding_window_view(point[1:], len(gains.preview), axis=0)
         feedforward = ahead[: p.horizon] @ gains.preview
-        summed = self._summed @ problem.rotation
+        summed = np.zeros(2) if problem.memory is None else problem.memory
         jerk = np.column_stack([self._axis(problem, axis, feedforward[:, axis], summed[axis]) for axis in range(2)])
         error = problem.state[:, 0] - problem.state[:, 2] / self._stiffness - point[0]
-        self._summed = problem.rotation @ (summed + error)
-        return Motion(jerk, np.zeros((2, 2)), np.zeros(2), np.zeros(2))
+        return Motion(jerk, np.zeros((2, 2)), np.zeros(2), np.zeros(2), memory=summed + error)
 
     def _axis(self, problem: MotionProblem, axis: int, feedforward: Array, summed: float) -> list[float]:
         """Jerks of one axis; in plain numbers, which are fast."""

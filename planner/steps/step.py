@@ -311,4 +311,4 @@ def _hardest(swing: SwingTrajectory, way: float) -> float:
 def unit_swing(samples: float, climb: float, course: SwingCourse, parameters: PlannerParameters) -> SwingTrajectory:
     """A swing of so many samples from the origin at time 0 to a footstep one metre ahead that lies higher [m]."""
     end = np.array([1.0, 0.0, climb, 0.0, 0.0, 0.0])
-    return start_swing(Foot.LEFT, np.zeros(6), end, 0.0, samples, course, parameters)
+    return start_swing(Foot.LEFT, (np.zeros(6), end), (0.0, samples), course, parameters)

@@ -153,5 +153,5 @@ def _flown(start: Array, end: Array, course: SwingCourse, samples: float, parame
     It comes to rest there, as if the touchdown had no speed: with it the sole is higher by part of a millimetre.
     """
     at_rest = replace(parameters, search=replace(parameters.search, touchdown_speed=0.0))
-    swing = start_swing(Foot.LEFT, start, end, 0.0, samples, course, at_rest)
+    swing = start_swing(Foot.LEFT, (start, end), (0.0, samples), course, at_rest)
     return swing.positions(np.linspace(0.0, swing.touchdown_time, _INSTANTS))

@@ -267,10 +267,8 @@ class SwingCourse:
 
 def start_swing(
     foot: Foot,
-    pose: Array,
-    footstep: Array,
-    start: float,
-    samples: float,
+    ends: tuple[Array, Array],
+    support: tuple[float, float],
     course: SwingCourse,
     parameters: PlannerParameters,
     unsure: tuple[float, float] = (0.0, 0.0),
@@ -280,16 +278,15 @@ def start_swing(
 
     Args:
         foot: the foot that swings.
-        pose: lift-off position and angles, shape (6,).
-        footstep: touchdown position and angles, shape (6,).
-        start: when its single support begins [s].
-        samples: how long that lasts [samples].
+        ends: lift-off and touchdown position and angles, shape (6,) each.
+        support: when its single support begins [s], and how long that lasts [samples].
         course: of the swing; its instants are on a grid of samples.
         parameters: of the planner.
         unsure: standard deviation of its height over the stance foot, and how high that is believed over its footstep;
             it stands, so that the ground is there. Of the truth, whose deviation is zero, neither counts [m].
         lifting: vertical acceleration that it is not to exceed where it is replanned [m/s^2].
     """
+    (pose, footstep), (start, samples) = ends, support
     t, (search, aim), begin = parameters.sample_time, parameters.search.unsure(*unsure), pose.tolist()
     target = np.array(footstep)
     target[2] -= aim

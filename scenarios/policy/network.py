@@ -10,8 +10,8 @@ import numpy as np
 from numpy.typing import NDArray
 
 from surefoot.errors import ParameterError
-from surefoot.scenarios.errors import install_command
 from surefoot.scenarios.policy.contract import KEY
+from surefoot.version import install_command
 
 MOST_BYTES = 1 << 30
 """A larger file is no network of a walker."""

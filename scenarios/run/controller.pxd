@@ -2,6 +2,7 @@ from surefoot.joints cimport JointCommand
 from surefoot.readings cimport Reading, Readings
 from surefoot.scenarios.run.sensed cimport Senses
 from surefoot.wbc.estimation.estimate cimport Estimate
+from surefoot.wbc.types cimport WbcReport
 
 cdef class Controller:
     cdef readonly object walk, body, whole_body, planning, posture, state, report, terms, wrench, sample, spent
@@ -14,6 +15,7 @@ cdef class Controller:
 
     cdef _stand(self, q)
     cpdef step(self, readings, command=*, driven_joints=*)
+    cdef _decide(self, WbcReport report)
     cdef _observe(self, readings, double now)
     cpdef _touching(self)
     cdef _tell(self, driven, JointCommand told)

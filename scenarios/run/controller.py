@@ -210,15 +210,21 @@ class Controller:
         self._landed, self._load = report.active, report.load
         # A named tuple's own constructor goes through Python.
         self.spent = tuple.__new__(Spent, (state_time, plan_time, report.build_time, report.solve_time))
-        # What falls gives way; the controller goes on, unheard, since estimator and planner take its contacts.
+        self._decide(report)
+        return self._command
+
+    def _decide(self, report: WbcReport) -> None:
+        """Make the command of a report.
+
+        What falls gives way; the controller goes on, unheard, since estimator and planner take its contacts.
+        """
         state, torque = self.state, report.torque
-        if self._giving_way is not None and planning.plan.status.falling:
+        if self._giving_way is not None and self.planning.plan.status.falling:
             torque = self._giving_way.torque(state.q[7:], state.v[6:])
         if self._output.servo:
             self._command = self._output.command(torque, state.q[7:], state.v[6:], report.acceleration[6:])
         elif self._command.torque is not torque:
             self._command = JointCommand(torque)
-        return self._command
 
     def _observe(self, readings: "Readings | Measurement", now: float) -> None:
         """Find the state and its terms."""

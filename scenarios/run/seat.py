@@ -116,8 +116,8 @@ def seat_loop(walk: Walk, writer: LogWriter, parts: Parts | None = None) -> Clos
         SeatView(writer, world, walk.robot, walk.rates.control),
     )
     sensors = sensors_of(walk, plant, senses)
-    sensed = ReadingsRecorder(writer, sizes) if senses else None
-    walker = Seated(walk, controller, plant, sensors, recorder, view, sensed, coupling_of(writer, sizes, plant))
+    read = None if sensors is None else (sensors, ReadingsRecorder(writer, sizes))
+    walker = Seated(walk, controller, plant, read, recorder, view, coupling_of(writer, sizes, plant))
     return ClosedLoop.of(walk, walker, recorder)
 
 
@@ -201,10 +201,9 @@ class Seated(Moved):
         walk: what is run.
         controller: that has the seat, reset to the start.
         plant: what moves the robot, likewise.
-        sensors: that the controller reads; None for one that is given the measurement.
+        sensors: that the controller reads, and what records them; None for one that is given the measurement.
         recorder: of its channels.
         view: of what MCAP viewers show.
-        sensed: records what sensors say; None where nobody reads them.
         coupled: records how joints follow others; None of a robot that has no such joints, and of another plant.
 
     Attributes:
@@ -219,16 +218,16 @@ class Seated(Moved):
         walk: Walk,
         controller: SeatedController,
         plant: Plant,
-        sensors: "SensorSuite | Sensors | None",
+        sensors: "tuple[SensorSuite | Sensors, ReadingsRecorder] | None",
         recorder: SeatRecorder,
         view: SeatView,
-        sensed: ReadingsRecorder | None,
         coupled: CouplingRecorder | None,
     ) -> None:
-        super().__init__(walk, plant, sensors, known=False)
+        read, self._sensed = sensors or (None, None)
+        super().__init__(walk, plant, read, known=False)
         self._guard = CONTROLLERS.guard(name_of(walk))
         self.mind, self._recorder, self._view = controller, recorder, view
-        self._sensed, self._coupled = sensed, coupled
+        self._coupled = coupled
         self._felt = FeltGait(walk.true_mass, walk.size)
         self._waiting, self._rate = deque(velocities(walk)), walk.rates.control
         self._twist, self._heard = STANDING, False

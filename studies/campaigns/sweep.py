@@ -11,7 +11,6 @@ from typing import TYPE_CHECKING, Any, Literal, get_args
 
 import yaml
 
-from surefoot.scenarios.errors import install_command
 from surefoot.scenarios.output import write_whole
 from surefoot.scenarios.run.processes import interrupts_ignored
 from surefoot.scenarios.show.console import TerminalLine
@@ -27,6 +26,7 @@ from surefoot.studies.campaigns.table import (
     wilson,
     write_table,
 )
+from surefoot.version import install_command
 
 if TYPE_CHECKING:
     from rich.progress import ProgressColumn

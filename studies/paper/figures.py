@@ -129,8 +129,8 @@ def position(axes: Axes, views: Views, axis: int) -> None:
     """Reference ZMP, measured ZMP, CoM and the bounds of the support along an axis."""
     ((_, view),) = views
     draw_support(axes, view, axis)
-    _along(axes, view, "/contact", "zmp", axis, "ZMP measured", palette.ZMP, linewidth=1.3)
-    _along(axes, view, "/truth", "com", axis, "CoM", palette.COM, linewidth=1.4)
+    _along(axes, view, ("/contact", "zmp"), axis, "ZMP measured", palette.ZMP, linewidth=1.3)
+    _along(axes, view, ("/truth", "com"), axis, "CoM", palette.COM, linewidth=1.4)
     _around_reference(axes, view, axis, 0.12, 0.1)
 
 
@@ -139,14 +139,15 @@ def zmp_of_several(axes: Axes, views: Views, axis: int) -> None:
     longest = max((view for _, view in views), key=lambda view: view.end)
     draw_support(axes, longest, axis)
     for (label, view), color in zip(views, SEVERAL, strict=False):
-        _along(axes, view, "/contact", "zmp", axis, f"ZMP, {label}", color, linewidth=0.8)
+        _along(axes, view, ("/contact", "zmp"), axis, f"ZMP, {label}", color, linewidth=0.8)
     _around_reference(axes, longest, axis, 0.06, 0.08)
 
 
 def _along(
-    axes: Axes, view: LogView, topic: str, name: str, axis: int, label: str, color: palette.Color, **style: Any
+    axes: Axes, view: LogView, field: tuple[str, str], axis: int, label: str, color: palette.Color, **style: Any
 ) -> None:
-    kit.curve(axes, view.time(topic), view.field(topic, name, 3)[:, axis], label, color, POINTS, **style)
+    """Draw an axis of a field of three, which is told by its topic and its name."""
+    kit.curve(axes, view.time(field[0]), view.field(*field, 3)[:, axis], label, color, POINTS, **style)
 
 
 def _around_reference(axes: Axes, view: LogView, axis: int, room: float, share: float) -> None:
@@ -181,7 +182,7 @@ def jerk(axes: Axes, views: Views, axis: int) -> None:
 def height(axes: Axes, views: Views) -> None:
     """Height of the CoM."""
     ((_, view),) = views
-    _along(axes, view, "/truth", "com", 2, "CoM height", palette.COM, linewidth=1.4)
+    _along(axes, view, ("/truth", "com"), 2, "CoM height", palette.COM, linewidth=1.4)
     _along(
         axes, view, "/reference", "com", 2, "its reference", palette.COM_PLANNED, linestyle=kit.DASHED, linewidth=0.6
     )

@@ -26,7 +26,7 @@ ROOMS = ("planner", "wbc", "sim", "models", "scenarios", "studies", "apps")
 def classes():
     """Names of all classes of the code, each with those of its methods."""
     found = {}
-    for files in ((ROOT / "surefoot").glob("*.py"), *((ROOT / room).rglob("*.py") for room in ROOMS)):
+    for files in ((ROOT / "surefoot").rglob("*.py"), *((ROOT / room).rglob("*.py") for room in ROOMS)):
         for file in files:
             for node in ast.parse(file.read_text(encoding="utf-8")).body:
                 if isinstance(node, ast.ClassDef):
@@ -41,6 +41,37 @@ def classes():
 )
 def test_code_is_there(name):
     assert named(name) is not None
+
+
+STATIONS = {"RULES": "rule", "the law": "plan"}
+"""Stations that a tick calls by another name."""
+
+
+def called(function):
+    """Names of what a function calls, in the order in which that happens."""
+
+    class Calls(ast.NodeVisitor):
+        names = ()
+
+        def visit_Call(self, node):
+            self.generic_visit(node)
+            self.names += (ast.unparse(node.func).split(".")[-1],)
+
+    calls = Calls()
+    calls.visit(function)
+    return calls.names
+
+
+def test_a_measurement_goes_through_the_stations_in_their_order():
+    rows = re.search(r"(?s)\| station \|.*?\n\n", TEXT)[0].splitlines()[2:]
+    told = [re.findall(r"`(?:\w+\.)*(\w+)`", row.split("|")[1]) or ["the law"] for row in rows if row]
+    stations = [STATIONS.get(name, name) for names in told for name in names]
+    assert len(told) <= 10
+    code = ast.parse((ROOT / "planner" / "planner.py").read_text(encoding="utf-8"))
+    parts = {node.name: called(node) for node in ast.walk(code) if isinstance(node, ast.FunctionDef)}
+    way = [part for name in parts["update"] for part in (*parts.get(name, ()), name)]
+    way = [part for name in way for part in (*(parts[name] if name.startswith("_") else ()), name)]
+    assert [name for name in way if name in stations] == stations
 
 
 def test_a_name_that_is_not_there_is_found_out():

@@ -14,8 +14,9 @@ from packaging.requirements import Requirement
 from packaging.specifiers import SpecifierSet
 from packaging.utils import canonicalize_name
 
-from surefoot.scenarios import errors
-from surefoot.scenarios.errors import MissingExtraError, install_command, require
+from surefoot import version
+from surefoot.scenarios.errors import MissingExtraError, require
+from surefoot.version import install_command
 
 pytestmark = pytest.mark.unit
 
@@ -128,8 +129,8 @@ def test_a_missing_extra_says_how_to_install_it(module, extra, monkeypatch):
 
 def installed(monkeypatch, tmp_path, origin):
     """Have Surefoot installed below `tmp_path`, as pip says it was."""
-    monkeypatch.setattr(errors, "__file__", str(tmp_path / "surefoot" / "scenarios" / "errors.py"))
-    monkeypatch.setattr("importlib.metadata.distribution", lambda name: SimpleNamespace(read_text=lambda file: origin))
+    monkeypatch.setattr(version, "__file__", str(tmp_path / "surefoot" / "version.py"))
+    monkeypatch.setattr(version, "distribution", lambda name: SimpleNamespace(read_text=lambda file: origin))
 
 
 @pytest.mark.parametrize(
@@ -151,12 +152,12 @@ def test_the_install_command_is_of_where_it_came_from(monkeypatch, tmp_path, ori
 
 def test_the_install_command_of_a_clone_is_that_of_the_readme(monkeypatch, tmp_path):
     readme = (ROOT / "README.md").read_text(encoding="utf-8")
-    monkeypatch.setattr(errors.shutil, "which", lambda name: str(Path(sys.executable).with_name(name)))
+    monkeypatch.setattr(version.shutil, "which", lambda name: str(Path(sys.executable).with_name(name)))
     monkeypatch.chdir(ROOT)
     assert install_command("replay,video") in readme
     monkeypatch.chdir(tmp_path)
     assert install_command("video") == f"pip install -c {ROOT}/constraints.txt -e '{ROOT}[video]'"
-    monkeypatch.setattr(errors.shutil, "which", lambda name: "/usr/bin/pip")
+    monkeypatch.setattr(version.shutil, "which", lambda name: "/usr/bin/pip")
     assert install_command("video").startswith(f"{sys.executable} -m pip install -c ")
 
 

@@ -49,15 +49,15 @@ cdef class SwingFoot(TaskLaw):
     cdef vector3 _along(self, WbcReference reference, vector3 position, bint rolls) noexcept nogil
     @cython.locals(R_d=double[:, ::1], beside=double)
     cdef double _hangs(self, double[:, ::1] R, WbcReference reference) noexcept nogil
-    @cython.locals(R=double[:, ::1], R_d=double[:, ::1], i=Py_ssize_t, j=Py_ssize_t)
+    @cython.locals(R=double[:, ::1], R_d=double[:, ::1], k=Py_ssize_t, i=Py_ssize_t, j=Py_ssize_t)
     cdef void _see_from_ankle(
-        self, AnkleStops stops, RobotTerms terms, WbcReference reference, Py_ssize_t k, const double[::1] scale,
+        self, AnkleStops stops, RobotTerms terms, WbcReference reference, const double[::1] scale,
         double[:, ::1] rows, double[::1] target
     ) noexcept
     @cython.locals(
-        column=Py_ssize_t, j=Py_ssize_t, part=double, counted=double, resting=double, turn=double
+        k=Py_ssize_t, column=Py_ssize_t, j=Py_ssize_t, part=double, counted=double, resting=double, turn=double
     )
     cdef void _yield(
-        self, AnkleStops stops, RobotTerms terms, WbcReference reference, Py_ssize_t k, Py_ssize_t n,
+        self, AnkleStops stops, RobotTerms terms, WbcReference reference, Py_ssize_t n,
         const double[::1] scale, double[:, ::1] rows, double[::1] target
     ) noexcept

@@ -189,10 +189,10 @@ class SwingFoot(TaskLaw):
             self._turned = k
         self._aim(terms, reference, k, most, target)
         if self._turned == k and k != reference.rolling_foot:
-            self._see_from_ankle(stops, terms, reference, k, scale, rows, target)
+            self._see_from_ankle(stops, terms, reference, scale, rows, target)
         for n in range(stops.joints):
             if self._shares[n] > 0.0:
-                self._yield(stops, terms, reference, k, n, scale, rows, target)
+                self._yield(stops, terms, reference, n, scale, rows, target)
 
     def _aim(self, terms: RobotTerms, reference: WbcReference, k: int, most: float, target: Array) -> None:
         """Target of the sole's centre: K e - D (ẏ - ẏ_d) + ÿ_d - J' v, in the frame of the sole."""
@@ -234,7 +234,6 @@ class SwingFoot(TaskLaw):
         stops: AnkleStops,
         terms: RobotTerms,
         reference: WbcReference,
-        k: int,
         scale: Array,
         rows: Array,
         target: Array,
@@ -244,6 +243,7 @@ class SwingFoot(TaskLaw):
         With the ankle at r in the frame of the sole: J_r = J_p - [r]x J_w, and the target gets the same of what the
         sole is to do, less what the sole does.
         """
+        k = self._turned
         r, R, R_d = algebra.row(stops._ankles, k), terms._R_contact[k], self._R_d
         w, bias = algebra.vector(terms._v_sole[k, 3:]), algebra.vector(terms._bias_sole[k, 3:])
         w_d = reference._w
@@ -267,7 +267,6 @@ class SwingFoot(TaskLaw):
         stops: AnkleStops,
         terms: RobotTerms,
         reference: WbcReference,
-        k: int,
         n: int,
         scale: Array,
         rows: Array,
@@ -275,8 +274,9 @@ class SwingFoot(TaskLaw):
     ) -> None:
         """Take a share of what turns about a joint's axis a out of the angular rows and their target: 1 - s a aᵀ.
 
-        While a step catches the body the joint is to rest instead.
+        The joint is the n-th one of the ankle that turns. While a step catches the body the joint is to rest instead.
         """
+        k = self._turned
         a, column = stops.axis(terms, k, n), stops._columns[k, n]
         sa = algebra.scale(self._shares[n], a)
         for j in range(terms.nv):

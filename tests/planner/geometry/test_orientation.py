@@ -41,7 +41,11 @@ def test_on_level_ground_the_rotation_is_exactly_the_heading():
 def test_a_swing_turns_the_sole_smoothly_from_one_face_to_the_other():
     """Angular velocity and acceleration against differences of the rotation and of each other."""
     swing = start_swing(
-        Foot.LEFT, START, TARGET, 0.0, 40, SwingCourse(0.5, 0.125, 0.875, 0.05), PlannerParameters(touchdown_lead=0.0)
+        Foot.LEFT,
+        (START, TARGET),
+        (0.0, 40),
+        SwingCourse(0.5, 0.125, 0.875, 0.05),
+        PlannerParameters(touchdown_lead=0.0),
     )
     step = 1e-4
     motion = np.array([swing.evaluate(t)[:, 3:] for t in np.arange(0.0, 0.8, step)])

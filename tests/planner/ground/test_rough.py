@@ -105,7 +105,7 @@ def test_the_turning_sole_clears_all_blocks_and_lands_flat(stand, seed):
     for number, ends in enumerate(zip(plan, plan[2:], strict=False), 1):
         course = swing_course(number, *ends, samples, 0.05, Ground(terrain, HALF_SOLE, parameters))
         start, end = (sole_pose(place.position, place.yaw, place.normal) for place in ends)
-        swing = start_swing(Foot.LEFT, start, end, 0.0, samples, course, parameters)
+        swing = start_swing(Foot.LEFT, (start, end), (0.0, samples), course, parameters)
         for time in np.arange(0.0, swing.touchdown_time, 0.01):
             pose = swing.evaluate(time)[0]
             points = pose[:3] + outline @ sole_rotation(*pose[3:]).T

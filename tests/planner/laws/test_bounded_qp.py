@@ -57,17 +57,19 @@ def impossible(fine: Qp) -> Qp:
 def test_it_says_where_there_is_no_optimum():
     fine = some(np.random.default_rng(3), 9, 40, 0.5)
     empty, solver = impossible(fine), BoundedQp(42, 9)
-    assert not solver.factorise(-fine.P, empty.G)
-    assert not solver.factorise(np.full((9, 9), np.nan), empty.G)
-    assert solver.factorise(empty.P, empty.G)
-    assert not solver.minimise(empty.q, empty.h, empty.lower, empty.upper)
+    for P, definite in ((-fine.P, False), (np.full((9, 9), np.nan), False), (empty.P, True)):
+        solver.factorise(P, empty.G)
+        assert solver.is_definite is definite
+        assert definite or solver.minimised(empty.q, empty.h, empty.lower, empty.upper) is None
+    assert solver.minimised(empty.q, empty.h, empty.lower, empty.upper) is None
     room = np.append(fine.h, [9.0, 9.0])
-    assert not solver.minimise(np.full(9, np.nan), room, fine.lower, fine.upper)
+    assert solver.minimised(np.full(9, np.nan), room, fine.lower, fine.upper) is None
     room[3] = np.nan
-    assert not solver.minimise(fine.q, room, fine.lower, fine.upper)
+    assert solver.minimised(fine.q, room, fine.lower, fine.upper) is None
     room[3] = fine.h[3]
-    assert solver.minimise(fine.q, room, fine.lower, fine.upper)
-    np.testing.assert_allclose(solver.x, solve(fine).z, atol=1e-8)
+    found = solver.minimised(fine.q, room, fine.lower, fine.upper)
+    np.testing.assert_allclose(found, solve(fine).z, atol=1e-8)
+    np.testing.assert_array_equal(solver.minimised(fine.q, room, fine.lower, fine.upper), found)
 
 
 def test_what_it_does_not_solve_the_solvers_are_asked():

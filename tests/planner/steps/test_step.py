@@ -98,10 +98,9 @@ def test_a_climb_is_hurried_no_more_than_body_and_foot_can_be(stand, direction, 
     order = schedule.step(step)
     usual = STAIRS.single_support - PlannerParameters().touchdown_lead
     quickest = shortest_swing(order, legs.acceleration[0], LIFTING)
-    poses = [
-        sole_pose(place.position, place.yaw, place.normal) for place in (schedule.step(step - 2).place, order.place)
-    ]
-    swing = start_swing(order.place.foot, *poses, 0.0, 45.0, order.course, PlannerParameters())
+    before, after = schedule.step(step - 2).place, order.place
+    poses = sole_pose(before.position, before.yaw, before.normal), sole_pose(after.position, after.yaw, after.normal)
+    swing = start_swing(order.place.foot, poses, (0.0, 45.0), order.course, PlannerParameters())
     hardest = np.abs([swing.evaluate(at)[2, :3] for at in np.linspace(0.0, usual, 500, endpoint=False)]).max()
     lifted = PEAK * abs(order.lift) / quickest**2
     swung = hardest * (usual / quickest) ** 2

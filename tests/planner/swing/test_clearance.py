@@ -33,8 +33,9 @@ def courses_of(plan, terrain, half_size, samples=75):
 
 def swings(plan, courses, samples):
     for row, course in enumerate(courses, start=2):
-        ends = [sole_pose(place.position, place.yaw, place.normal) for place in (plan[row - 2], plan[row])]
-        yield start_swing(Foot.LEFT, *ends, 0.0, samples, course, PARAMETERS)
+        before, after = plan[row - 2], plan[row]
+        ends = sole_pose(before.position, before.yaw, before.normal), sole_pose(after.position, after.yaw, after.normal)
+        yield start_swing(Foot.LEFT, ends, (0.0, samples), course, PARAMETERS)
 
 
 def clearances(plan, terrain, half_size, samples):

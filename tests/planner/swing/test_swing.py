@@ -20,7 +20,7 @@ def swing(height=0.0, clearance=0.05, glide=(2.0, 2.4, 2.8), lifting=math.inf):
     begin, apex, end = ((time - 2.0) / 0.8 for time in glide)
     course = SwingCourse(apex, begin, end, clearance)
     parameters = PlannerParameters(touchdown_lead=0.0)
-    return start_swing(Foot.LEFT, START, target, 2.0, 40, course, parameters, lifting=lifting)
+    return start_swing(Foot.LEFT, (START, target), (2.0, 40), course, parameters, lifting=lifting)
 
 
 @pytest.mark.parametrize("height", [0.0, 0.15, -0.15])
@@ -90,7 +90,7 @@ def test_without_ground_the_sole_searches_downwards_without_a_jump_in_speed():
 def test_positions_at_many_instants_are_those_of_evaluate():
     """With a glide that begins late and ends early, also after the target has moved."""
     pose, target = np.array([0.0, 0.1, 0.2, 0.1, 0.0, 0.05]), np.array([0.4, 0.2, 0.35, -0.1, 0.1, 0.0])
-    swing = start_swing(Foot.LEFT, pose, target, 1.0, 40, SwingCourse(0.6, 0.15, 0.8, 0.05), PlannerParameters())
+    swing = start_swing(Foot.LEFT, (pose, target), (1.0, 40), SwingCourse(0.6, 0.15, 0.8, 0.05), PlannerParameters())
     moved = swing.retargeted(1.4, target + np.array([0.05, -0.03, 0.01, 0.1, 0.0, 0.0]))
     for trajectory, start in ((swing, 1.0), (moved, 1.4)):
         instants = np.linspace(start, swing.touchdown_time, 97)

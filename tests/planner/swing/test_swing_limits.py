@@ -35,7 +35,7 @@ def test_a_way_around_the_stance_leg_lacks_what_hips_cannot_swing_of_it(time, he
     lacking = [reach.shortfall(single, *place) for single in (time, 2.0)]
     length = time - P.touchdown_lead
     pose, target = np.append(here, np.zeros(4)), np.append(place, np.zeros(4))
-    swing = start_swing(Foot.LEFT, pose, target, 0.0, time / P.sample_time, SwingCourse(0.5, 0.0, 1.0, 0.05), P)
+    swing = start_swing(Foot.LEFT, (pose, target), (0.0, time / P.sample_time), SwingCourse(0.5, 0.0, 1.0, 0.05), P)
     instants = np.linspace(0.0, length, 100)
     bent = swing.around(LEGS.corner(swing.positions(instants)[:, :2], 1.0), 0.1 * length)
     hardest = np.abs([bent.evaluate(at)[2, :2] / LEGS.acceleration for at in instants[:-1]]).max()

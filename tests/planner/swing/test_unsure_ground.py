@@ -22,7 +22,7 @@ COURSE = SwingCourse(0.5, 0.0, 1.0, 0.05)
 
 def swing(deviation, height=0.0, over=0.0):
     place = PLACE + np.array([0.0, 0.0, height, 0.0, 0.0, 0.0])
-    return start_swing(Foot.LEFT, POSE, place, 2.0, 40, COURSE, PlannerParameters(), (deviation, over)), place
+    return start_swing(Foot.LEFT, (POSE, place), (2.0, 40), COURSE, PlannerParameters(), (deviation, over)), place
 
 
 def test_where_the_height_is_known_nothing_changes():

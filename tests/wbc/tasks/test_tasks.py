@@ -52,7 +52,7 @@ def asked(robot, state, references):
     region = SupportRegion(1.0, 1.0, 1.0)
     region.rebuild(terms.contact_position, terms.contact_rotation, (True, False))
     found = {}
-    for task in default_tasks(TaskWeights(), TaskGains(), BalanceGains(), region, (TOE, 0.05), 1.0):
+    for task in default_tasks(WbcParameters(), region, (TOE, 0.05)):
         J = np.zeros((task.size, robot.nv + 12))
         a = np.array(tuple(task.write(terms, reference, np.ones((task.size, 1)), J)))
         found[task.name] = J, a
@@ -82,11 +82,7 @@ def test_the_cost_is_least_squares_plus_a_diagonal(written):
 def test_a_unit_weight_makes_the_cost_that_of_its_jacobian(robot, asked, name):
     """H = JᵀJ and g = -Jᵀa of one task alone, without any diagonal term."""
     terms, reference, region, found = asked
-    task = next(
-        task
-        for task in default_tasks(TaskWeights(), TaskGains(), BalanceGains(), region, (TOE, 0.05), 1.0)
-        if task.name == name
-    )
+    task = next(task for task in default_tasks(WbcParameters(), region, (TOE, 0.05)) if task.name == name)
     task.weight = 1.0
     qp = allocate(QpLayout(robot.nv, 16))
     TaskStack(qp, (task,), ()).write(terms, reference)

@@ -1,0 +1,54 @@
+"""A question changes nothing: all that goes from one tick to the next is the state, and nothing else remembers."""
+
+import numpy as np
+import pytest
+from pendulum_walk import LEGS
+
+from surefoot.planner.laws.profiles import PROFILES
+from surefoot.planner.planner import WalkingPlanner
+from surefoot.planner.steps.gait import GaitParameters
+from surefoot.planner.types import CentroidalState
+
+pytestmark = pytest.mark.unit
+
+GAIT = GaitParameters(steps=4, step_length=0.1, com_height=1.0)
+TOLD = ("com", "com_velocity", "com_acceleration", "jerk", "zmp", "zmp_offset", "zmp_reference")
+
+
+def planner_of(profile, stand):
+    return WalkingPlanner(GAIT, stand(), 0.22, 0.11, profile=PROFILES[profile], legs=LEGS)
+
+
+def measured(tick, aside, stand):
+    """A CoM that sways, and standing feet."""
+    sway = 0.02 * np.sin(0.3 * tick) + aside
+    return CentroidalState(0.02 * tick, np.array([0.01 * sway, sway, 1.0]), np.array([0.0, 0.01, 0.0])), stand()
+
+
+@pytest.mark.parametrize("profile", [name for name, one in PROFILES.items() if one.planner is None])
+def test_a_state_and_a_measurement_have_one_plan_whatever_was_asked_before(profile, stand):
+    planner = planner_of(profile, stand)
+    for tick in range(12):
+        planner.update(*measured(tick, 0.0, stand))
+    kept = planner.state
+    plan = planner.update(*measured(12, 0.0, stand))
+    for tick in range(13, 40):
+        planner.update(*measured(tick, 0.01, stand))
+    planner.state = kept
+    again = planner.update(*measured(12, 0.0, stand))
+    for name in TOLD:
+        np.testing.assert_array_equal(getattr(again, name), getattr(plan, name), err_msg=name)
+    assert [list(place.position) for place in again.footsteps] == [list(place.position) for place in plan.footsteps]
+    assert (again.status.solver, again.status.age) == (plan.status.solver, plan.status.age)
+
+
+def test_what_another_state_plans_is_seen(stand):
+    planner = planner_of("preview", stand)
+    for tick in range(12):
+        planner.update(*measured(tick, 0.0, stand))
+    kept = planner.state
+    plan = planner.update(*measured(12, 0.0, stand))
+    planner.state = planner_of("preview", stand).state
+    planner.update(*measured(11, 0.0, stand))
+    assert kept is not planner.state
+    assert (planner.update(*measured(12, 0.0, stand)).jerk != plan.jerk).any()

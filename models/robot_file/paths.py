@@ -15,8 +15,8 @@ SCHEME = "package://"
 _PACKAGES = ("package", "model")
 """Schemes of what is in a package, by ROS and by Gazebo."""
 
-_EXTRA = ("example-robot-data", "jvrc_description", "fourier_robot_descriptions")
-"""Packages of the extra that brings robots."""
+_EXTRA = ("jvrc_description", "fourier_robot_descriptions")
+"""Packages of the extra that brings more robots."""
 
 _NAME = re.compile(r"[A-Za-z0-9_][A-Za-z0-9._-]{0,99}")
 """Of a package: it is a folder's name, and none above it."""

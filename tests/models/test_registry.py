@@ -10,7 +10,7 @@ from surefoot.parts import plugins
 
 pytestmark = pytest.mark.unit
 
-FROM_EXTRA = ("alexander", "g1", "gr3", "jvrc1", "talos")
+FROM_EXTRA = ("gr3", "jvrc1")
 """Robots whose models the extra ``robots`` brings."""
 
 

@@ -170,7 +170,7 @@ def planned(view: View, motion: Motion) -> tuple[WalkState, WalkPlan]:
     if state.phase.swing_foot is not None:
         state = swinging_to(state, footsteps[0], measured, motion.solver is SolverStatus.HELD)
     plan = _world_plan(view, state, motion, footsteps, balance)
-    told = None if motion.memory is None else support.rotation @ motion.memory
+    told = None if motion.memory is None else motion.memory @ support.rotation.T
     return replace(state, plan=plan, told=told), plan
 
 

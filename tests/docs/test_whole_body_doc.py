@@ -55,7 +55,7 @@ def test_the_table_of_numbers_is_that_of_the_code():
 
 def test_what_the_controller_is_given_has_the_defaults_of_the_code():
     limits, sole = JointLimits(*[np.zeros(1)] * 4), Sole(0.1, 0.1, 0.8)
-    table = re.findall(r"^\| `wbc\.\w+\.(\w+)\.(\w+)` \| ([\d.]+) \|", TEXT, re.MULTILINE)
+    table = re.findall(r"^\| `wbc\.\w+\.\w+\.(\w+)\.(\w+)` \| ([\d.]+) \|", TEXT, re.MULTILINE)
     found = {"Sole": sole, "JointLimits": limits}
     assert len(table) == 4
     assert [shown(getattr(found[kind], name)) for kind, name, _ in table] == [value for *_, value in table]

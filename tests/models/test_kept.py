@@ -74,7 +74,7 @@ def test_what_is_no_file_in_place_of_an_entry_is_not_waited_for(how, entry):
 
 
 def test_the_page_says_where_it_is_and_how_to_remove_it(monkeypatch, tmp_path):
-    page = (Path(__file__).parents[1] / "docs" / "how-to" / "install.md").read_text(encoding="utf-8")
+    page = (Path(__file__).parents[2] / "docs" / "how-to" / "install.md").read_text(encoding="utf-8")
     (line,) = [line for line in page.splitlines() if line.startswith("rm ")]
     for variable, base in (("XDG_CACHE_HOME", tmp_path / "cache"), ("HOME", tmp_path / "home" / ".cache")):
         monkeypatch.delenv("XDG_CACHE_HOME")

@@ -1,9 +1,12 @@
 """A question changes nothing: all that goes from one tick to the next is the state, and nothing else remembers."""
 
+from dataclasses import replace
+
 import numpy as np
 import pytest
-from pendulum_walk import LEGS
+from pendulum_walk import LEGS, walk_pendulum
 
+from surefoot.planner.laws.dcm_feedback import DcmFeedback
 from surefoot.planner.laws.profiles import PROFILES
 from surefoot.planner.planner import WalkingPlanner
 from surefoot.planner.steps.gait import GaitParameters
@@ -52,3 +55,30 @@ def test_what_another_state_plans_is_seen(stand):
     planner.update(*measured(11, 0.0, stand))
     assert kept is not planner.state
     assert (planner.update(*measured(12, 0.0, stand)).jerk != plan.jerk).any()
+
+
+told = []
+"""Rotation of each frame in which `Remembering` was told its places."""
+
+
+class Remembering(DcmFeedback):
+    """Leaves places of the world to be told, and notes where it is told that they are."""
+
+    PLACES = np.array([[0.3, -0.1], [1.0, 2.0], [0.0, 0.5]])
+
+    def plan(self, problem):
+        here = self.PLACES @ problem.rotation
+        if problem.memory is not None:
+            np.testing.assert_allclose(problem.memory, here, atol=1e-12)
+            told.append(problem.rotation)
+        return replace(super().plan(problem), memory=here)
+
+
+def test_what_a_law_leaves_to_be_told_is_turned_with_the_frame(stand):
+    told.clear()
+    gait = replace(GAIT, steps=6, step_length=0.05, turn=0.2)
+    profile = replace(PROFILES["dcm"], law=Remembering)
+    planner = WalkingPlanner(gait, stand(), 0.22, 0.11, profile=profile)
+    walk_pendulum(planner, stand(), 5.0, com=np.array([0.0, 0.0, 1.0]))
+    assert len(told) > 200
+    assert np.ptp([rotation[1, 0] for rotation in told]) > 0.15

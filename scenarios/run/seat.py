@@ -223,8 +223,8 @@ class Seated(Moved):
         view: SeatView,
         coupled: CouplingRecorder | None,
     ) -> None:
-        read, self._sensed = sensors or (None, None)
-        super().__init__(walk, plant, read, known=False)
+        super().__init__(walk, plant, sensors and sensors[0], known=False)
+        self._sensed = sensors and sensors[1]
         self._guard = CONTROLLERS.guard(name_of(walk))
         self.mind, self._recorder, self._view = controller, recorder, view
         self._coupled = coupled

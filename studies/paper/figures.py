@@ -184,7 +184,7 @@ def height(axes: Axes, views: Views) -> None:
     ((_, view),) = views
     _along(axes, view, ("/truth", "com"), 2, "CoM height", palette.COM, linewidth=1.4)
     _along(
-        axes, view, "/reference", "com", 2, "its reference", palette.COM_PLANNED, linestyle=kit.DASHED, linewidth=0.6
+        axes, view, ("/reference", "com"), 2, "its reference", palette.COM_PLANNED, linestyle=kit.DASHED, linewidth=0.6
     )
     planned = view.field("/reference", "com", 3)[:, 2]
     axes.set_ylim(planned.min() - 0.05, planned.max() + 0.05)

@@ -4,8 +4,8 @@
 
 A module is drawn among those that are compiled and have a sign, and a sign among those of its functions. Signs of
 places in arrays, of counts and of texts are none of a law. Each is tried in a copy of the folders of the code, compiled
-there; the tests are the unit tests of the folder that mirrors the module's. The test that finds one is run again on the
-code as it is, where it has to pass. Exits 1 where a sign survives.
+there; the tests are the unit tests of the folder that mirrors the module's. The tests that find them are at last run on
+the code as it is, where they have to pass. Exits 1 where a sign survives.
 """
 
 import argparse
@@ -21,7 +21,7 @@ from pathlib import Path
 
 from mutants import ROOT, builds, copied, found_by
 
-from surefoot.native.modules import sources
+from surefoot.native.modules import STAMP, sources, target
 
 FLIPPED = {"+": "-", "-": "+", "+=": "-=", "-=": "+="}
 """What a sign becomes."""
@@ -112,18 +112,15 @@ def tests_of(module: Path) -> list[str]:
 
 
 def tried(place: Path, module: Path, sign: Sign) -> str:
-    """The test that finds a sign flipped; empty where none does."""
-    file, text = place / module, (ROOT / module).read_text(encoding="utf-8")
-    tests = tests_of(module)
-    file.write_text(sign.flipped(text), encoding="utf-8")
-    try:
-        if said := builds(place):
-            raise SystemExit(f"{module}:{sign.line}: with the sign flipped it does not compile:\n{said}")
-        found = found_by(place, tests)
-    finally:
-        file.write_text(text, encoding="utf-8")
-    if found and (said := builds(place) or found_by(place, [found] if "::" in found else tests)):
-        raise SystemExit(f"{found} fails without a sign flipped, too: {said}")
+    """The test that finds a sign flipped; empty where none does. The folder is left as it was, compiled modules too."""
+    files = (place / module, place / target(module), place / STAMP.relative_to(ROOT))
+    before = {file: file.read_bytes() for file in files if file.exists()}
+    files[0].write_text(sign.flipped(before[files[0]].decode()), encoding="utf-8")
+    if said := builds(place):
+        raise SystemExit(f"{module}:{sign.line}: with the sign flipped it does not compile:\n{said}")
+    found = found_by(place, tests_of(module))
+    for file, content in before.items():
+        file.write_bytes(content)
     return found
 
 
@@ -150,18 +147,21 @@ def main() -> None:
     if options.line is not None:
         every = signs((ROOT / options.modules[0]).read_text(encoding="utf-8"))
         chosen = [(options.modules[0], sign) for sign in every if sign.line == options.line]
-    survivors = 0
+    found: list[str] = []
     with tempfile.TemporaryDirectory() as folder:
         place = Path(folder)
         copied(place)
         for module, sign in chosen:
             line = (ROOT / module).read_text(encoding="utf-8").splitlines()[sign.line - 1]
             marked = f"{line[: sign.column]}[{sign.sign} -> {FLIPPED[sign.sign]}]{line[sign.column + len(sign.sign) :]}"
-            found = tried(place, module, sign)
-            survivors += not found
-            print(f"{module}:{sign.line}: {marked.strip()}: {found or 'SURVIVED'}", flush=True)
-    print(f"{len(chosen) - survivors} of {len(chosen)} flipped signs found, seed {options.seed}")
-    sys.exit(survivors > 0)
+            found.append(tried(place, module, sign))
+            print(f"{module}:{sign.line}: {marked.strip()}: {found[-1] or 'SURVIVED'}", flush=True)
+        failing = found_by(place, sorted({test for test in found if "::" in test}))
+    if failing:
+        raise SystemExit(f"{failing} fails without a sign flipped, too")
+    count = sum(map(bool, found))
+    print(f"{count} of {len(chosen)} flipped signs found, seed {options.seed}")
+    sys.exit(count < len(chosen))
 
 
 if __name__ == "__main__":

@@ -237,16 +237,15 @@ class Declared(Registry[T]):
 
 def entry_points(group: str) -> "EntryPoints":
     """Every entry point of a group, of the packages on ``sys.path``."""
-    return _entry_points(tuple((place, _changed(place)) for place in sys.path))(group)
+    return _entry_points(tuple((place, _changed(place)) for place in sys.path)).select(group=group)
 
 
 @lru_cache(maxsize=1)
-def _entry_points(_places: tuple[tuple[str, int], ...]) -> "Callable[[str], EntryPoints]":
+def _entry_points(_places: tuple[tuple[str, int], ...]) -> "EntryPoints":
     """Those of any group, found once, and again when a package was installed since, which alters one of the places."""
     from importlib import metadata  # which imports what reads letters, and a command may need no package
 
-    found = metadata.entry_points()
-    return lru_cache(maxsize=None)(lambda group: found.select(group=group))
+    return metadata.entry_points()
 
 
 def _changed(place: str) -> int:

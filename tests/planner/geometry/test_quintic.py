@@ -3,7 +3,7 @@
 import numpy as np
 import pytest
 
-from surefoot.planner import quintic
+from surefoot.planner.geometry import quintic
 
 pytestmark = pytest.mark.unit
 

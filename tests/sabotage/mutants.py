@@ -164,9 +164,10 @@ def main() -> None:
             elif not found_by(place, tests):
                 survivors += 1
                 print(f"survived: {module}:{mutant.line}: {mutant.before}  ->  {mutant.after}", flush=True)
-    found = len(tried) - survivors
-    share = f" ({100.0 * found / len(tried):.0f} %)" if tried else ""
-    print(f"{module}: {found} of {len(tried)} mutants found{share}, by {' '.join(tests)}")
+    count = len(tried) - refused
+    found = count - survivors
+    share = f" ({100.0 * found / count:.0f} %)" if count else ""
+    print(f"{module}: {found} of {count} mutants found{share}, by {' '.join(tests)}; {refused} do not compile")
 
 
 if __name__ == "__main__":

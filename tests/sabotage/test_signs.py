@@ -40,7 +40,7 @@ def test_a_flipped_sign_differs_in_that_sign_alone():
 
 def test_a_draw_is_the_same_again_and_another_with_another_seed():
     known = signs.modules()
-    assert Path("planner/recovery/step_adjustment.py") in known and Path("surefoot/linear.pyx") in known
+    assert Path("planner/recovery/step_adjustment.py") in known and Path("surefoot/maths/linear.pyx") in known
     one, again, other = (signs.drawn(seed, 20, known) for seed in (1, 1, 2))
     assert one == again and one != other
     assert len({module for module, _ in one}) == 20
@@ -51,7 +51,8 @@ def test_a_draw_is_the_same_again_and_another_with_another_seed():
     [
         ("wbc/zmp.py", "tests/wbc/test_zmp.py"),
         ("scenarios/record/foxglove/views.py", "tests/scenarios/record"),
-        ("surefoot/algebra.py", "tests/test_algebra.py"),
+        ("surefoot/maths/algebra.py", "tests/maths/test_algebra.py"),
+        ("surefoot/joints.py", "tests/test_joints.py"),
     ],
 )
 def test_tests_of_a_module_are_its_own_and_those_of_its_folder(module, first):

@@ -102,11 +102,12 @@ def modules() -> list[Path]:
 
 def tests_of(module: Path) -> list[str]:
     """Tests of a module's own name first, then those of the folder that mirrors its folder."""
-    folder = Path("tests") / module.parent
-    if module.parent == Path("surefoot"):  # the root's, whose tests lie at the root of the tests
-        return sorted(str(path.relative_to(ROOT)) for path in (ROOT / "tests").glob("test_*.py"))
+    parts = module.parent.parts
+    folder = Path("tests", *parts[parts[0] == "surefoot" :])  # rooms of the package mirror at the root of the tests
     while not any((ROOT / folder).glob("test_*.py")):
         folder = folder.parent
+    if folder == Path("tests"):
+        return sorted(str(path.relative_to(ROOT)) for path in (ROOT / folder).glob("test_*.py"))
     own = folder / f"test_{module.stem}.py"
     return [str(own), str(folder)] if (ROOT / own).exists() else [str(folder)]
 

@@ -49,7 +49,7 @@ def test_a_draw_is_the_same_again_and_another_with_another_seed():
 @pytest.mark.parametrize(
     ("module", "first"),
     [
-        ("wbc/zmp.py", "tests/wbc/test_zmp.py"),
+        ("wbc/contact/zmp.py", "tests/wbc/contact/test_zmp.py"),
         ("scenarios/record/foxglove/views.py", "tests/scenarios/record"),
         ("surefoot/maths/algebra.py", "tests/maths/test_algebra.py"),
         ("surefoot/joints.py", "tests/test_joints.py"),

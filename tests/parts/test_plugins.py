@@ -143,7 +143,7 @@ def test_a_name_of_two_packages_is_refused(lengths, others):
 
 
 def test_every_registry_of_surefoot_has_a_row_in_the_documentation():
-    page = (Path(__file__).parents[1] / "docs" / "extending.md").read_text(encoding="utf-8")
+    page = (Path(__file__).parents[2] / "docs" / "extending.md").read_text(encoding="utf-8")
     registries = (METRICS, PROFILES, TASKS, ESTIMATORS, PLANTS, ROBOTS, SCENARIOS, KINDS)
     groups = {registry.group for registry in registries}
     assert len(groups) == len(registries)

@@ -4,7 +4,7 @@ PYTHON ?= $(shell for p in python3.14 python3.13 python3.12 python3.11 python3; 
 VENV := .venv
 BIN := $(VENV)/bin
 
-.PHONY: walk test tests unit interpreted physics check long gate format coverage mutants bench docs dist dist-test scenario changelog clean
+.PHONY: walk test tests unit interpreted physics check long gate format coverage mutants signs bench docs dist dist-test scenario changelog clean
 
 walk: $(VENV)/.installed
 	$(BIN)/surefoot run diagonal-walk
@@ -55,6 +55,10 @@ coverage: $(VENV)/.installed-dev
 # make mutants MODULE=planner/laws/qp.py [TESTS=tests/planner/laws] [LIMIT=40]
 mutants: $(VENV)/.installed-dev
 	$(BIN)/python tests/sabotage/mutants.py $(MODULE) $(addprefix --tests ,$(TESTS)) $(addprefix --limit ,$(LIMIT))
+
+# make signs SEED=3 [COUNT=20] [MODULES="planner/quintic.py wbc/zmp.py"]
+signs: $(VENV)/.installed-dev
+	$(BIN)/python tests/sabotage/signs.py $(MODULES) --seed $(or $(SEED),0) --count $(or $(COUNT),20)
 
 format: $(VENV)/.installed-dev
 	$(BIN)/ruff check --fix .

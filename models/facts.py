@@ -93,7 +93,6 @@ def longest_step(leg_length: float, hip_height: float, hip_width: float, step_wi
     return 2 * math.sqrt(square) if square >= 0 else math.nan
 
 
-@lru_cache(maxsize=8)
 def facts_of(robot: RobotDescription, payload: float = 0.0) -> RobotFacts:
     """What of a robot bounds a scenario.
 

@@ -25,11 +25,12 @@ def between(start: Vector, end: Vector, t: float) -> Quintic:
     """The quintic from one position, velocity and acceleration to others in a time t [s]."""
     gap = end[0] - start[0] - t * start[1] - 0.5 * t * t * start[2]
     speed, turn = t * (end[1] - start[1] - t * start[2]), t * t * (end[2] - start[2])
+    cubed = t * t * t  # a power of C's library may err in the last bit, and not alike on all machines
     return (
         start[0],
         start[1],
         0.5 * start[2],
-        (10.0 * gap - 4.0 * speed + 0.5 * turn) / t**3,
-        (-15.0 * gap + 7.0 * speed - turn) / t**4,
-        (6.0 * gap - 3.0 * speed + 0.5 * turn) / t**5,
+        (10.0 * gap - 4.0 * speed + 0.5 * turn) / cubed,
+        (-15.0 * gap + 7.0 * speed - turn) / (cubed * t),
+        (6.0 * gap - 3.0 * speed + 0.5 * turn) / (cubed * t * t),
     )

@@ -1,5 +1,7 @@
 cimport cython
 from surefoot.maths cimport algebra, linear
+from surefoot.maths.algebra cimport vector3
+from surefoot.planner.geometry cimport quintic
 from surefoot.planner.plan.sample cimport PlanSample
 
 cdef Py_ssize_t OMEGA, STIFFNESS, LOAD, LINEAR, HEIGHT, SWING, MOTIONS, RATES, BENDS, COLUMNS
@@ -25,7 +27,7 @@ cdef class PlanSampler:
     cdef void _fly(self, const double[:, :] polynomials) noexcept nogil
     @cython.locals(axis=Py_ssize_t)
     cdef void _line(self, Py_ssize_t column, const double[:, :] values, Py_ssize_t i) noexcept
-    @cython.locals(axis=Py_ssize_t)
+    @cython.locals(axis=Py_ssize_t, here=vector3, there=vector3)
     cdef void _move(self, const double[:, :] com, const double[:, :] velocity, const double[:, :] acceleration,
                     const double[:, :] jerk, Py_ssize_t i) noexcept
     @cython.locals(k=Py_ssize_t, i=Py_ssize_t)

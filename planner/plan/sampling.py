@@ -5,6 +5,7 @@ import math
 import numpy as np
 
 from surefoot.maths import algebra, linear
+from surefoot.planner.geometry import quintic
 from surefoot.planner.geometry.plane import shifted
 from surefoot.planner.plan.plan import WalkPlan
 from surefoot.planner.plan.sample import POINT, PlanSample
@@ -136,16 +137,11 @@ class PlanSampler:
                 0.5 * acceleration[i, axis],
                 jerk[i, axis] / 6.0,
             )
-        z, speed, bend = com[i, 2], velocity[i, 2], acceleration[i, 2]
-        t = self._length
-        gap = com[i + 1, 2] - z - t * speed - 0.5 * t * t * bend
-        gained = t * (velocity[i + 1, 2] - speed - t * bend)
-        bent = t * t * (acceleration[i + 1, 2] - bend)
-        cubed = t * t * t
-        self._table[0, HEIGHT], self._table[1, HEIGHT], self._table[2, HEIGHT] = z, speed, 0.5 * bend
-        self._table[3, HEIGHT] = (10.0 * gap - 4.0 * gained + 0.5 * bent) / cubed
-        self._table[4, HEIGHT] = (-15.0 * gap + 7.0 * gained - bent) / (cubed * t)
-        self._table[5, HEIGHT] = (6.0 * gap - 3.0 * gained + 0.5 * bent) / (cubed * t * t)
+        here = com[i, 2], velocity[i, 2], acceleration[i, 2]
+        there = com[i + 1, 2], velocity[i + 1, 2], acceleration[i + 1, 2]
+        a, b, c, d, e, f = quintic.between(here, there, self._length)
+        self._table[0, HEIGHT], self._table[1, HEIGHT], self._table[2, HEIGHT] = a, b, c
+        self._table[3, HEIGHT], self._table[4, HEIGHT], self._table[5, HEIGHT] = d, e, f
 
     def _derive(self) -> None:
         """First and second derivatives of the polynomials."""

@@ -8,6 +8,7 @@ import math
 import numpy as np
 
 from surefoot.maths import algebra
+from surefoot.planner.geometry import quintic
 from surefoot.planner.recovery.step_problem import StepProblem
 from surefoot.planner.swing import boxes, quintics
 from surefoot.planner.swing.leg_reach import LegReach
@@ -122,9 +123,11 @@ def unit_ways() -> tuple[Array, Array, Array]:
     One goes a unit of way from rest, one has a unit of speed and goes none; of a way round by a unit at each of these
     shares the accelerations, shape (9, 9).
     """
-    u = SWING_SHARES
-    rest = np.stack((u**3 * (10.0 - 15.0 * u + 6.0 * u**2), 60.0 * u * (1.0 - u) * (1.0 - 2.0 * u)))
-    moving = np.stack((u - 6.0 * u**3 + 8.0 * u**4 - 3.0 * u**5, -36.0 * u + 96.0 * u**2 - 60.0 * u**3))
+    u, still = SWING_SHARES, (0.0, 0.0, 0.0)
+    rest, moving = (
+        np.array([[law(way, share) for share in u.tolist()] for law in (quintic.value, quintic.bend)])
+        for way in (quintic.between(still, (1.0, 0.0, 0.0), 1.0), quintic.between((0.0, 1.0, 0.0), still, 1.0))
+    )
     order = np.arange(6.0)
     factors = (order * (order - 1.0))[2:]
     around = []

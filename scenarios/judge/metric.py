@@ -8,7 +8,6 @@ import math
 import sys
 from collections.abc import Callable
 from dataclasses import dataclass
-from functools import lru_cache
 from importlib import import_module
 from operator import attrgetter
 from pickle import PicklingError
@@ -82,9 +81,8 @@ class Reduction:
         return _by_name(self, self.function)
 
 
-@lru_cache(maxsize=1024)
 def _given(function: Callable[..., Any]) -> tuple[Any, ...]:
-    """Types of what a function gives; the schema of criteria compares each metric with all others."""
+    """Types of what a function gives."""
     try:
         given = get_type_hints(function).get("return", NoneType)
     except Exception:  # annotations in quotes are expressions of their author

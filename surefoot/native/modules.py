@@ -229,7 +229,7 @@ def build(names: Iterable[str] | None = None) -> None:
     The compiler is ``CC``, or ``cc``, or that of the package ``ziglang``.
 
     Args:
-        names: of the modules; all by default.
+        names: of the modules; all by default. Of none, where nothing can be compiled, all stay as they are.
 
     Raises:
         NothingCompilesError: there is no Cython, no compiler, or no header of Python's.
@@ -238,9 +238,16 @@ def build(names: Iterable[str] | None = None) -> None:
     import tempfile
     from concurrent.futures import ThreadPoolExecutor
 
-    compiler, found, fresh, kept = _compiler(), sources(), digests(), stamp()
-    how = _how(compiler)
-    wanted = list(found) if names is None or kept.get("made") != how else [name for name in names if name in found]
+    asked = None if names is None else list(names)
+    try:
+        compiler = _compiler()
+        how = _how(compiler)
+    except NothingCompilesError:
+        if asked == []:
+            return
+        raise
+    found, fresh, kept = sources(), digests(), stamp()
+    wanted = list(found) if asked is None or kept.get("made") != how else [name for name in asked if name in found]
     for gone in kept.keys() - found.keys():
         (ROOT / target(Path(*gone.split(".")).with_suffix(".py"))).unlink(missing_ok=True)
     with tempfile.TemporaryDirectory(prefix="surefoot-") as folder:

@@ -14,7 +14,7 @@ from collections.abc import Callable, Collection, Iterator, Mapping
 from contextlib import redirect_stdout
 from functools import lru_cache
 from importlib import import_module
-from typing import TYPE_CHECKING, TypeVar, cast
+from typing import TYPE_CHECKING, Any, TypeVar, cast
 
 from surefoot.errors import PluginError
 from surefoot.parts.guard import OWN_GUARD, OWN_PACKAGE, Guard, said
@@ -237,16 +237,16 @@ class Declared(Registry[T]):
 
 def entry_points(group: str) -> "EntryPoints":
     """Every entry point of a group, of the packages on ``sys.path``."""
-    return _entry_points(tuple((place, _changed(place)) for place in sys.path))(group)
+    found: EntryPoints = _entry_points(tuple((place, _changed(place)) for place in sys.path)).select(group=group)
+    return found
 
 
 @lru_cache(maxsize=1)
-def _entry_points(_places: tuple[tuple[str, int], ...]) -> "Callable[[str], EntryPoints]":
+def _entry_points(_places: tuple[tuple[str, int], ...]) -> Any:
     """Those of any group, found once, and again when a package was installed since, which alters one of the places."""
     from importlib import metadata  # which imports what reads letters, and a command may need no package
 
-    found = metadata.entry_points()
-    return lru_cache(maxsize=None)(lambda group: found.select(group=group))
+    return metadata.entry_points()
 
 
 def _changed(place: str) -> int:

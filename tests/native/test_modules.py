@@ -95,7 +95,34 @@ def test_without_a_compiler_the_same_file_is_interpreted_and_the_reason_is_kept(
 def test_without_headers_the_reason_names_them(monkeypatch, tmp_path):
     monkeypatch.setattr(sysconfig, "get_paths", lambda: {"include": str(tmp_path)})
     with pytest.raises(modules.NothingCompilesError, match=r"no headers of Python; install them, such as python3"):
-        modules.build([])
+        modules.build()
+
+
+LACKING = {
+    "Cython": """import importlib.util as util
+real = util.find_spec
+util.find_spec = lambda name, *rest: None if name == "Cython" else real(name, *rest)""",
+    "compiler": "import os; os.environ['CC'] = 'no-such-compiler'; sys.modules['ziglang'] = None",
+}
+AGAIN = """
+import sys
+sys.argv = sys.orig_argv = ["surefoot.native"]
+{lacking}
+import runpy
+runpy.run_module("surefoot.native", run_name="__main__")
+"""
+
+
+@pytest.mark.parametrize("lacking", LACKING)
+def test_what_is_compiled_stays_so_where_nothing_can_be_compiled_until_it_is_edited(checkout, lacking):
+    COMPILER.or_skip()
+    path, again = checkout / "surefoot" / f"law{modules.SUFFIX}", AGAIN.format(lacking=LACKING[lacking])
+    python(checkout, "-c", ASK)
+    assert python(checkout, "-c", again).startswith("compiled: Cython 3.")
+    assert python(checkout, "-c", ASK) == f"3.0 {path}\n"
+    (checkout / "surefoot" / "law.py").write_text(LAW.replace("1.0", "2.0"))
+    assert re.match(rf"interpreted, slower: there is no (C )?{lacking}", python(checkout, "-c", again))
+    assert not path.exists()
 
 
 LAST = "def last(them):\n    return them[-1]\n\n\ndef beyond(them):\n    return them[9]\n"

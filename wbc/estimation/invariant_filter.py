@@ -142,18 +142,7 @@ class InvariantFilter:
         K = np.linalg.solve(S, PH.T).T
         self.P -= K @ PH.T
         self.P[:] = 0.5 * (self.P + self.P.T)
-        self._jump(K @ wanted)
-
-    def _jump(self, x: Array) -> None:
-        """`Stand.move` with numpy's sums, which differ from its own in the last bit."""
-        s, E = self.stand, pin.exp3(x[TURN])
-        s.R[:] = E @ s.R
-        s.columns[:] = s.columns @ E.T + x[3:15].reshape(4, 3)
-        for k in (0, 1):
-            s.Z[k] = pin.exp3(x[SOLE[k]]) @ s.Z[k]
-        s.gyro_bias[:] += x[GYRO]
-        s.force_bias[:] += x[FORCE]
-        s.offsets[:] += x[OFFSETS]
+        self.stand.move(K @ wanted)
 
     def propagate(self, rate: Array, force: Array, time: float) -> None:
         """Go on with what the IMU says.

@@ -1,7 +1,5 @@
 """The swing foot follows its curve."""
 
-from functools import lru_cache
-
 import numpy as np
 import pinocchio as pin
 
@@ -91,9 +89,8 @@ class AnkleStops:
         return terms._J[row, column], terms._J[row + 1, column], terms._J[row + 2, column]
 
 
-@lru_cache(maxsize=8)
 def _ankles(model: pin.Model, frames: BodyFrames) -> tuple[Array, tuple[tuple[int, ...], ...], tuple[int, ...]]:
-    """Attributes of `AnkleStops`, which a robot that walks again has still."""
+    """Attributes of `AnkleStops`."""
     soles = [model.frames[model.getFrameId(name)] for name in frames.soles]
     ankles = np.array([sole.placement.inverse().translation for sole in soles]) * (1.0, 0.0, 1.0)
     joints, data = 2 if frames.leaning is None else 1, model.createData()

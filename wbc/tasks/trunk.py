@@ -1,7 +1,6 @@
 """Pelvis and torso stay upright and turn with the heading."""
 
 import math
-from functools import lru_cache
 
 import numpy as np
 import pinocchio as pin
@@ -80,7 +79,6 @@ class HipStops:
         return 1.0 if excess >= self._softened else (excess + self._softened) / (2.0 * self._softened)
 
 
-@lru_cache(maxsize=8)
 def _rolls(model: pin.Model, frames: BodyFrames) -> tuple[tuple[int, float], ...]:
     """Of the left and the right hip's roll joint: column of the generalised velocity, sign of its axis ahead."""
     data, found = model.createData(), []

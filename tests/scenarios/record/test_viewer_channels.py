@@ -111,12 +111,17 @@ def test_joint_states_are_the_measured_ones(log, walk):
 
 
 def test_points_and_forces_are_where_the_numbers_say(log):
-    truth, contact, measured = log["/truth"], log["/contact"], log["/measurement"]
+    truth, contact, measured, reference = log["/truth"], log["/contact"], log["/measurement"], log["/reference"]
     for (time, points), (_, forces) in zip(decoded(log, "/scene/points"), decoded(log, "/scene/forces"), strict=True):
         row = np.searchsorted(truth.time_ns, time)
         at = {entity.id: vector(entity.spheres[0].pose.position) for entity in points.entities}
         assert np.array_equal(at["CoM"], truth.field("com")[row])
         assert np.allclose(at["ZMP"], contact.field("zmp")[row], atol=1e-12)
+        dcm = truth.field("com")[row, :2] + truth.field("com_velocity")[row, :2] / reference.field("omega")[row]
+        assert np.allclose(at["DCM"][:2], dcm, rtol=0.0, atol=1e-12)
+        for name in ("CoM", "ZMP", "DCM"):
+            known = reference.field(name.lower())[row]
+            assert np.allclose(at[f"{name} planned"][: len(known)], known, rtol=0.0, atol=1e-12)
         drawn = {entity.id: entity.arrows[0] for entity in forces.entities}
         for foot in ("left", "right"):
             size = np.linalg.norm(measured.field(f"wrench_{foot}")[row][:3])

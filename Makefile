@@ -4,7 +4,7 @@ PYTHON ?= $(shell for p in python3.14 python3.13 python3.12 python3.11 python3; 
 VENV := .venv
 BIN := $(VENV)/bin
 
-.PHONY: walk test tests unit interpreted physics check long gate format coverage mutants signs bench docs dist dist-test scenario changelog clean
+.PHONY: walk test tests quick map unit interpreted physics check long gate format coverage mutants signs bench docs dist dist-test scenario changelog clean
 
 walk: $(VENV)/.installed
 	$(BIN)/surefoot run diagonal-walk
@@ -25,6 +25,14 @@ gate: $(VENV)/.installed-dev
 # All at once is quicker than one tier after the other: each begins with reading all tests.
 tests: $(VENV)/.installed-dev
 	$(BIN)/pytest -m "(unit or physics) and not long" -n auto --dist loadscope
+
+# The tests that a change touches, as many as fit into a minute; make quick BASE=v0.1.0 compares with another commit.
+quick: $(VENV)/.installed-dev
+	$(BIN)/python tests/touched/quick.py $(addprefix --base ,$(BASE))
+
+# Which tests touch what, by watching each; make map MORE=--missing goes on with one that was interrupted.
+map: $(VENV)/.installed-dev
+	$(BIN)/python tests/touched/survey.py $(MORE)
 
 # make unit AREA=planner runs the unit tests of one folder, make unit those of all.
 unit: $(VENV)/.installed-dev

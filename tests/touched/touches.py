@@ -1,0 +1,119 @@
+"""The map: which test modules run which function, read which file, and how long they take.
+
+`survey.py` makes it by watching the tests. It is allowed to be old: a file that it does not know has the tests of the
+folder that mirrors its own, a function that it does not know those of its file, and tests that moved keep their names.
+"""
+
+import json
+from collections.abc import Iterable, Mapping
+from dataclasses import dataclass
+from pathlib import Path, PurePosixPath
+
+from edited import MODULE, Edit
+
+MAP = Path(__file__).with_name("map.json")
+
+READ = "<read>"
+"""Stands for reading a file as text or data, which also tests of sources and pages do."""
+
+
+@dataclass(frozen=True)
+class Touches:
+    """The map.
+
+    Attributes:
+        commit: that was watched.
+        seconds: processor time of each test module, by its path.
+        files: of each file of the repository, by its path: test modules that run a function of it, by the function's
+            qualified name, and under `READ` those that read it.
+    """
+
+    commit: str
+    seconds: Mapping[str, float]
+    files: Mapping[str, Mapping[str, frozenset[str]]]
+
+    def of(self, edit: Edit, root: Path) -> frozenset[str]:
+        """Test modules that an edit touches; empty where nothing is known of it."""
+        if is_test(edit.path):
+            return frozenset({edit.path} if (root / edit.path).exists() else ())
+        known = self._known(edit, root)
+        found = frozenset(test for name in _names(edit, known) for test in known.get(name, ()))
+        if known and not edit.functions and edit.functions is not None:
+            return self._there(found, root)  # words alone: whoever reads them
+        return self._there(found, root) or mirrored(edit.path, root)
+
+    def _known(self, edit: Edit, root: Path) -> Mapping[str, frozenset[str]]:
+        """What is known of the file of an edit, under its path now, before, or at the time of the map."""
+        for path in filter(None, (edit.path, edit.before)):
+            source = str(PurePosixPath(path).with_suffix(".py"))
+            for one in (path, source):
+                if one in self.files:
+                    return self.files[one]
+        name = PurePosixPath(edit.path).name
+        moved = [path for path in self.files if PurePosixPath(path).name == name and not (root / path).exists()]
+        return self.files[moved[0]] if len(moved) == 1 else {}
+
+    def _there(self, tests: Iterable[str], root: Path) -> frozenset[str]:
+        """Those that exist, under the path of now: names of test modules are unique."""
+        gone = {PurePosixPath(test).name for test in tests if not (root / test).exists()}
+        moved = {str(path.relative_to(root).as_posix()) for name in gone for path in (root / "tests").rglob(name)}
+        return frozenset(test for test in tests if (root / test).exists()) | moved
+
+    def time(self, test: str) -> float | None:
+        """Processor time of a test module [s]; None where it was not watched."""
+        name = PurePosixPath(test).name
+        return next((took for path, took in self.seconds.items() if PurePosixPath(path).name == name), None)
+
+
+def _names(edit: Edit, known: Mapping[str, frozenset[str]]) -> set[str]:
+    """Which entries of a file's map an edit concerns."""
+    functions = edit.functions
+    if functions is None or MODULE in functions or not functions <= known.keys():
+        return set(known)
+    return {*functions, READ}
+
+
+def is_test(path: str) -> bool:
+    """Whether a path is that of a test module."""
+    pure = PurePosixPath(path)
+    return pure.parts[0] == "tests" and pure.name.startswith("test_") and pure.suffix == ".py"
+
+
+def mirrored(path: str, root: Path) -> frozenset[str]:
+    """Test modules of the folder that mirrors that of a file: the innermost that there is, below `tests` itself."""
+    folder = PurePosixPath(path).parent
+    if folder.parts[:1] == ("tests",):
+        folder = folder.relative_to("tests")
+    for one in (folder, *folder.parents):
+        place = root / "tests" / one
+        if one.parts and place.is_dir():
+            return frozenset(str(test.relative_to(root).as_posix()) for test in place.rglob("test_*.py"))
+    return frozenset()
+
+
+def read(path: Path = MAP) -> Touches:
+    """The map that is kept; one that knows nothing where there is none."""
+    if not path.exists():
+        return Touches("", {}, {})
+    kept = json.loads(path.read_text(encoding="utf-8"))
+    tests = list(kept["seconds"])
+    files = {
+        file: {name: frozenset(tests[index] for index in which) for which, names in groups for name in names}
+        for file, groups in kept["files"].items()
+    }
+    return Touches(kept["commit"], kept["seconds"], files)
+
+
+def write(touches: Touches, path: Path = MAP) -> None:
+    """Keep a map: a line for each file, in which functions with the same tests stand together."""
+    place = {test: index for index, test in enumerate(sorted(touches.seconds))}
+    seconds = {test: touches.seconds[test] for test in place}
+    rows = []
+    for file in sorted(touches.files):
+        groups: dict[tuple[int, ...], list[str]] = {}
+        for name, tests in sorted(touches.files[file].items()):
+            groups.setdefault(tuple(sorted(place[test] for test in tests)), []).append(name)
+        told = json.dumps([[list(which), names] for which, names in groups.items()], separators=(",", ":"))
+        rows.append(f"{json.dumps(file)}:{told}")
+    head = f'"commit":{json.dumps(touches.commit)},\n"seconds":{json.dumps(seconds, indent=0)},\n"files":{{\n'
+    path.write_text("{" + head + ",\n".join(rows) + "\n}}\n", encoding="utf-8")

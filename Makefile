@@ -4,7 +4,7 @@ PYTHON ?= $(shell for p in python3.14 python3.13 python3.12 python3.11 python3; 
 VENV := .venv
 BIN := $(VENV)/bin
 
-.PHONY: walk test tests quick map unit interpreted physics check long gate format coverage mutants signs bench docs dist dist-test scenario changelog clean
+.PHONY: walk test tests quick map unit interpreted physics check long gate format coverage mutants signs bench results docs dist dist-test scenario changelog clean
 
 walk: $(VENV)/.installed
 	$(BIN)/surefoot run diagonal-walk
@@ -75,6 +75,11 @@ format: $(VENV)/.installed-dev
 # make bench SECTIONS="tick startup" measures some of it.
 bench: $(VENV)/.installed-dev
 	OMP_NUM_THREADS=1 $(BIN)/python -m benchmarks $(SECTIONS)
+
+# Results that a change can have touched are made again in the background; begun again, it goes on where it stopped.
+# `python docs/results.py` lists all with what is known of them.
+results: $(VENV)/.installed-dev
+	nice $(BIN)/python docs/results.py --run --background $(NAMES)
 
 # The documentation site in build/site, strictly; its index.html opens without a server.
 docs: $(VENV)/.installed-docs

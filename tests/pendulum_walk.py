@@ -29,6 +29,16 @@ def pushing_force(pushes: tuple[Push, ...], time: float) -> Array:
     return force
 
 
+class Attended:
+    """A planner at each update of which a function is asked, which is given it, the state and the feet."""
+
+    def __init__(self, planner, update):
+        self.planner, self.parameters, self._update = planner, planner.parameters, update
+
+    def update(self, state: CentroidalState, feet: FeetState) -> WalkPlan:
+        return self._update(self.planner, state, feet)
+
+
 @dataclass(frozen=True, slots=True)
 class PendulumTrace:
     """What happened, one row per planner tick.
@@ -53,7 +63,7 @@ class PendulumTrace:
 
 
 def walk_pendulum(
-    planner: WalkingPlanner,
+    planner: WalkingPlanner | Attended,
     feet: FeetState,
     duration: float,
     *,

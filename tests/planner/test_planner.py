@@ -3,7 +3,7 @@ from itertools import pairwise
 
 import numpy as np
 import pytest
-from pendulum_walk import walk_pendulum
+from pendulum_walk import Attended, walk_pendulum
 
 from surefoot.errors import ParameterError
 from surefoot.forces import Push
@@ -99,19 +99,16 @@ def test_a_push_past_the_capture_limit_falls(walk):
     assert walk(GaitParameters(lateral_step=0.1), pushes=(push,))[1].fall_time is not None
 
 
-class Frozen(WalkingPlanner):
-    """Gives its last plan again after 2.5 s."""
-
-    last = None
-
-    def update(self, state, feet):
-        if self.last is None or state.time < 2.5:
-            self.last = super().update(state, feet)
-        return self.last
-
-
 def test_a_frozen_plan_falls(stand):
-    planner = Frozen(GaitParameters(lateral_step=0.1), stand(), 0.075, 0.075)
+    plans = []
+
+    def update(planner, state, feet):
+        """The last plan again after 2.5 s."""
+        if not plans or state.time < 2.5:
+            plans.append(planner.update(state, feet))
+        return plans[-1]
+
+    planner = Attended(WalkingPlanner(GaitParameters(lateral_step=0.1), stand(), 0.075, 0.075), update)
     trace = walk_pendulum(planner, stand(), 12.0, com=np.array([0.0, 0.0, 1.0]), substeps=3)
     assert trace.fall_time is not None
     assert trace.fall_time > 2.5

@@ -12,13 +12,11 @@ LATE_TICKS = 2
 """4 ms at 500 Hz."""
 
 
-class SoftSwing(WholeBodyController):
+def soft_swing(*, parameters, **rest):
     """A quarter of the gain of the swing foot's task."""
-
-    def __init__(self, *, parameters, **rest):
-        stiffness, damping = parameters.gains.swing
-        gains = replace(parameters.gains, swing=(0.25 * stiffness, 0.25 * damping))
-        super().__init__(parameters=replace(parameters, gains=gains), **rest)
+    stiffness, damping = parameters.gains.swing
+    gains = replace(parameters.gains, swing=(0.25 * stiffness, 0.25 * damping))
+    return WholeBodyController(parameters=replace(parameters, gains=gains), **rest)
 
 
 class HeavyLeg(WholeBodyController):
@@ -58,39 +56,32 @@ class LateTorque(WholeBodyController):
         return replace(report, torque=self._late[0])
 
 
-class WideCone(WholeBodyController):
+def wide_cone(*, sole, **rest):
     """Believes in three times the friction that there is."""
-
-    def __init__(self, *, sole, **rest):
-        wide = replace(sole, friction=3.0 * sole.friction)
-        super().__init__(sole=wide, **rest)
+    return WholeBodyController(sole=replace(sole, friction=3.0 * sole.friction), **rest)
 
 
-class LooseBalance(WholeBodyController):
+def loose_balance(*, parameters, **rest):
     """A DCM gain of 2.4 in place of 3."""
-
-    def __init__(self, *, parameters, **rest):
-        balance = replace(parameters.balance, dcm=0.8 * parameters.balance.dcm)
-        super().__init__(parameters=replace(parameters, balance=balance), **rest)
+    balance = replace(parameters.balance, dcm=0.8 * parameters.balance.dcm)
+    return WholeBodyController(parameters=replace(parameters, balance=balance), **rest)
 
 
-class LooseTrunk(WholeBodyController):
+def loose_trunk(*, parameters, **rest):
     """Half the gains of the orientation of pelvis and torso."""
-
-    def __init__(self, *, parameters, **rest):
-        stiffness, damping = parameters.gains.orientation
-        gains = replace(parameters.gains, orientation=(0.5 * stiffness, 0.5 * damping))
-        super().__init__(parameters=replace(parameters, gains=gains), **rest)
+    stiffness, damping = parameters.gains.orientation
+    gains = replace(parameters.gains, orientation=(0.5 * stiffness, 0.5 * damping))
+    return WholeBodyController(parameters=replace(parameters, gains=gains), **rest)
 
 
 SABOTAGES = {
-    "task gain quartered": SoftSwing,
+    "task gain quartered": soft_swing,
     "gravity compensation of a leg dropped": HeavyLeg,
     "foot target off by 1 cm": LongStep,
     "torque 4 ms late": LateTorque,
-    "friction cone too wide": WideCone,
+    "friction cone too wide": wide_cone,
 }
 """Those that walks show."""
 
-CONTROLLERS = {**SABOTAGES, "DCM gain 2.4 in place of 3": LooseBalance, "orientation gains halved": LooseTrunk}
+CONTROLLERS = {**SABOTAGES, "DCM gain 2.4 in place of 3": loose_balance, "orientation gains halved": loose_trunk}
 """With those that no walk shows, since it is planned anew from where the robot is 50 times a second."""

@@ -68,16 +68,19 @@ RIGHT = situation((0.1, -0.03), com=np.array([0.02, -0.06]), place=landing(Foot.
                   swing=np.array([[0.05, -0.2], [1.0, 0.0]]))  # fmt: skip
 
 
-class Law(CaptureMargin):
+class Law:
     """A margin of pushed steps."""
 
+    def __init__(self, margin):
+        self.margin, self.cycle = margin, margin.cycle
+
     def margins(self, now, steps, fixed=False):
-        return super().margins(now.com, now.dcm, OMEGA, now, steps, fixed)
+        return self.margin.margins(now.com, now.dcm, OMEGA, now, steps, fixed)
 
 
 def margin_of(legs=LEGS, timing=False):
     parameters = replace(P, step_adaptation=StepAdaptation.TIMING if timing else StepAdaptation.LOCATION)
-    return Law(legs, parameters, HALF)
+    return Law(CaptureMargin(legs, parameters, HALF))
 
 
 class Program:

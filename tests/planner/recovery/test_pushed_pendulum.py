@@ -6,7 +6,7 @@ from itertools import pairwise
 
 import numpy as np
 import pytest
-from pendulum_walk import LEGS, walk_pendulum
+from pendulum_walk import LEGS, Attended, walk_pendulum
 
 from surefoot.forces import Push
 from surefoot.planner.ground.stairs import Direction, Stairs
@@ -106,15 +106,13 @@ def test_a_body_that_has_gone_down_comes_up_again_all_the_way(stand):
     )
     lowering = {2: 0.009, 3: 0.0035}
 
-    class Lowered(WalkingPlanner):
-        """A planner whose legs want the CoM lower after some steps."""
+    def lowered(planner, state, feet):
+        """Legs want the CoM lower after some steps."""
+        planner.state = replace(planner.state, lowering=lowering.get(planner.state.landed, 0.0))
+        return planner.update(state, feet)
 
-        def update(self, state, feet):
-            self.state = replace(self.state, lowering=lowering.get(self.state.landed, 0.0))
-            return super().update(state, feet)
-
-    planner, com = Lowered(gait, stand(), 0.22, 0.11, legs=LEGS), np.array([0.0, 0.0, gait.com_height])
-    plans = walk_pendulum(planner, stand(), gait.duration, com=com).plans
+    planner, com = WalkingPlanner(gait, stand(), 0.22, 0.11, legs=LEGS), np.array([0.0, 0.0, gait.com_height])
+    plans = walk_pendulum(Attended(planner, lowered), stand(), gait.duration, com=com).plans
     lowest = {n: min(plan.com[0, 2] for plan in plans if plan.phase.step == n) for n in (3, 6)}
     assert lowest[3] == pytest.approx(0.941, abs=1e-9)
     assert lowest[6] == plans[-1].com[0, 2] == pytest.approx(0.95, abs=1e-9)

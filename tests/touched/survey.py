@@ -33,9 +33,12 @@ BUILD = """
 import sys
 sys.orig_argv.append("surefoot.native")  # nothing is compiled at import
 from surefoot.native import modules
-modules.DIRECTIVES["profile"] = "True"
+late = modules.stale()
 modules.ARRAYS = modules.OTHERS = "-O1"
-modules.build(modules.stale())
+modules.DIRECTIVES["profile"] = "True"
+modules.build(late)
+del modules.DIRECTIVES["profile"]
+modules.STAMP.write_text(modules.json.dumps({"made": modules.made(), **modules.digests()}))  # imports find nothing stale
 """
 """Compiles the modules of a clone so that each call is told to the hook of `sys.setprofile`."""
 

@@ -8,6 +8,7 @@ of its own, forked from one that has imported the code: none finds what another 
 """
 
 import argparse
+import gc
 import json
 import os
 import resource
@@ -42,7 +43,7 @@ modules.STAMP.write_text(modules.json.dumps({"made": modules.made(), **modules.d
 """
 """Compiles the modules of a clone so that each call is told to the hook of `sys.setprofile`."""
 
-PYTEST = ("-q", "-n", "0", "-p", "no:cacheprovider", "-m", "unit and not long")
+PYTEST = ("-q", "-p", "no:cacheprovider", "-p", "no:xdist", "-p", "no:pytest_cov", "-m", "unit and not long")
 
 
 def clone() -> str:
@@ -72,6 +73,8 @@ def watch(tests: list[str], folder: Path) -> Iterator[tuple[str, float, list[Pat
     for path in sorted(Path("surefoot").rglob("*.py")):
         if path.name != "__main__.py":
             _imported(".".join(path.with_suffix("").parts).removesuffix(".__init__"))
+    pytest.main(["--version"])  # so that its plug-ins are imported, too
+    gc.freeze()
     for number, test in enumerate(tests):
         place = folder / str(number)
         place.mkdir()
@@ -82,14 +85,29 @@ def watch(tests: list[str], folder: Path) -> Iterator[tuple[str, float, list[Pat
             with (place / "output.txt").open("w") as output:
                 os.dup2(output.fileno(), 1)
                 os.dup2(output.fileno(), 2)
-            seen = witness.Witness()
-            pytest.main([*PYTEST, test])
-            seen.write(place / "first.json")
+            _run(test, place / "first.json")
             os._exit(0)
         os.waitpid(child, 0)
         after = resource.getrusage(resource.RUSAGE_CHILDREN)
         took = after.ru_utime + after.ru_stime - before.ru_utime - before.ru_stime
         yield test, round(took, 2), sorted(place.glob("*.json"))
+
+
+def _run(test: str, path: Path) -> None:
+    """Run a test module, watched from its collection on."""
+    import pytest
+
+    class Watcher:
+        seen: witness.Witness | None = None
+
+        @pytest.hookimpl(tryfirst=True)
+        def pytest_collection(self) -> None:
+            self.seen = witness.Witness()
+
+    watcher = Watcher()
+    pytest.main([*PYTEST, test], plugins=[watcher])
+    if watcher.seen is not None:
+        watcher.seen.write(path)
 
 
 def _imported(name: str) -> None:

@@ -18,6 +18,7 @@ import sys
 import tempfile
 from collections import defaultdict
 from collections.abc import Iterator, Mapping
+from contextlib import redirect_stdout
 from functools import cache
 from importlib import import_module
 from pathlib import Path
@@ -39,7 +40,8 @@ modules.ARRAYS = modules.OTHERS = "-O1"
 modules.DIRECTIVES["profile"] = "True"
 modules.build(late)
 del modules.DIRECTIVES["profile"]
-modules.STAMP.write_text(modules.json.dumps({"made": modules.made(), **modules.digests()}))  # imports find nothing stale
+# Imports are to find nothing stale.
+modules.STAMP.write_text(modules.json.dumps({"made": modules.made(), **modules.digests()}))
 """
 """Compiles the modules of a clone so that each call is told to the hook of `sys.setprofile`."""
 
@@ -73,7 +75,8 @@ def watch(tests: list[str], folder: Path) -> Iterator[tuple[str, float, list[Pat
     for path in sorted(Path("surefoot").rglob("*.py")):
         if path.name != "__main__.py":
             _imported(".".join(path.with_suffix("").parts).removesuffix(".__init__"))
-    pytest.main(["--version"])  # so that its plug-ins are imported, too
+    with redirect_stdout(sys.stderr):
+        pytest.main(["--version"])  # so that its plug-ins are imported, too
     gc.freeze()
     for number, test in enumerate(tests):
         place = folder / str(number)

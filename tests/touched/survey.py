@@ -75,6 +75,7 @@ def watch(tests: list[str], folder: Path) -> Iterator[tuple[str, float, list[Pat
     for path in sorted(Path("surefoot").rglob("*.py")):
         if path.name != "__main__.py":
             _imported(".".join(path.with_suffix("").parts).removesuffix(".__init__"))
+    _imported("hypothesis.internal.observability")  # its plug-in does in each session
     with redirect_stdout(sys.stderr):
         pytest.main(["--version"])  # so that its plug-ins are imported, too
     gc.freeze()

@@ -128,6 +128,14 @@ def test_a_test_is_known_where_it_moved(tree):
     assert touched(tree) == OF_FORCE - {"tests/wbc/test_law.py"} | {"tests/run/test_law.py"}
 
 
+def test_a_test_that_was_never_watched_touches_what_its_folder_mirrors(tree):
+    put(tree, "tests/wbc/test_new.py", "def test_nothing():\n    pass\n")
+    git(tree, "add", ".")
+    git(tree, "commit", "-q", "-m", "new")
+    put(tree, "wbc/law.py", LAW.replace("GAIN * x", "-GAIN * x"))
+    assert touched(tree) == OF_FORCE | {"tests/wbc/test_new.py"}
+
+
 def test_an_unknown_file_has_the_tests_of_its_mirrored_folder(tree):
     put(tree, "wbc/new/task.py", "def f():\n    return 1\n")
     assert touched(tree) == {"tests/wbc/test_law.py", "tests/wbc/test_power.py"}

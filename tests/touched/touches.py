@@ -2,6 +2,7 @@
 
 `survey.py` makes it by watching the tests. It is allowed to be old: a file that it does not know has the tests of the
 folder that mirrors its own, a function that it does not know those of its file, and tests that moved keep their names.
+A test module that was never watched is taken to touch what its folder mirrors.
 """
 
 import json
@@ -36,11 +37,11 @@ class Touches:
         """Test modules that an edit touches; empty where nothing is known of it."""
         if is_test(edit.path):
             return frozenset({edit.path} if (root / edit.path).exists() else ())
-        known = self._known(edit, root)
-        found = frozenset(test for name in _names(edit, known) for test in known.get(name, ()))
+        known, near = self._known(edit, root), mirrored(edit.path, root)
+        found = self._there((test for name in _names(edit, known) for test in known.get(name, ())), root)
         if known and not edit.functions and edit.functions is not None:
-            return self._there(found, root)  # words alone: whoever reads them
-        return self._there(found, root) or mirrored(edit.path, root)
+            return found  # words alone: whoever reads them
+        return found | {test for test in near if self.time(test) is None} if found else near
 
     def _known(self, edit: Edit, root: Path) -> Mapping[str, frozenset[str]]:
         """What is known of the file of an edit, under its path now, before, or at the time of the map."""
@@ -53,8 +54,9 @@ class Touches:
         moved = [path for path in self.files if PurePosixPath(path).name == name and not (root / path).exists()]
         return self.files[moved[0]] if len(moved) == 1 else {}
 
-    def _there(self, tests: Iterable[str], root: Path) -> frozenset[str]:
+    def _there(self, found: Iterable[str], root: Path) -> frozenset[str]:
         """Those that exist, under the path of now: names of test modules are unique."""
+        tests = frozenset(found)
         gone = {PurePosixPath(test).name for test in tests if not (root / test).exists()}
         moved = {str(path.relative_to(root).as_posix()) for name in gone for path in (root / "tests").rglob(name)}
         return frozenset(test for test in tests if (root / test).exists()) | moved

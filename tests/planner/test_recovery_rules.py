@@ -14,7 +14,7 @@ from surefoot.planner.planner import WalkingPlanner
 from surefoot.planner.rules import RULES, adds_steps, adjusts, ends, goes_again, retimes, steps_out
 from surefoot.planner.state import SwingStage
 from surefoot.planner.steps.gait import GaitParameters
-from surefoot.planner.types import PhaseKind
+from surefoot.planner.types import Foot, PhaseKind
 
 pytestmark = pytest.mark.unit
 
@@ -83,6 +83,27 @@ def test_a_robot_that_stands_and_is_pushed_makes_a_step(acted):
         assert view.state.stops
         assert inserted(made) > inserted(view)
         assert made.state.info.leads_to
+
+
+@pytest.mark.parametrize("side", [1.0, -1.0])
+def test_the_foot_that_carries_stays_and_the_other_one_steps(stand, side):
+    """A push to the left puts the weight on the left foot, so that the right one steps."""
+    made = []
+
+    def watched(view):
+        after = steps_out(view)
+        if after is not view:
+            made.append((view, after))
+        return after
+
+    profile = replace(PROFILES["default"], rules=(watched, adjusts, retimes))
+    planner = WalkingPlanner(STAND, stand(), 0.22, 0.11, legs=LEGS, profile=profile)
+    push = Push(1.0, 0.1, force(450.0, 0.5 * math.pi * side))
+    walk_pendulum(planner, stand(), 1.3, com=np.array([0.0, 0.0, STAND.com_height]), pushes=(push,))
+    view, after = made[0]
+    assert side * view.off[1] > P.recovery.tolerance
+    step = after.state.schedule.step(after.state.landed + 1)
+    assert step.place.foot is (Foot.RIGHT if side > 0.0 else Foot.LEFT)
 
 
 def test_the_same_foot_goes_again_only_where_that_captures_more(acted):

@@ -36,7 +36,7 @@ map: $(VENV)/.installed-dev
 
 # make unit AREA=planner runs the unit tests of one folder, make unit those of all.
 unit: $(VENV)/.installed-dev
-	$(BIN)/pytest -m "unit and not long" -n auto --dist loadscope tests/$(AREA)
+	$(BIN)/pytest -m "unit and not physics and not long" -n auto --dist loadscope tests/$(AREA)
 
 # The same modules without compiling, in a clone of their own.
 interpreted: $(VENV)/.installed-dev
@@ -44,7 +44,7 @@ interpreted: $(VENV)/.installed-dev
 	git clone --quiet . build/interpreted
 	cd build/interpreted && export PYTHONPATH=$$PWD PATH=$(CURDIR)/$(BIN):$$PATH && \
 	python -m surefoot.native --interpreted && \
-	python -m pytest -q -p no:cacheprovider -m "unit and not long" -n auto --dist loadscope tests/$(AREA) && \
+	python -m pytest -q -p no:cacheprovider -m "unit and not physics and not long" -n auto --dist loadscope tests/$(AREA) && \
 	python -m surefoot check --out runs walk control-push
 
 physics: $(VENV)/.installed-dev
@@ -58,7 +58,7 @@ long: $(VENV)/.installed-dev
 
 # The plug-in of pytest is imported before the measurement begins, and all that it imports with it.
 coverage: $(VENV)/.installed-dev
-	$(BIN)/pytest -m "unit and not long" -n auto --dist loadscope -p no:surefoot --cov --cov-report=term tests/$(AREA)
+	$(BIN)/pytest -m "unit and not physics and not long" -n auto --dist loadscope -p no:surefoot --cov --cov-report=term tests/$(AREA)
 
 # make mutants MODULE=planner/laws/qp.py [TESTS=tests/planner/laws] [LIMIT=40]
 mutants: $(VENV)/.installed-dev

@@ -15,14 +15,14 @@ from dataclasses import dataclass
 from pathlib import Path
 
 from edited import Edit, edits
-from touches import Touches, is_test, mirrored, read
+from touches import Touches, is_test, mirrored, named, read
 
 ROOT = Path(__file__).parents[2]
 
 STARTING = 9.0
 """Until the first test runs [s]."""
 
-UNWATCHED = 5.0
+UNWATCHED = 2.0
 """Processor time that a test module is given that the map does not know [s]."""
 
 NOTHING_RAN = 2
@@ -45,16 +45,16 @@ class Choice:
 
 
 def choose(changed: Iterable[Edit], known: Touches, root: Path, processor_time: float) -> Choice:
-    """Changed test modules come first, then those of folders that mirror a change, then others, quick ones first."""
+    """Changed tests come first, then those that name a changed module, those beside it, others; quick ones first."""
     ranks: dict[str, int] = {}
     unknown = []
     for edit in changed:
         tests = known.of(edit, root)
-        near = mirrored(edit.path, root)
+        near = (frozenset(), named(edit.path, root), mirrored(edit.path, root))
         if not tests:
             unknown.append(edit.path)
         for test in tests:
-            rank = 0 if is_test(edit.path) else 1 if test in near else 2
+            rank = 0 if is_test(edit.path) else next((n for n, some in enumerate(near) if test in some), len(near))
             ranks[test] = min(ranks.get(test, rank), rank)
     times = {test: UNWATCHED if (took := known.time(test)) is None else took for test in ranks}
     runs: dict[str, float] = {}

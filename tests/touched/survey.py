@@ -45,7 +45,7 @@ modules.STAMP.write_text(modules.json.dumps({"made": modules.made(), **modules.d
 """
 """Compiles the modules of a clone so that each call is told to the hook of `sys.setprofile`."""
 
-PYTEST = ("-q", "-p", "no:cacheprovider", "-p", "no:xdist", "-p", "no:pytest_cov", "-m", "unit and not long")
+PYTEST = ("-q", "-p", "no:cacheprovider", "-p", "no:xdist", "-p", "no:pytest_cov", "-m", "unit and not physics and not long")
 
 
 def clone() -> str:

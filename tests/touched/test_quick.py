@@ -136,6 +136,16 @@ def test_a_test_that_was_never_watched_touches_what_its_folder_mirrors(tree):
     assert touched(tree) == OF_FORCE | {"tests/wbc/test_new.py"}
 
 
+def test_a_test_that_names_a_changed_module_comes_first(tree):
+    put(tree, "tests/run/test_names.py", "from surefoot.wbc.law import Law\n")
+    git(tree, "add", ".")
+    git(tree, "commit", "-q", "-m", "new")
+    put(tree, "wbc/law.py", LAW.replace("GAIN * x", "-GAIN * x"))
+    assert touched(tree) == OF_FORCE | {"tests/run/test_names.py"}
+    choice = quick.choose(edits(tree, "HEAD"), KNOWN, tree, 100.0)
+    assert next(iter(choice.runs)) == "tests/run/test_names.py"
+
+
 def test_an_unknown_file_has_the_tests_of_its_mirrored_folder(tree):
     put(tree, "wbc/new/task.py", "def f():\n    return 1\n")
     assert touched(tree) == {"tests/wbc/test_law.py", "tests/wbc/test_power.py"}

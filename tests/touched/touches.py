@@ -1,11 +1,13 @@
 """The map: which test modules run which function, read which file, and how long they take.
 
-`survey.py` makes it by watching the tests. It is allowed to be old: a file that it does not know has the tests of the
-folder that mirrors its own, a function that it does not know those of its file, and tests that moved keep their names.
-A test module that was never watched is taken to touch what its folder mirrors.
+`survey.py` makes it by watching the tests. It is allowed to be old. A file that it does not know has the tests of the
+folder that mirrors its own and those that name it. A function that it does not know has those of its file. Tests that
+moved keep their names. A test module that was never watched is taken to touch what its folder mirrors, and modules that
+it names.
 """
 
 import json
+import re
 from collections.abc import Iterable, Mapping
 from dataclasses import dataclass
 from pathlib import Path, PurePosixPath
@@ -37,7 +39,7 @@ class Touches:
         """Test modules that an edit touches; empty where nothing is known of it."""
         if is_test(edit.path):
             return frozenset({edit.path} if (root / edit.path).exists() else ())
-        known, near = self._known(edit, root), mirrored(edit.path, root)
+        known, near = self._known(edit, root), named(edit.path, root) | mirrored(edit.path, root)
         found = self._there((test for name in _names(edit, known) for test in known.get(name, ())), root)
         if known and not edit.functions and edit.functions is not None:
             return found  # words alone: whoever reads them
@@ -91,6 +93,17 @@ def mirrored(path: str, root: Path) -> frozenset[str]:
         if one.parts and place.is_dir():
             return frozenset(str(test.relative_to(root).as_posix()) for test in place.rglob("test_*.py"))
     return frozenset()
+
+
+def named(path: str, root: Path) -> frozenset[str]:
+    """Test modules that import from a module of the package, by its dotted name."""
+    words = PurePosixPath(path).with_suffix("").parts
+    dotted = ".".join(words if words[0] == "surefoot" else ("surefoot", *words))
+    package = re.escape(dotted.rpartition(".")[0])
+    whole = rf"(from|import) {re.escape(dotted)}\b(?!\.)"
+    imports = re.compile(rf"{whole}|from {package} import [^#\n]*\b{words[-1]}\b")
+    texts = ((test, test.read_text(encoding="utf-8")) for test in (root / "tests").rglob("test_*.py"))
+    return frozenset(test.relative_to(root).as_posix() for test, text in texts if imports.search(text))
 
 
 def read(path: Path = MAP) -> Touches:

@@ -23,12 +23,12 @@ PARAMETERS = PlannerParameters(step_adaptation=StepAdaptation.NONE, horizon=40, 
 T = PARAMETERS.sample_time
 
 
-def plans_of(stand, gait, changes=(), rise=Rise.SINGLE):
+def plans_of(stand, gait, changes=(), rise=Rise.SINGLE, count=None):
     """Plans of a walk whose CoM and feet do exactly what is planned, with other durations from some ticks on."""
     planner = WalkingPlanner(gait, stand(), 0.2, 0.1, parameters=PARAMETERS, height_profile=SmoothHeight(rise))
     com, velocity, ideal, made = np.array([0.0, 0.0, gait.com_height]), np.zeros(3), IdealFeet(stand()), []
     changes, slowest = dict(changes), max([1.0, *(ratio for _, ratio in changes)])
-    for tick in range(round(gait.duration * slowest / T) + 30):
+    for tick in range(count or round(gait.duration * slowest / T) + 30):
         if tick in changes:
             ratio = changes[tick]
             durations = ratio * gait.single_support, ratio * gait.double_support
@@ -153,6 +153,20 @@ def test_commands_at_any_moment_leave_no_jump(stand, data):
     assert_continuous(made)
     assert made[-1].phase.kind is PhaseKind.STAND
     assert np.abs(made[-1].com_velocity[0]).max() < 0.05
+
+
+def test_a_swing_that_is_nearly_over_keeps_its_time(stand):
+    """With less than three samples until its foot is to touch down, which is some time before the phase is over."""
+    lead, kept, count = PARAMETERS.touchdown_lead / T, [], 60
+    plain = plans_of(stand, GAIT, count=count)
+    swings = [tick for tick, plan in enumerate(plain) if plan.phase.kind is PhaseKind.SINGLE]
+    for tick in swings[-6:]:
+        left = plain[tick].footsteps[0].touchdown_time - plain[tick].time
+        changed = plans_of(stand, GAIT, [(tick, 1.3)], count=tick + 1)[tick]
+        keeps = changed.footsteps[0].touchdown_time == pytest.approx(plain[tick].footsteps[0].touchdown_time, abs=1e-9)
+        assert keeps is (left / T < 3.0 + lead)
+        kept.append(keeps)
+    assert set(kept) == {False, True}
 
 
 @pytest.mark.parametrize("ratio", [0.7, 1.3])

@@ -22,13 +22,16 @@ class Feet:
         self.contact = SoleContact(ContactDetection(force=force), sensors, WEIGHT, HALF, PERIOD)
         self.update(0.5, 0.5)
 
-    def update(self, left, right, above=(0.0, 0.0), rolling=-1, cop=0.0, ticks=1):
-        """Load the feet with shares of the weight; says after how many ticks the left one was felt."""
+    def update(self, left, right, above=(0.0, 0.0), rolling=-1, cop=0.0, beside=0.0, ticks=1):
+        """Load the feet with shares of the weight; says after how many ticks the left one was felt.
+
+        The CoP of the left one is so far ahead and beside of its centre, in half sizes of the sole.
+        """
         felt = None
         for tick in range(ticks):
             wrench = np.zeros((2, 6))
             wrench[:, 2] = WEIGHT * left, WEIGHT * right
-            wrench[0, 4] = -cop * HALF[0] * wrench[0, 2]
+            wrench[0, 3], wrench[0, 4] = beside * HALF[1] * wrench[0, 2], -cop * HALF[0] * wrench[0, 2]
             noise = np.repeat([self.sensors.wrench_force, self.sensors.wrench_moment], 3)
             said = wrench + self.bias + noise * self.rng.normal(size=(2, 6))
             self.contact.update(Reading(said, 0.0, True), [k != rolling for k in (0, 1)], np.array(above))
@@ -110,6 +113,9 @@ def test_a_foot_on_its_edge_or_rolling_or_hardly_loaded_does_not_stand_still():
     for given, firm in (
         ({}, True),
         ({"cop": 0.97}, False),
+        ({"cop": 0.6}, True),
+        ({"beside": 0.97}, False),
+        ({"beside": 0.6}, True),
         ({"rolling": 0}, False),
     ):
         feet = swung()

@@ -120,6 +120,19 @@ def test_no_reading_tells_the_heading_or_the_place():
     assert found[0, 0] < 0.1 * 0.1**2
 
 
+def test_a_foot_that_lands_is_as_unsure_as_the_joints_that_say_where_it_is():
+    """Zeros of the joints that are off by o move a sole by -J o in the frame of the IMU, which the attitude turns."""
+    rng = np.random.default_rng(6)
+    filter_, J, unsure = InvariantFilter(somewhere(rng), NOISE, GROUND), rng.normal(size=(6, OFFS)), 1e-3
+    filter_.P[:] = 0.0
+    filter_.P[OFFSETS, OFFSETS] = unsure**2 * np.eye(OFFS)
+    filter_.land(1, rng.normal(size=3), pin.exp3(rng.normal(size=3)), J, None, 0.0, 0.0)
+    moved = np.concatenate((-filter_.stand.R @ J[:3], -filter_.stand.R @ J[3:]))
+    places = [*range(COUNT)[FOOT[1]], *range(COUNT)[SOLE[1]]]
+    np.testing.assert_allclose(filter_.P[places][:, OFFSETS], unsure**2 * moved, atol=1e-15)
+    np.testing.assert_allclose(filter_.P[np.ix_(places, places)], unsure**2 * moved @ moved.T, atol=1e-15)
+
+
 def squares(sensors, seeds=8, duration=2.0):
     """Mean square of errors over deviations of velocity, tilt and place from the stance foot, of synthetic steps."""
     found = []

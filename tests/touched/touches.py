@@ -39,13 +39,13 @@ class Touches:
         """Test modules that an edit touches; empty where nothing is known of it."""
         if is_test(edit.path):
             return frozenset({edit.path} if (root / edit.path).exists() else ())
-        known, near = self._known(edit, root), named(edit.path, root) | mirrored(edit.path, root)
+        known, near = self.entries(edit, root), named(edit.path, root) | mirrored(edit.path, root)
         found = self._there((test for name in _names(edit, known) for test in known.get(name, ())), root)
         if known and not edit.functions and edit.functions is not None:
             return found  # words alone: whoever reads them
         return found | {test for test in near if self.time(test) is None} if found else near
 
-    def _known(self, edit: Edit, root: Path) -> Mapping[str, frozenset[str]]:
+    def entries(self, edit: Edit, root: Path) -> Mapping[str, frozenset[str]]:
         """What is known of the file of an edit, under its path now, before, or at the time of the map."""
         for path in filter(None, (edit.path, edit.before)):
             source = str(PurePosixPath(path).with_suffix(".py"))

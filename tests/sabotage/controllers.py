@@ -90,7 +90,7 @@ SABOTAGES = {
     "torque 4 ms late": LateTorque,
     "friction cone too wide": WideCone,
 }
-"""Those that walks show."""
+"""Sabotages that walks show."""
 
 CONTROLLERS = {**SABOTAGES, "DCM gain 2.4 in place of 3": LooseBalance, "orientation gains halved": LooseTrunk}
 """With those that no walk shows, since it is planned anew from where the robot is 50 times a second."""

@@ -1,4 +1,4 @@
-"""What the whole-body controller is told of a plan."""
+"""The reference of the whole-body controller for a plan."""
 
 from dataclasses import replace
 from itertools import pairwise

@@ -118,7 +118,7 @@ def channel_digest(log: surefoot.Log, topic: str) -> str:
 
 
 def moved(before: Mapping[str, str], now: Mapping[str, str]) -> list[str]:
-    """Topics, or what else is told of a run, that are not as before."""
+    """Topics, or what else is known of a run, that are not as before."""
     return [key for key in {**before, **now} if before.get(key) != now.get(key)]
 
 

@@ -33,7 +33,7 @@ TURNING = 1.0
 """A foot that rocks tells nothing by its orientation [rad]."""
 
 _GATES = (math.inf, GATES[1])
-"""Of one foot the log is taken at its word that it stands, as the published filter does."""
+"""Gates for one foot of which the log says that it stands, as the published filter does."""
 
 START = (1e-3, 1e-2)
 """Deviations of attitude and velocity at the start [rad, m/s]."""

@@ -1,4 +1,4 @@
-"""What the ratios were, version by version: a committed file to which the command appends."""
+"""The ratios, version by version: a committed file to which the command appends."""
 
 import csv
 import subprocess

@@ -1,4 +1,4 @@
-"""How near public humanoids come to the bounds on the sizes of a robot.
+"""The distance of public humanoids from the bounds on the sizes of a robot.
 
     python -m benchmarks.magnitudes [FOLDER]... [--csv FILE]
 
@@ -64,7 +64,7 @@ def asked(model: str) -> dict[str, list[float]]:
 
 
 def nearest(models: dict[str, dict[str, list[float]]]) -> Iterator[Nearest]:
-    """Of each law the model that comes nearest to its bounds, by the share of the way to one."""
+    """Find for each law the model that comes nearest to its bounds, by the share of the way to one."""
     for name, law in LAWS.items():
         ratios = [(ratio, model) for model, heard in models.items() for ratio in heard[name]]
         if ratios:
@@ -73,7 +73,7 @@ def nearest(models: dict[str, dict[str, list[float]]]) -> Iterator[Nearest]:
 
 
 def _share(law: Law, ratio: float) -> float:
-    """How near a ratio is to a bound: 1 at one, more beyond [-]."""
+    """Share of the way of a ratio to a bound: 1 at one, more beyond [-]."""
     below = law.least / ratio if ratio > 0.0 else 0.0
     return max(ratio / law.most, below)
 

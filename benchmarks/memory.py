@@ -1,4 +1,4 @@
-"""What commands hold in memory that read a log, and how long they take, for a short and a long log."""
+"""Memory and time of commands that read a log, for a short and a long log."""
 
 import subprocess
 import sys
@@ -13,10 +13,10 @@ from benchmarks.lengthened import lengthened
 from benchmarks.table import Section, Value
 
 MOST = 300e6
-"""What a command may hold of its own, whatever the length of the log [B]."""
+"""Most memory of a command of its own, whatever the length of the log [B]."""
 
 LENGTHS = (60.0, 1200.0)
-"""Of the logs [s]: a minute, and twenty."""
+"""Lengths of the logs [s]: a minute, and twenty."""
 
 _READ = "import sys, surefoot; surefoot.read(sys.argv[1])['/truth'].field('com')"
 _FRAME = "import sys, surefoot; surefoot.read(sys.argv[1]).frame('/contact')"
@@ -45,7 +45,7 @@ class Peak:
 
     Attributes:
         own: memory that no file backs, which the kernel cannot drop [B].
-        all: likewise with pages of files that are mapped, such as libraries and the log itself [B].
+        all: the same with pages of files that are mapped, such as libraries and the log itself [B].
     """
 
     def __init__(self, process: "subprocess.Popen[bytes]") -> None:

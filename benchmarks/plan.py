@@ -56,7 +56,7 @@ def _walk(planner: WalkingPlanner, feet: FeetState, duration: float) -> None:
 
 
 def _median(starts: tuple[int, ...], tries: int = 1000) -> float:
-    """Of S_x, S_u1 and S_u at a stiffness that varies [us]."""
+    """Median times of S_x, S_u1 and S_u at a stiffness that varies [us]."""
     stiffness, response, spent = np.random.default_rng(0).uniform(7.0, 13.0, 50), cached_response(0.02, starts, 50), []
     for _ in range(tries):
         start = time.perf_counter()

@@ -61,7 +61,7 @@ def planted(contract: Contract, robot: RobotDescription) -> Iterator[tuple[str, 
 
 
 def rows_of(name: str, path: Path, robot: RobotDescription) -> Iterator[dict[str, str]]:
-    """What is named of each fault that is planted in a contract."""
+    """Rows on each fault that is planted in a contract, with what is named of it."""
     files = read(path, robot.joint_names)
     for fault, what, contract in planted(files.contract, robot):
         found = check(contract, files.network, robot)
@@ -77,19 +77,19 @@ def main() -> None:
     parser.add_argument("policies", nargs="+", metavar="NAME=CONTRACT")
     parser.add_argument("--robot", default="g1")
     parser.add_argument("--out", type=Path, default=OUT)
-    told = parser.parse_args()
-    robot = describe(told.robot, RobotSettings())
+    options = parser.parse_args()
+    robot = describe(options.robot, RobotSettings())
     kept = []
-    if told.out.is_file():
-        with told.out.open(encoding="utf-8") as file:
+    if options.out.is_file():
+        with options.out.open(encoding="utf-8") as file:
             kept = list(csv.DictReader(line for line in file if not line.startswith("# ")))
-    for given in told.policies:
+    for given in options.policies:
         name, _, path = given.partition("=")
         kept = [row for row in kept if row["policy"] != name]
         for row in rows_of(name, Path(path), robot):
             kept.append(row)
             print(*row.values(), sep=" | ", flush=True)
-            with told.out.open("w", encoding="utf-8", newline="") as file:
+            with options.out.open("w", encoding="utf-8", newline="") as file:
                 code = versions()
                 file.write("# python -m benchmarks.policy_faults NAME=CONTRACT\n")
                 file.write(f"# surefoot {code['surefoot']}, source_digest {code['source_digest']}\n")

@@ -1,4 +1,4 @@
-"""What becomes of public humanoids: read, derived, stood, walked, turned and pushed.
+"""A benchmark of public humanoids: read, derived, stood, walked, turned and pushed.
 
     python benchmarks/robots.py [FOLDER]... [--only NAME]... [--jobs N] [--out DIR] [--csv FILE] [--against FILE]
 
@@ -29,13 +29,13 @@ from surefoot.scenarios.run.run import run_scenario
 from surefoot.scenarios.setup.load import load
 
 IMPULSE = 0.1
-"""Of each push, over the robot's mass [N s/kg]."""
+"""Impulse of each push, over the robot's mass [N s/kg]."""
 
 SIDES = (0, 90, 180, 270)
 """Directions that pushes go to, from the way it walks to the left [deg]."""
 
 PUSHED = {"gait.steps": "9", "criteria": "{fell: false, steps_taken: steps_planned}"}
-"""Of the walk that is pushed in its fifth step."""
+"""Settings of the walk that is pushed in its fifth step."""
 
 DATA = "package://example-robot-data/robots"
 FOURIER = "package://fourier_robot_descriptions/assets/urdf"
@@ -43,7 +43,7 @@ FOURIER = "package://fourier_robot_descriptions/assets/urdf"
 
 _PROPOSAL = re.compile(r"take for example ([^;(]+)")
 _SETTING = re.compile(r"--set '?(\w+\.\w+)=(-?[\d.]+|\[[^\]]*\])")
-"""What a refusal proposes, and a key and its value in that."""
+"""Proposal of a refusal, with a key and its value."""
 
 
 @dataclass(frozen=True, slots=True)
@@ -109,7 +109,7 @@ MODELS = (
 
 @dataclass(frozen=True, slots=True)
 class Row:
-    """What became of a robot.
+    """The results of a robot.
 
     Attributes:
         model: that it was made of.
@@ -137,12 +137,12 @@ class Row:
 
     @property
     def good(self) -> bool:
-        """Whether it takes all steps and survives every push with at most two lines added."""
+        """True if it takes all steps and survives every push with at most two lines added."""
         return bool(self.walks) and self.pushed == len(SIDES) and len(self.model.added) <= 2
 
 
 def found(model: Model, folders: Sequence[Path]) -> str | None:
-    """What a robot file may call the model; None where no folder has it."""
+    """Name by which a robot file may call the model; None where no folder has it."""
     if model.place.startswith("package://"):
         return model.place
     name = Path(model.place).name
@@ -180,8 +180,8 @@ def _moved(row: Row, robot: Mapping[str, str], out: Path) -> Row:
     """The row with what it did; where `walk` is refused, all is done with the gait that the refusal proposes."""
     stood = _run("stand", robot, out)
     walked, gait = _followed("walk", robot, out)
-    told = tuple(f"{key}={value}" for key, value in gait.items())
-    row = replace(row, stands=stood.stayed, walks=walked.stayed, gait=told, missed=walked.missed)
+    settings = tuple(f"{key}={value}" for key, value in gait.items())
+    row = replace(row, stands=stood.stayed, walks=walked.stayed, gait=settings, missed=walked.missed)
     if not walked.stayed:
         return replace(row, why=(*row.why, *stood.refused, *walked.refused))
     turned, _ = _followed("walk-turn", robot, out)
@@ -244,8 +244,8 @@ HEADINGS = (
 
 def cells(row: Row) -> tuple[str, ...]:
     """A row in words."""
-    told = {True: "yes", False: "**no**", None: "–"}
-    did = (told[value] for value in (row.reads, row.derives, row.stands, row.walks, row.turns))
+    marks = {True: "yes", False: "**no**", None: "–"}
+    did = (marks[value] for value in (row.reads, row.derives, row.stands, row.walks, row.turns))
     pushed = "–" if row.pushed is None else f"{row.pushed} of {len(SIDES)}"
     size = (f"{row.mass:.0f}", str(row.joints)) if row.derives else ("–", "–")
     missed = str(len(row.missed)) if row.walks is not None else "–"
@@ -255,13 +255,13 @@ def cells(row: Row) -> tuple[str, ...]:
 def table(rows: Sequence[Row]) -> str:
     """All of it as Markdown: the table, then what is to be said of rows."""
     lines = [_line(HEADINGS), _line("---" for _ in HEADINGS), *(_line(cells(row)) for row in rows), ""]
-    lines += [f"- {row.model.name}: {told}" for row in rows for told in _remarks(row)]
+    lines += [f"- {row.model.name}: {remark}" for row in rows for remark in _remarks(row)]
     good = sum(row.good for row in rows)
     return "\n".join([*lines, "", f"{good} of {len(rows)} take all steps and survive every push.", ""])
 
 
 def moved_from(rows: Sequence[Row], path: Path) -> Iterator[str]:
-    """What is not as it was in a kept table, one sentence each."""
+    """Differences from a kept table, one sentence each."""
     lines = [line for line in path.read_text(encoding="utf-8").splitlines() if not line.startswith("#")]
     before = {was["robot"]: was for was in csv.DictReader(lines)}
     for row in rows:
@@ -314,7 +314,7 @@ def main() -> None:
     rows = {}
     for row in side_by_side(examined, tasks, given.jobs, _lost):
         rows[row.model.name] = row
-        print(" ".join(cells(row)), *(f"\n  - {told}" for told in _remarks(row)), flush=True)
+        print(" ".join(cells(row)), *(f"\n  - {remark}" for remark in _remarks(row)), flush=True)
     done = [rows[model.name] for model, *_ in tasks]
     print(table(done))
     moved = [] if given.against is None else list(moved_from(done, given.against))

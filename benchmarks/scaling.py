@@ -1,4 +1,4 @@
-"""How cost grows with steps, joints, runs and cores."""
+"""Growth of cost with steps, joints, runs and cores."""
 
 import subprocess
 import sys

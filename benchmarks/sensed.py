@@ -1,4 +1,4 @@
-"""How wrong and how sure the estimator is: its errors over its deviations at fixed instants of a walk, over seeds.
+"""Errors of the estimator over its deviations, at fixed instants of a walk, over seeds.
 
     python -m benchmarks.sensed --seeds 20 --out docs/sensors.csv
 

@@ -1,4 +1,4 @@
-"""What a command costs before it does anything: the modules that it imports, and its processor time."""
+"""Cost of a command before it does anything: the modules that it imports, and its processor time."""
 
 import json
 import os
@@ -35,11 +35,11 @@ finally:
 def imported(words: Sequence[str]) -> list[str]:
     """Names of the modules that a command has imported at its end, if what it keeps in the cache folder is there."""
     with TemporaryDirectory() as folder:
-        told = Path(folder, "modules.json")
-        code = _TELL.format(path=str(told))
+        listed = Path(folder, "modules.json")
+        code = _TELL.format(path=str(listed))
         for _ in range(2):
             _run(["-c", code, "surefoot", *words], folder)
-        return list(json.loads(told.read_text()))
+        return list(json.loads(listed.read_text()))
 
 
 def processor_time(words: Sequence[str], tries: int) -> float:
@@ -66,7 +66,7 @@ def _run(words: Sequence[str], folder: str) -> None:
 
 
 def startup(quick: bool) -> Section:
-    """What each command costs before it does anything."""
+    """Measure what each command costs before it does anything."""
     rows = []
     for name, words in COMMANDS.items():
         modules = imported(words)

@@ -46,7 +46,7 @@ def pushes() -> ModuleType:
 
 
 def goals() -> dict[str, dict[str, float]]:
-    """What the natural gait shall survive by phase and direction [N·s/kg]."""
+    """Goals of the natural gait's pushes by phase and direction [N·s/kg]."""
     module = pushes()
     return {phase: dict(zip(module.DIRECTIONS, most, strict=True)) for phase, most in module.NATURAL_GOALS.items()}
 
@@ -62,7 +62,7 @@ def goals_table() -> str:
 
 
 def elsewhere_table() -> str:
-    """What is survived elsewhere than in the third step on flat ground."""
+    """Table of pushes that are survived elsewhere than in the third step on flat ground."""
     rows = ([what, f"{impulse:g}", str(runs)] for what, impulse, runs in _elsewhere())
     return table(("pushed", "with, N·s/kg", "runs"), rows)
 
@@ -70,8 +70,8 @@ def elsewhere_table() -> str:
 def _elsewhere() -> Iterator[tuple[str, float, int]]:
     module = pushes()
     (cases,) = (mark for mark in module.test_standing.pytestmark if mark.args and "keys" in mark.args[0])
-    for told, (_, impulse, _) in zip(cases.kwargs["ids"], cases.args[1], strict=True):
-        yield f"standing, {told}, from eight sides", impulse, _count(module.test_standing) // len(cases.args[1])
+    for posture, (_, impulse, _) in zip(cases.kwargs["ids"], cases.args[1], strict=True):
+        yield f"standing, {posture}, from eight sides", impulse, _count(module.test_standing) // len(cases.args[1])
     twice = module.test_two_pushes_a_step_apart
     yield "two pushes a step apart, in one direction or one after another", module.TWICE, _count(twice)
     (cases,) = (mark for mark in module.test_elsewhere.pytestmark if mark.args and "walk" in mark.args[0])
@@ -81,13 +81,13 @@ def _elsewhere() -> Iterator[tuple[str, float, int]]:
 
 
 def _count(test: object) -> int:
-    """How many runs a test is."""
+    """Number of runs of a test."""
     marks = test.pytestmark  # type: ignore[attr-defined]
     return prod(len(list(mark.args[1])) for mark in marks if mark.name == "parametrize")
 
 
 def largest() -> dict[str, tuple[float, ...]]:
-    """Of the natural gait forward, backward, to the swing foot, over the stance foot, by when [N·s/kg]."""
+    """Largest pushes of the natural gait in four directions, by when [N·s/kg]."""
     most = [[phase[direction] for direction in ("forward", "backward", "left", "right")] for phase in goals().values()]
     return {
         "in mid-swing": tuple(most[list(goals()).index("SS 0.5")]),
@@ -125,14 +125,14 @@ def _campaign(name: str) -> Any:
 
 
 def drawn_table() -> str:
-    """What the campaign `robustness` has wrong, and what it draws for each run."""
+    """Table of the errors of the campaign `robustness`, and of what it draws for each run."""
     campaign = _campaign("robustness")
     fixed = {key: value for key, value in campaign["set"].items() if key.startswith(("errors", "start", "wbc"))}
     drawn = {key: next(iter(spread.items())) for key, spread in campaign["sample"].items()}
     rows = [[f"`{with_unit(key)}`", f"{value:g}"] for key, value in fixed.items() if isinstance(value, float)]
     for key, (kind, values) in drawn.items():
-        told = " to ".join(f"{value:g}" for value in values) if kind == "uniform" else ", ".join(map(str, values))
-        rows.append([f"`{with_unit(key)}`", told])
+        text = " to ".join(f"{value:g}" for value in values) if kind == "uniform" else ", ".join(map(str, values))
+        rows.append([f"`{with_unit(key)}`", text])
     return table(("key", "value, or drawn from"), rows)
 
 
@@ -183,4 +183,4 @@ TABLES = {
     "lasting-forces": ("recovery-results.md", lasting_table),
     "pushes": ("../README.md", readme_table),
 }
-"""By name: the page, and what makes the table."""
+"""Tables by name: the page, and what makes the table."""

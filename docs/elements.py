@@ -1,4 +1,4 @@
-"""What becomes of each element of a model, as tables of a page."""
+"""Tables of a page on what becomes of each element of a model."""
 
 from collections.abc import Iterable, Iterator
 

@@ -25,7 +25,7 @@ PAGE = Path(__file__).with_suffix(".md")
 PUSH = {"step": 4, "phase": "single", "fraction": 0.5, "duration": 0.1, "impulse": 0.4}
 TRUTH: dict[str, Any] = {"sensing.source": "truth", "pushes": [PUSH]}
 SETTINGS = {"planner.step_adaptation": "none", **TRUTH}
-"""Of the walk that falls; the other one is without the first of them."""
+"""Settings of the walk that falls; the other one is without the first of them."""
 
 _PLACE = re.compile(r"(?s)(<!-- fall: ([\w-]+) -->).*?(<!-- end -->)")
 
@@ -48,7 +48,7 @@ def pair(folder: Path) -> Pair:
 
 
 def numbers(found: Pair) -> dict[str, str]:
-    """What stands at each place, by name."""
+    """Values at each place, by name."""
     fell, verdict, plan = found.fell, found.found.verdict, found.fell["/plan"]
     said = list(events(fell))
     begin, end = (event.time for event in said if event.kind == "push")
@@ -78,11 +78,11 @@ def _with_unit(name: str, value: Any) -> str:
 
 def _health(found: inspection.Inspection) -> Iterator[str]:
     """Rows of the warnings that have a time, and of the fall."""
-    told = [(one.time, f"`{one.check}`", one.relation or "", one.found) for one in found.health if one.time is not None]
+    rows = [(one.time, f"`{one.check}`", one.relation or "", one.found) for one in found.health if one.time is not None]
     fall = (found.verdict.metrics["fall_time"], "the verdict", "effect", "it fell")
-    told.insert(sum(row[0] <= fall[0] for row in told), fall)
+    rows.insert(sum(row[0] <= fall[0] for row in rows), fall)
     yield from ("| from [s] | check | | finding |", "|---|---|---|---|")
-    yield from (f"| {time:.3f} | {check} | {relation} | {what} |" for time, check, relation, what in told)
+    yield from (f"| {time:.3f} | {check} | {relation} | {what} |" for time, check, relation, what in rows)
 
 
 def _at(log: Log, topic: str, field: str, time: float) -> Any:
@@ -112,11 +112,11 @@ def _compared(found: Pair, time: float) -> Iterator[str]:
     yield f"| `steps_taken` | {cells} |"
 
 
-def updated(text: str, told: dict[str, str]) -> str:
+def updated(text: str, values: dict[str, str]) -> str:
     """The text of the page with its numbers written anew."""
 
     def written(place: re.Match[str]) -> str:
-        text = told[place[2]]
+        text = values[place[2]]
         return f"{place[1]}\n{text}\n{place[3]}" if "\n" in text else f"{place[1]}{text}{place[3]}"
 
     return _PLACE.sub(written, text)
@@ -125,8 +125,8 @@ def updated(text: str, told: dict[str, str]) -> str:
 def main() -> None:
     """Update the page."""
     with tempfile.TemporaryDirectory() as folder:
-        told = numbers(pair(Path(folder)))
-    PAGE.write_text(updated(PAGE.read_text(encoding="utf-8"), told), encoding="utf-8")
+        values = numbers(pair(Path(folder)))
+    PAGE.write_text(updated(PAGE.read_text(encoding="utf-8"), values), encoding="utf-8")
 
 
 if __name__ == "__main__":

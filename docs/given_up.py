@@ -1,4 +1,4 @@
-"""After how many plans on end a fall may be told, and after how many it is taken back.
+"""After how many plans on end a fall may be announced, and after how many it is taken back.
 
     python docs/given_up.py --out runs/given-up
 
@@ -38,7 +38,7 @@ LOW = 0.5
 """Height of the pelvis of a tour below which G1 has fallen [m]."""
 
 SOON = 1.0
-"""A fall that was taken back so shortly before it came was told rightly [s]."""
+"""A fall that was taken back so shortly before it came was announced rightly [s]."""
 
 
 class Watched(NamedTuple):
@@ -59,19 +59,19 @@ class Watched(NamedTuple):
     size: Similarity
 
 
-class Told(NamedTuple):
-    """What is told of walks of a kind by some counts.
+class Warnings(NamedTuple):
+    """The warnings of walks of a kind, by some counts.
 
     Attributes:
         kind: of walk.
         tell: plans on end that tell a fall.
         back: that take it back.
         walked: walks that did not fall.
-        wrong: falls that were told of these, or more than a second before one was taken back.
+        wrong: falls that were announced of these, or more than a second before one was taken back.
         falls: walks that fell.
-        told: of these, those whose fall was told when it came.
-        early: of these, told at least 0.2 s before.
-        lost: falls that were told, and taken back in the last second before they came.
+        told: of these, those whose fall was announced when it came.
+        early: of these, announced at least 0.2 s before.
+        lost: falls that were announced, and taken back in the last second before they came.
     """
 
     kind: str
@@ -80,7 +80,7 @@ class Told(NamedTuple):
     walked: int
     wrong: int
     falls: int
-    told: int
+    warnings_of: int
     early: int
     lost: int
 
@@ -108,7 +108,7 @@ def toured(seed: int) -> Watched:
 
 
 def spells(walk: Watched, numbers: RecoveryParameters) -> list[tuple[float, float]]:
-    """From when until when a fall is told of a walk until it falls; infinite where it is told to the end [s]."""
+    """Begin and end of the time in which a fall is announced; infinite where it is announced to the end [s]."""
     balance, said, found = Balance(), False, []
     for time, margin in zip(walk.time, walk.margin, strict=True):
         if walk.fall is not None and time > walk.fall:
@@ -124,8 +124,8 @@ def spells(walk: Watched, numbers: RecoveryParameters) -> list[tuple[float, floa
     return found
 
 
-def told(walks: Sequence[Watched], kind: str, tell: int, back: int) -> Told:
-    """What is told of walks of a kind by some counts."""
+def warnings_of(walks: Sequence[Watched], kind: str, tell: int, back: int) -> Warnings:
+    """Count the warnings of walks of a kind."""
     wrong, lost, fell = 0, 0, 0
     leads = []
     of_kind = [walk for walk in walks if walk.kind == kind]
@@ -141,7 +141,7 @@ def told(walks: Sequence[Watched], kind: str, tell: int, back: int) -> Told:
         lost += sum(before <= SOON for before in ended)
         leads += [walk.fall - begin for begin, end in found if end == np.inf]
     early = sum(lead >= 0.2 for lead in leads)
-    return Told(kind, tell, back, len(of_kind) - fell, wrong, fell, len(leads), early, lost)
+    return Warnings(kind, tell, back, len(of_kind) - fell, wrong, fell, len(leads), early, lost)
 
 
 def main() -> int:
@@ -152,13 +152,13 @@ def main() -> int:
     parser.add_argument("--tours", type=int, default=12, help="tours of G1")
     given = parser.parse_args()
     walks = [*pushed(given.out, given.jobs), *map(toured, range(given.tours))]
-    found = [told(walks, kind, *counts) for kind in ("pushes", "tours") for counts in COUNTS]
+    found = [warnings_of(walks, kind, *counts) for kind in ("pushes", "tours") for counts in COUNTS]
     code = relevant_versions()
     with KEPT.open("w", newline="", encoding="utf-8") as file:
         file.write("# python docs/given_up.py\n")
         file.write(f"# surefoot {code['surefoot']}, source_digest {code['source_digest']}\n")
         writer = csv.writer(file, lineterminator="\n")
-        writer.writerow(Told._fields)
+        writer.writerow(Warnings._fields)
         writer.writerows(found)
     print(KEPT.read_text(encoding="utf-8"))
     return 0

@@ -1,4 +1,4 @@
-"""What crosses the border between Surefoot and parts of others, from the docstrings of what crosses it."""
+"""Tables of the values that pass between Surefoot and parts of others, from their docstrings."""
 
 import inspect
 import re
@@ -20,7 +20,7 @@ from surefoot.wbc.types import RobotState
 
 @dataclass(frozen=True, slots=True)
 class Handed:
-    """What crosses the border between Surefoot and a part of others.
+    """A value that passes between Surefoot and a part of others.
 
     Attributes:
         thing: the class, or the function whose arguments it is.
@@ -59,7 +59,7 @@ HANDED = (
 
 
 def tables() -> str:
-    """What parts of others get and give, with shapes and units."""
+    """Tables of what parts of others get and give, with shapes and units."""
     return "\n\n".join(_handed(one) for one in HANDED)
 
 

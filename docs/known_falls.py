@@ -1,4 +1,4 @@
-"""How often the first line of `surefoot inspect` names the known cause of a fall.
+"""The rate at which the first line of `surefoot inspect` names the known cause of a fall.
 
     python docs/known_falls.py --out runs/known-falls
 
@@ -42,7 +42,7 @@ class Fall(NamedTuple):
 
     @property
     def right(self) -> bool:
-        """Whether the first line names the cause."""
+        """True if the first line names the cause."""
         return self.check == self.cause
 
 
@@ -50,11 +50,11 @@ def falls(campaign: str, folder: Path, jobs: int = 1) -> Iterator[Fall]:
     """Run a campaign, and say what stands first of each of its falls."""
     out = folder / campaign
     for point, record in sweep(read_campaign(str(FOLDER / "campaigns" / f"{campaign}.yaml")), out, jobs).runs:
-        yield told(campaign, str(point.labels["fall"]), out / record.log)
+        yield first_finding(campaign, str(point.labels["fall"]), out / record.log)
 
 
-def told(campaign: str, case: str, log: Path) -> Fall:
-    """What stands first of a fall by its log."""
+def first_finding(campaign: str, case: str, log: Path) -> Fall:
+    """The first finding on a fall by its log."""
     found = inspect(read(log))
     first = next(one for one in found.health if one.check != "file")
     fell, cause = bool(found.verdict.metrics["fell"]), case.partition(",")[0].replace(" ", "_")

@@ -36,7 +36,7 @@ class Made(NamedTuple):
 
     @property
     def command(self) -> str:
-        """What makes it."""
+        """Command that makes it."""
         given = [f"--set {shlex.quote(setting)}" for setting in self.settings]
         return " ".join(["surefoot sweep", self.campaign, *given, *([f"--seeds {self.seeds}"] if self.seeds else [])])
 
@@ -83,11 +83,11 @@ MADE = {
     "without-foot-sensors": _of_page("without-foot-sensors", "walk", *WITHOUT),
     "hidden": Made("hidden", columns=("hidden", "feet", "status", *HIDDEN)),
 }
-"""By the name of the result."""
+"""Results by the name of the result."""
 
 
 def path_of(name: str) -> Path:
-    """Where a result is kept."""
+    """Path of a result that is kept."""
     return RESULTS / f"{name}.csv"
 
 
@@ -140,7 +140,7 @@ def _short(value: str) -> str:
 
 
 def _thresholds(folder: Path) -> Iterator[dict[str, str]]:
-    """Where each search ended, its range, and the limit of the push by the log of its first run."""
+    """Ends of each search, its range, and the limit of the push by the log of its first run."""
     campaign = read_campaign(str(folder / "campaign.yaml"))
     search = campaign.spec.bisect
     assert search is not None
@@ -163,7 +163,7 @@ def _thresholds(folder: Path) -> Iterator[dict[str, str]]:
 
 
 def searches(name: str) -> tuple[list[Found], list[Axis]]:
-    """Where the searches of a kept result ended, and its axes."""
+    """Ends of the searches of a kept result, and its axes."""
     kept = rows(name)
     names = list(kept[0])[: list(kept[0]).index("threshold")]
     axes = [Axis(axis, tuple(dict.fromkeys(row[axis] for row in kept))) for axis in names]
@@ -191,8 +191,8 @@ def main() -> None:
     parser = argparse.ArgumentParser(description=__doc__, formatter_class=argparse.RawDescriptionHelpFormatter)
     parser.add_argument("name", choices=MADE)
     parser.add_argument("folder", type=Path, help="of the campaign")
-    told = parser.parse_args()
-    keep(told.name, told.folder)
+    options = parser.parse_args()
+    keep(options.name, options.folder)
 
 
 if __name__ == "__main__":

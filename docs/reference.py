@@ -124,7 +124,7 @@ def metrics_table() -> str:
 
 
 def tolerance(metric: Metric[Any]) -> str:
-    """By how much `surefoot check` lets a metric move, in the unit in which it is shown and of its value."""
+    """Tolerance of a metric in `surefoot check`, in the unit in which it is shown and of its value."""
     if not metric.repeatable:
         return "not compared"
     counts = metric.tolerance is None and metric.kind in ("bool", "int")
@@ -136,7 +136,7 @@ def tolerance(metric: Metric[Any]) -> str:
 
 
 def signs_table() -> str:
-    """What `surefoot check` compares stage by stage, and by how much it may differ."""
+    """Table of what `surefoot check` compares stage by stage, and by how much it may differ."""
     rows = []
     for sign in SIGNS:
         what = sign.words.format(stage="", label="the stage", foot="swing").replace(" of the stage", "").strip()
@@ -172,7 +172,7 @@ def sensors_table() -> str:
 
 
 def _of_preset(name: str, errors: SensorErrors) -> str:
-    """What a preset has for a key, as it is read; empty where the key is no term of it."""
+    """Value of a preset for a key, as it is read; empty where the key is no term of it."""
     group, _, term = name.partition("_")
     delivery = {"encoder": errors.joints, "imu": errors.imu, "wrench": errors.feet}.get(group)
     if name == "wrench":
@@ -184,7 +184,7 @@ def _of_preset(name: str, errors: SensorErrors) -> str:
 
 
 def sensed_table() -> str:
-    """What `benchmarks.sensed` measured of the estimator: errors, and their squares over those that it says."""
+    """Table of what `benchmarks.sensed` measured: errors of the estimator, and their squares over its own variances."""
     with (FOLDER / "sensors.csv").open() as file:
         found = list(csv.DictReader(file))
     rows = ([f"`{row['preset']}`", row["quantity"], f"{row['error_rms']} {row['unit']}", row["nees"]] for row in found)
@@ -192,7 +192,7 @@ def sensed_table() -> str:
 
 
 def field_table() -> str:
-    """What others have reached, with where it is from."""
+    """Table of what others have reached, with its sources."""
     quoted = yaml.safe_load((FOLDER / "field.yaml").read_text(encoding="utf-8"))
     columns = ("what", "value", "who", "evidence", "source")
     return table(columns, ([str(row[column]) for column in columns] for row in quoted))
@@ -209,7 +209,7 @@ def engines_table() -> str:
 
 
 def benchmark_tables() -> str:
-    """What the tour of a public benchmark says, from the result that is kept beside the page."""
+    """Tables of the tour of a public benchmark, from the result that is kept beside the page."""
     return markdown(json.loads((FOLDER / "benchmark-g1.json").read_text(encoding="utf-8")))
 
 
@@ -229,16 +229,16 @@ CATALOGUE = (
     ("falls", "fell"),
     ("refused before it runs", "refused"),
 )
-"""What may become of a scenario: in words, and as docs/catalogue.yaml has it."""
+"""Outcomes of a scenario: in words, and as docs/catalogue.yaml has it."""
 
 
 def walked() -> Any:
-    """What the robots that come along make of the catalogue, as `docs/catalogue.py` has measured it."""
+    """Results of the robots that come along on the catalogue, as `docs/catalogue.py` has measured them."""
     return yaml.safe_load((FOLDER / "catalogue.yaml").read_text(encoding="utf-8"))
 
 
 def catalogue_table() -> str:
-    """How many scenarios each robot walks, and the names of those that it does not."""
+    """Table of how many scenarios each robot walks, and the names of those that it does not."""
     heads = ["robot", *(words for words, _ in CATALOGUE), "not met"]
     return table(heads, (_walked_row(name, found) for name, found in walked().items()))
 
@@ -348,7 +348,7 @@ def _key_row(name: str, field: FieldInfo) -> list[str]:
 
 
 def default_of(field: FieldInfo) -> str:
-    """What a key is where nobody sets it, as it is read."""
+    """Default of a key, as it is read."""
     return "required" if field.is_required() else _default(field.get_default(call_default_factory=True))
 
 

@@ -39,7 +39,7 @@ def push_table(name: str) -> str:
 
 
 def gains_table(name: str) -> str:
-    """By how much each adaptation multiplies the threshold of the one before it, least and most, by direction."""
+    """Table of the factors by which each adaptation raises the threshold of the one before it, by direction."""
     found, axes = searches(name)
     *_, columns, shades, groups = axes
     inside = {
@@ -67,7 +67,7 @@ def search_table(name: str, head: str = "N·s/kg") -> str:
 
 
 def numbers_table() -> str:
-    """What a number of the recovery moves, halved and doubled: the thresholds that are others than as it is."""
+    """Table of the thresholds that a number of the recovery moves, halved and doubled."""
     found, (cases, numbers) = searches("recovery-numbers")
     shown = {(one.labels["case"], one.labels["number"]): _shown(one) for one in found}
     plain, *changed = numbers.values
@@ -95,8 +95,8 @@ def runs_table(name: str, labels: Sequence[str], metrics: Sequence[str], of_all:
         runs = list(group)
         passed = [run for run in runs if run["status"] == "pass"]
         walked = {0: "no", len(runs): "yes"}.get(len(passed), f"{len(passed)} of {len(runs)}")
-        told = (_measured(of, metric) for of, names in ((runs, of_all), (passed, metrics)) for metric in names)
-        lines.append([*values, walked, *told])
+        cells = (_measured(of, metric) for of, names in ((runs, of_all), (passed, metrics)) for metric in names)
+        lines.append([*values, walked, *cells])
     return table([*labels, "walked", *map(_with_unit, (*of_all, *metrics))], lines)
 
 
@@ -115,7 +115,7 @@ def _measured(runs: Sequence[dict[str, str]], metric: str) -> str:
 
 
 def random_table() -> str:
-    """How many of the pushes and punches that were drawn are survived, weak ones and strong ones."""
+    """Table of how many of the pushes and punches that were drawn are survived, weak ones and strong ones."""
     lines = [
         ["humanoid100", "the truth", "torso", *_survived(rows("random-pushes"))],
         ["G1", "the truth", "torso", *_survived(rows("random-pushes-g1"))],
@@ -124,8 +124,8 @@ def random_table() -> str:
     punches = rows("random-punches")
     arms = [row for row in punches if re.search("shoulder|elbow|wrist", row["pushes.0.body"])]
     upward = [row for row in punches if float(row["pushes.0.elevation"]) >= math.pi / 4]
-    told = {"any link": punches, "of these, arms": arms, "of these, upward by 45° or more": upward}
-    lines += [["G1", "`good` sensors", link, *_survived(some)] for link, some in told.items()]
+    by_link = {"any link": punches, "of these, arms": arms, "of these, upward by 45° or more": upward}
+    lines += [["G1", "`good` sensors", link, *_survived(some)] for link, some in by_link.items()]
     return table(["robot", "walked from", "pushed", "below 0.5 N·s/kg", "0.5 N·s/kg or more"], lines)
 
 
@@ -160,7 +160,7 @@ def plain_table(name: str) -> str:
 
 
 def faults_table() -> str:
-    """What walks with one fault of their sensors each, and how."""
+    """Table of walks with one fault of their sensors each, and how they end."""
     heads = "fault", "status", "velocity error x, y", "ZMP error x, y", "CoP at p99", "force found that nobody gave"
     lines = []
     for row in rows("sensor-faults"):
@@ -173,7 +173,7 @@ def faults_table() -> str:
 
 
 def limits_table() -> str:
-    """How poor each term may be alone: the rung asked for, and the last that was survived before one that was not."""
+    """Table of how poor each term may be alone: the rung asked for, and the last survived before one that was not."""
     lines = []
     for row in rows("sensor-limits"):
         term, _, unit = row["term"].removesuffix("]").partition(" [")
@@ -185,7 +185,7 @@ def limits_table() -> str:
 
 
 def without_table() -> str:
-    """How every walk goes without force sensors in its feet; of several runs the worst."""
+    """Table of every walk without force sensors in its feet; of several runs the worst."""
     heads = "walk", "passed", "CoM against the stance foot x, y, z", "drift", "force found that nobody gave"
     lines = []
     for walk, group in groupby(rows("without-foot-sensors"), lambda row: row["walk"]):
@@ -199,7 +199,7 @@ def without_table() -> str:
 
 
 def hidden_table() -> str:
-    """What is survived with one thing each that the robot is not told, on both feet; of several runs the worst."""
+    """Table of walks with one thing each that the robot does not know, on both feet; of several runs the worst."""
     heads = "hidden", "feet", "survived", "CoP at p99", "step moved", "force found that nobody gave"
     lines = []
     for (hidden, feet), group in groupby(rows("hidden"), lambda row: (row["hidden"], row["feet"])):
@@ -212,13 +212,13 @@ def hidden_table() -> str:
 
 
 def pythons_table() -> str:
-    """In which empty environments a walk passed, and what they take of the disk."""
+    """Table of the empty environments in which a walk passed, and what they take of the disk."""
     columns = ("python", "distribution", "MB", "largest")
     return table(("Python", "from", "MB", "of it"), ([row[column] for column in columns] for row in rows("pythons")))
 
 
 def made_table() -> str:
-    """By what command each result was made, and by which code."""
+    """Table of the command and the code by which each result was made."""
     made = [(path.name, *head(path.stem)) for path in sorted(RESULTS.glob("*.csv"))]
     return table(["result", "made by", "code"], [[f"`{name}`", f"`{command}`", code] for name, command, code in made])
 
@@ -230,7 +230,7 @@ def _section(name: str) -> tuple[list[str], list[list[Any]]]:
 
 
 def startup_table() -> str:
-    """What commands cost before they do anything."""
+    """Table of what commands cost before they do anything."""
     _, lines = _section("startup")
     limits = json.loads(LIMITS.read_text(encoding="utf-8"))["surefoot's modules that a command imports"]
     cells = [[f"`surefoot {name}`", f"{seconds:.2f} s", str(limits.get(name, ""))] for name, seconds, *_ in lines]
@@ -265,7 +265,7 @@ def magnitudes_table() -> str:
 
 
 def models_held() -> str:
-    """How many public models the laws on sizes were held against."""
+    """Number of public models that the laws on sizes were held against."""
     return max((row["models"] for row in rows("magnitudes")), key=int)
 
 
@@ -284,7 +284,7 @@ def _nearest(row: dict[str, str]) -> str:
 
 
 def known_table() -> str:
-    """How often the first line of `surefoot inspect` is the known cause of a fall."""
+    """Table of how often the first line of `surefoot inspect` is the known cause of a fall."""
     known, lines = rows("known-falls"), []
     campaigns = list(dict.fromkeys(row["campaign"] for row in known))
     for cause in (*dict.fromkeys(row["cause"] for row in known), "all"):
@@ -298,7 +298,7 @@ def known_table() -> str:
 
 
 def given_up_table() -> str:
-    """What counts of plans tell of falls that come, and of those that do not."""
+    """Table of counts of plans that warn of falls which come, and of those which do not."""
     heads = [
         "walks",
         "told by",
@@ -370,4 +370,4 @@ TABLES: dict[str, tuple[str, Callable[[], str]]] = {
     "pythons": ("how-to/install.md", pythons_table),
     "made": ("campaigns.md", made_table),
 }
-"""By name: the page, and what makes the table."""
+"""Tables by name: the page, and what makes the table."""

@@ -60,8 +60,8 @@ def _walks() -> Iterator[Row]:
 
 def _pushes() -> Iterator[Row]:
     for phase, most in asked.largest().items():
-        told = ", ".join(f"{value:g} {where}" for where, value in zip(PUSHES, most, strict=True))
-        yield Row(f"push of 0.1 s {phase} [N·s/kg]", told, LADDER, PUSH_TEST)
+        text = ", ".join(f"{value:g} {where}" for where, value in zip(PUSHES, most, strict=True))
+        yield Row(f"push of 0.1 s {phase} [N·s/kg]", text, LADDER, PUSH_TEST)
 
 
 def _sensors() -> Iterator[Row]:

@@ -1,4 +1,4 @@
-"""A walk that is told where to go while it goes on, is pushed on the way, and is walked again from its log."""
+"""A walk that is commanded while it goes on, is pushed on the way, and is walked again from its log."""
 
 from pathlib import Path
 from tempfile import TemporaryDirectory
@@ -7,7 +7,7 @@ import surefoot
 
 scenario = surefoot.load("commanded", {"commands": [], "duration": 12.0, "gait.step_length": 0.35})
 with TemporaryDirectory() as folder:
-    log = Path(folder) / "told.mcap"
+    log = Path(folder) / "commanded.mcap"
     with surefoot.Simulation(scenario, log=log) as sim:
         while not sim.done:
             if sim.time == 0.5:

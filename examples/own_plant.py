@@ -23,7 +23,7 @@ class Finer:
         pinocchio_to_mujoco(q, np.zeros(self.model.nv) if v is None else v, self.data.qpos, self.data.qvel)
 
     def measure(self) -> surefoot.Measurement:
-        """Tell the state now."""
+        """Measure the state now."""
         q, v = np.zeros(self.model.nq), np.zeros(self.model.nv)
         mujoco_to_pinocchio(self.data.qpos, self.data.qvel, q, v)
         return surefoot.Measurement.of_state(self.data.time, q, v)

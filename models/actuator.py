@@ -56,11 +56,11 @@ def available_torque(
     torque: NDArray[np.float64], speed: NDArray[np.float64], peak: NDArray[np.float64],
     no_load_speed: NDArray[np.float64], knee: float,
 ) -> NDArray[np.float64]:  # fmt: skip
-    """What motors at a bus voltage can give of a torque: driving, less the faster they turn; braking, their peak.
+    """Available part of a torque of motors at a bus voltage: driving, less the faster they turn; braking, their peak.
 
-    Up to the knee the drive current is the limit, beyond it the voltage that the turning motor leaves, which falls to
-    none at the no-load speed (e.g. Seok et al., "Actuator design for high force proprioceptive control in fast legged
-    locomotion", IROS 2012).
+    Up to the knee the drive current is the limit. Beyond it the limit is the voltage that the turning motor leaves,
+    which falls to none at the no-load speed (Seok et al., "Actuator design for high force proprioceptive control in
+    fast legged locomotion", IROS 2012).
 
     Args:
         torque: wanted, shape (nj,) [N·m].

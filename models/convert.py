@@ -73,7 +73,7 @@ class Coordinates:
 
     Attributes:
         positions: places of the independent joints in `qpos`, shape (nj,); a slice where no joint follows.
-        velocities: likewise in `qvel`.
+        velocities: places of the independent joints in `qvel`, shape (nj,); a slice where no joint follows.
         size: numbers of a configuration in Pinocchio's convention, 7 + nj.
         followers: places of the joints that follow in `qpos`, shape (nf,).
         G: from MuJoCo's velocities of base and independent joints to all of them, shape (nv, 6 + nj); None where no
@@ -110,7 +110,7 @@ class Coordinates:
             qpos_out[self.followers] = self._ratio * qpos_out[self._leaders] + self._offset
 
     def apart(self, qpos: Array) -> Array:
-        """By how much each joint that follows is from where it belongs, shape (nf,) [rad]."""
+        """Distance of each joint that follows from where it belongs, shape (nf,) [rad]."""
         apart: Array = qpos[self.followers] - self._ratio * qpos[self._leaders] - self._offset
         return apart
 

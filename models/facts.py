@@ -1,4 +1,4 @@
-"""What follows from a robot's description alone and bounds its walks: lengths, size, and the joints of its legs.
+"""The facts of a robot's description that bound its walks: lengths, size, and the joints of its legs.
 
 Masses and shapes are those of the robot upright with straight legs, in MuJoCo.
 """
@@ -32,7 +32,7 @@ CLEAR = 0.04
 
 
 STOPS_OFF = 1e-3
-"""How far from the ends of their ranges joints are held, since a touchdown shakes them past where that is [rad]."""
+"""Distance at which joints are held from the ends of their ranges, since a touchdown shakes them past that [rad]."""
 
 HIPS, SHANKS = 0.2, 0.11
 """Distance between the hips of the reference robot, and of its soles at which its shanks keep apart [m]."""
@@ -94,7 +94,7 @@ def longest_step(leg_length: float, hip_height: float, hip_width: float, step_wi
 
 
 def facts_of(robot: RobotDescription, payload: float = 0.0) -> RobotFacts:
-    """What of a robot bounds a scenario.
+    """Derive the facts of a robot that bound a scenario.
 
     Args:
         robot: the robot.
@@ -120,7 +120,7 @@ def size_of(robot: RobotDescription, payload: float) -> Similarity:
 
 
 def stance_widening(robot: RobotDescription | RobotFacts, size: Similarity) -> float:
-    """By what a robot of a size has to stand wider than the reference robot, scaled, for its hips or shanks [m]."""
+    """Distance by which a robot has to stand wider than the scaled reference robot, for its hips or shanks [m]."""
     if size == REFERENCE_SIZE:
         return 0.0
     return max(0.0, robot.hip_width - size.length * HIPS, robot.shank_spacing - size.length * SHANKS)
@@ -162,7 +162,12 @@ def similar_step_width(value: float, before: RobotFacts, after: RobotFacts, near
 def similar_tread(value: float, before: RobotFacts, after: RobotFacts) -> float:
     """Depth of a tread for another robot: scaled, and deeper by what its soles are longer than scaled ones [m].
 
-    So no sole lands nearer to an edge; arguments as of `similar_com_height`.
+    So no sole lands nearer to an edge.
+
+    Args:
+        value: that of the robot before [m].
+        before: facts of it.
+        after: of the other one.
     """
     length = after.size.length / before.size.length
     return length * value + max(0.0, after.foot_length - length * before.foot_length)
@@ -196,7 +201,7 @@ def knees_turn(robot: RobotDescription) -> tuple[float, ...]:
 
 
 def knee_turn(robot: RobotDescription, foot: int) -> float:
-    """By how much a shank turns against its thigh for an angle of the knee, more than 1 where joints follow it [-]."""
+    """Turn of a shank against its thigh for an angle of the knee, more than 1 where joints follow it [-]."""
     return _turn(robot, robot.roles.knees[foot])
 
 
@@ -211,7 +216,7 @@ def _turn(robot: RobotDescription, joint: str) -> float:
 
 
 def named_roles(robot: RobotDescription) -> dict[str, tuple[str, ...]]:
-    """What the robot's joints and bodies are for, by the names of its description."""
+    """Names of the robot's joints and bodies by their role, as its description has them."""
     roles = robot.roles
     legs = {"left_leg": roles.left_leg, "right_leg": roles.right_leg}
     return {"knees": roles.knees, **legs, "torso": (robot.torso_body,)}
@@ -224,7 +229,7 @@ def com_height(robot: RobotDescription) -> float:
 
 
 def swing_acceleration(robot: RobotDescription) -> tuple[float, float]:
-    """Of the left leg's sole with the share of its hip's torque, forward and sideways [m/s^2]."""
+    """Acceleration of the left leg's sole with the share of its hip's torque, forward and sideways [m/s^2]."""
     from surefoot.engines.windowless import mujoco
 
     model, data = _upright(robot)

@@ -17,7 +17,7 @@ _MEET = 1e-9
 
 
 def is_revolute(model: pin.Model, joint: int) -> bool:
-    """Whether a joint turns about one axis, within limits."""
+    """Return true if a joint turns about one axis, within limits."""
     return model.joints[joint].shortname() in (*_AXES, "JointModelRevoluteUnaligned")
 
 
@@ -42,7 +42,7 @@ def members(model: pin.Model, joint: int) -> dict[int, float]:
 
 
 def turn_of(model: pin.Model, data: pin.Data, joint: int) -> float:
-    """By how much what is behind a joint and its followers turns about its axis, for an angle of the joint [-]."""
+    """Turn of what is behind a joint and its followers about its axis, for an angle of the joint [-]."""
     axis = world_axis(model, data, joint)
     return sum(ratio * float(axis @ world_axis(model, data, one)) for one, ratio in members(model, joint).items())
 

@@ -1,4 +1,4 @@
-"""What was worked out once, in the user's cache folder under a digest of all that it follows from.
+"""A store of what was worked out once, in the user's cache folder under a digest of all that it follows from.
 
 Nothing in it is ever stale: the digest is the entry's key, and one that is damaged counts as none. Where the folder
 cannot be written, nothing is kept.
@@ -12,7 +12,7 @@ from pathlib import Path
 
 
 def place(room: str, key: str) -> Path:
-    """Where an entry of a room, such as ``robots``, is kept."""
+    """Path of an entry of a room, such as ``robots``."""
     base = os.environ.get("XDG_CACHE_HOME") or Path.home() / ".cache"
     return Path(base) / "surefoot" / room / f"{key}.json"
 
@@ -24,7 +24,7 @@ def opened(key: str, data: bytes) -> bytes | None:
 
 
 def read(entry: Path) -> bytes:
-    """What is in a file, where that is one: a pipe or a device, which may have no end, is not waited for.
+    """Read a file, where that is one: a pipe or a device, which may have no end, is not waited for.
 
     Raises:
         OSError: it is none, or cannot be read.

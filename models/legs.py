@@ -51,10 +51,10 @@ class LegMasses(NamedTuple):
 def leg_masses(model: pin.Model, soles: tuple[str, str], q: Array, leg_joints: NDArray[np.bool_]) -> LegMasses:
     """The legs' lengths and masses, from a standing configuration.
 
-    The knee is the leg joint that is farthest from its neighbours in the chain; what is above it in the leg belongs to
-    the thigh, what is below the next joint to the foot; hip and ankle are where the axes there come nearest to
-    each other. The joints count as in one plane, CoMs may lie beside it. Where the hip rolls before it pitches, about
-    an axis that is not in that plane, the links above its pitch joint belong to the trunk.
+    The knee is the leg joint that is farthest from its neighbours in the chain. The part above it in the leg belongs to
+    the thigh, the part below the next joint to the foot. Hip and ankle are where the axes there come nearest to each
+    other. The joints count as in one plane, CoMs may lie beside it. Where the hip rolls before it pitches, about an
+    axis that is not in that plane, the links above its pitch joint belong to the trunk.
 
     Args:
         model: the robot.
@@ -90,7 +90,14 @@ def leg_masses(model: pin.Model, soles: tuple[str, str], q: Array, leg_joints: N
 
 
 def point_mass(model: pin.Model, soles: tuple[str, str], q: Array, leg_joints: NDArray[np.bool_]) -> float:
-    """Mass over the total mass of one leg reduced to a point mass at its sole [-]; arguments as of `leg_masses`."""
+    """Mass over the total mass of one leg reduced to a point mass at its sole [-].
+
+    Args:
+        model: the robot.
+        soles: frames of its left and right sole.
+        q: standing configuration, shape (nq,), soles level and side by side.
+        leg_joints: which joints are leg joints, bool, shape (nj,).
+    """
     joints = 6 + np.flatnonzero(leg_joints)
     return float(np.mean([_point_mass(model, name, q, joints) for name in soles]))
 

@@ -24,7 +24,7 @@ AXES: dict[str, Vector] = {"roll": (1.0, 0.0, 0.0), "pitch": (0.0, 1.0, 0.0), "y
 
 
 class Role(Enum):
-    """What a geom is for; the value is its MJCF default class."""
+    """The role of a geom; the value is its MJCF default class."""
 
     VISUAL = "visual"
     SOLE = "sole"

@@ -1,4 +1,4 @@
-"""Which robots there are; what makes them is imported when one is asked for."""
+"""The robots that there are; what makes them is imported when one is asked for."""
 
 from collections.abc import Iterator, Mapping
 from pathlib import Path
@@ -10,14 +10,14 @@ if TYPE_CHECKING:
     from surefoot.models.types import Robot
 
 ENDINGS = (".yaml", ".yml")
-"""Of robot files."""
+"""Endings of robot files."""
 
 SHIPPED = {file.stem: file for file in sorted((Path(__file__).parent / "robots").glob("*.yaml"))}
 """Robot files that come with this package, by name; their models come with other packages."""
 
 
 class _FirstLines(Mapping[str, str]):
-    """What the robot file of each robot says of it in its first line, empty for the one that has no file."""
+    """The first line of each robot's file; empty for the one that has no file."""
 
     def __getitem__(self, name: str) -> str:
         if name == REFERENCE:
@@ -39,5 +39,5 @@ ROBOTS: "Declared[Robot]" = Declared("surefoot.robots", _FirstLines(), "surefoot
 
 
 def is_file(reference: str) -> bool:
-    """Whether a reference to a robot is the path of a robot file, and no name."""
+    """Return true if a reference to a robot is the path of a robot file, and no name."""
     return reference.endswith(ENDINGS)

@@ -72,7 +72,9 @@ def explain(name: str) -> Explanation:
     """A robot by name or robot file, with what of its description was derived and what else is to be known.
 
     Raises:
-        UnknownRobotError, PluginError, RobotError: as of `describe`.
+        UnknownRobotError: no robot has that name.
+            PluginError: the package that brings it cannot be used, or fails to build it.
+            RobotError: the description contradicts itself.
     """
     if is_file(name) or name in SHIPPED:
         return _explained(SHIPPED.get(name, Path(name)), RobotOptions())

@@ -24,7 +24,7 @@ POWERS: dict[str, dict[str, int]] = {
     "mesh": {"vertex": 1},
     "motor": {"ctrlrange": 4, "forcerange": 4},
 }
-"""By which power of the size factor the attributes of a robot's MJCF grow; all others have no unit, or are angles."""
+"""Powers of the size factor by which attributes of a robot's MJCF grow; all others have no unit, or are angles."""
 
 
 def scaled(description: RobotDescription, factor: float) -> RobotDescription:

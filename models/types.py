@@ -1,4 +1,4 @@
-"""What a robot is to the rest of the stack: one MJCF text and the numbers that were written into it."""
+"""A robot for the rest of the stack: one MJCF text and the numbers that were written into it."""
 
 import difflib
 from collections.abc import Callable, Iterable
@@ -72,11 +72,11 @@ WITHOUT_ROLL = 5
 
 @dataclass(frozen=True, slots=True)
 class JointRoles:
-    """What the joints are for, by name, so that nobody guesses it from how they are called.
+    """The roles of the joints, by name, so that nobody guesses them from how they are called.
 
     Attributes:
         left_leg: from the hip to the ankle, in the order of the chain.
-        right_leg: likewise.
+        right_leg: from the hip to the ankle, in the order of the chain.
         knees: left and right.
         waist: between pelvis and torso, in the order of the chain.
         arm_swing: left and right joint that swings the arm; None without such arms.
@@ -94,7 +94,7 @@ class JointRoles:
 
     @property
     def feet_lean(self) -> bool:
-        """Whether no joint rolls the feet, which then lean sideways with the shanks."""
+        """True if no joint rolls the feet, which then lean sideways with the shanks."""
         return len(self.left_leg) == WITHOUT_ROLL
 
     @property
@@ -105,7 +105,7 @@ class JointRoles:
 
 @dataclass(frozen=True, slots=True)
 class ImuPlace:
-    """Where a robot carries its IMU; the default is the frame of the floating base itself.
+    """The place of a robot's IMU; the default is the frame of the floating base itself.
 
     Attributes:
         body: that carries it, None for the floating base.
@@ -275,7 +275,7 @@ class RobotDescription:
 
 
 def same_robot(one: RobotDescription, other: RobotDescription) -> bool:
-    """Whether two descriptions say the same."""
+    """Return true if two descriptions say the same."""
     pairs = ((getattr(one, field.name), getattr(other, field.name)) for field in fields(one))
     return one is other or all(np.array_equal(a, b) if isinstance(a, np.ndarray) else a == b for a, b in pairs)
 

@@ -1,4 +1,4 @@
-"""What of a walk is refused before it is walked: heights and durations, and steps that are not yet in sight."""
+"""The refusal of walks before they are walked: of heights and durations, and of steps that are not yet in sight."""
 
 from dataclasses import replace
 

@@ -1,4 +1,4 @@
-"""Where the next footsteps are to land, and how the swing foot goes there."""
+"""The landing places of the next footsteps, and the way of the swing foot there."""
 
 import math
 from dataclasses import replace
@@ -16,9 +16,9 @@ _SAME_GROUND = 1e-3
 """Footstep shift up to which the ground height is not looked up again, of the reference robot [m]."""
 
 _SAME_TARGET = 1e-4
-"""Difference of touchdown pose that is not worth a new swing trajectory, likewise [m, rad]."""
+"""Difference of touchdown pose that is not worth a new swing trajectory, of the reference robot [m, rad]."""
 
-_TOLD = 3
+_IN_PLAN = 3
 """Footsteps to come that a plan tells [-]."""
 
 
@@ -30,8 +30,12 @@ def upcoming(state: WalkState, time: float, shifts: Array) -> tuple[Footstep, ..
         time: now [s].
         shifts: of the first two from their nominal increments, in the world frame, shape (2, 2) [m].
     """
-    planned, ahead, left, ways, free = [], 0.0, 0.0, shifts.tolist(), state.free
-    for n, step in enumerate(state.schedule.after(state.landed)[:_TOLD]):
+    planned = []
+    ahead = 0.0
+    left = 0.0
+    ways = shifts.tolist()
+    free = state.free
+    for n, step in enumerate(state.schedule.after(state.landed)[:_IN_PLAN]):
         x, y = ways[n] if n < len(ways) and free[n] else (0.0, 0.0)
         ahead, left = (ahead + x, left + y) if state.model.follows else (x, y)
         place = _shifted(state, step.place, ahead, left)
@@ -45,7 +49,10 @@ def _shifted(state: WalkState, place: Footstep, ahead: float, left: float) -> Fo
     if ahead == 0.0 and left == 0.0:
         return place
     x, y, z = place.position.tolist()
-    x, y, normal, terrain = x + ahead, y + left, place.normal, state.model.terrain
+    x = x + ahead
+    y = y + left
+    normal = place.normal
+    terrain = state.model.terrain
     if abs(ahead) + abs(left) > _SAME_GROUND * state.model.parameters.size.length:
         z = terrain.height(x, y)
         normal = terrain.normal(x, y) if terrain.has_edges else normal
@@ -83,9 +90,9 @@ def _begun(state: WalkState, landing: Footstep, time: float, feet: FeetState, as
     foot, leaving = landing.foot, state.schedule.step(state.landed - 1).place
     yaw = leaving.yaw + wrap_angle(float(feet.yaw[foot]) - leaving.yaw)
     pose = sole_pose(feet.position[foot], yaw, leaving.normal)
-    unsure, course = (feet.height_deviation, astray), state.schedule.step(state.phase.step).course
+    doubt, course = (feet.height_deviation, astray), state.schedule.step(state.phase.step).course
     model = state.model
-    return start_swing(foot, (pose, target), (time, state.left), course, model.parameters, unsure, model.hardest)
+    return start_swing(foot, (pose, target), (time, state.left), course, model.parameters, doubt, model.hardest)
 
 
 def _aimed(state: WalkState, swing: SwingTrajectory, landing: Footstep, time: float) -> SwingTrajectory:

@@ -18,7 +18,7 @@ cdef class View:
     cdef readonly Support support
     cdef readonly object local, dcm
     cdef readonly Window window
-    cdef readonly double unsure
+    cdef readonly double uncertainty
     cdef readonly object step
     cdef readonly Balance balance
     cdef readonly object bounds
@@ -35,4 +35,4 @@ cdef _offsets(WalkState state, Support support, beyond, position, double time, l
 cpdef next_step(WalkState state, Measured measured, Support support)
 cpdef counted_steps(WalkState state)
 @cython.locals(last=WalkPlan, planned=double, movable=double, delay=double, before=Balance)
-cpdef Balance weighed(WalkState state, body, Support support, Window window, step, double unsure)
+cpdef Balance weighed(WalkState state, body, Support support, Window window, step, double uncertainty)

@@ -27,7 +27,7 @@ from surefoot.planner.state import HeightMemory, Memory, WalkState
 from surefoot.planner.steps.phases import PhaseSamples
 from surefoot.planner.types import Array, Balance, PhaseKind
 
-_STILL, _UNTOLD = np.zeros(3), Balance()
+_STILL, _UNKNOWN = np.zeros(3), Balance()
 
 
 @dataclass(frozen=True, eq=False)
@@ -41,7 +41,7 @@ class View:
         local: CoM position, velocity and acceleration per axis of the plan frame, shape (2, 3) [m, m/s, m/s^2].
         dcm: in the plan frame, shape (2,) [m].
         window: references from now on.
-        unsure: how far the DCM may be from where it is estimated [m].
+        uncertainty: how far the DCM may be from where it is estimated [m].
         step: that lands next; None where none is to come.
         balance: how far the DCM is inside what is captured.
         bounds: of the next step, where it is adjusted in this tick.
@@ -53,7 +53,7 @@ class View:
     local: Array
     dcm: Array
     window: Window
-    unsure: float
+    uncertainty: float
     step: StepProblem | None
     balance: Balance
     bounds: StepBounds | None = None
@@ -65,12 +65,12 @@ class View:
 
     @property
     def planned(self) -> float:
-        """How far the DCM is inside what the CoP captures with the steps as planned [m]."""
+        """Margin of the DCM in what the CoP captures with the steps as planned [m]."""
         return self.state.model.outlook.margin(self.dcm, self.window)
 
     @property
     def off(self) -> Array:
-        """Where the DCM is from where the steps as planned would have it, shape (2,) [m]."""
+        """Offset of the DCM from where the steps as planned would have it, shape (2,) [m]."""
         return self.dcm - self.state.model.outlook.nominal(self.window)
 
     def of(self, state: WalkState) -> "View":
@@ -85,7 +85,7 @@ class View:
 
 
 def look(state: WalkState, measured: Measured) -> View:
-    """What is seen of a state in a tick.
+    """Look at a state in a tick.
 
     Args:
         state: now.
@@ -102,10 +102,10 @@ def look(state: WalkState, measured: Measured) -> View:
     local = model.world.local(measured.body.com, measured.body.com_velocity, bend, support.frame)
     window, memory = references(state, support, local[:, 0], measured.time, measured.body.lasting)
     state, omega = replace(state, memory=memory), float(window.omega[0])
-    dcm, unsure = local[:, 0] + local[:, 1] / window.omega[0], measured.unsure(omega)
+    dcm, uncertainty = local[:, 0] + local[:, 1] / window.omega[0], measured.dcm_uncertainty(omega)
     step = next_step(state, measured, support)
-    balance = weighed(state, (local[:, 0], dcm), support, window, step, unsure)
-    return View(state, measured, support, local, dcm, window, unsure, step, balance)
+    balance = weighed(state, (local[:, 0], dcm), support, window, step, uncertainty)
+    return View(state, measured, support, local, dcm, window, uncertainty, step, balance)
 
 
 def references(
@@ -156,7 +156,10 @@ def _transferred(state: WalkState, law: Array) -> tuple[Array, HeightTransition 
         state: now.
         law: z, z', z'' by it, shape (3, n) [m, m/s, m/s^2].
     """
-    clock, lower, leaves, numbers = state.clock, state.lowering, False, state.model.parameters.recovery
+    clock = state.clock
+    lower = state.lowering
+    leaves = False
+    numbers = state.model.parameters.recovery
     before, transition, height = state.memory.height, state.memory.transition, law
     if before is not None:
         pushed = state.adapted or transition is not None or not clock.coefficients
@@ -184,7 +187,7 @@ def _offsets(
     time: float,
     lasting: ExternalLoad | None,
 ) -> tuple[Array, OffsetTable | None]:
-    """What the legs add to the ZMP, shape (n, 2) [m], and the table that this is out of.
+    """ZMP that the legs add, shape (n, 2) [m], and the table that it comes from.
 
     Args:
         state: now.
@@ -195,10 +198,16 @@ def _offsets(
         time: now [s].
         lasting: force that goes on acting on the body.
     """
-    model, count, clock, numbers = state.model, state.model.count, state.clock, state.model.parameters.recovery
+    model = state.model
+    count = state.model.count
+    clock = state.clock
+    numbers = state.model.parameters.recovery
     if model.leg_offset is None:
         return np.zeros((count, 2)), None
-    last, table, key, aim = state.schedule.last_phase, state.memory.offsets, support.key, state.aim
+    last = state.schedule.last_phase
+    table = state.memory.offsets
+    key = support.key
+    aim = state.aim
     # In the final standing, where the walk's clock does not matter, none serves: its values go on with time.
     left = last.start - clock.now if math.isinf(last.samples) else math.inf
     # A swing that a command retimes is laid anew at every tick, by what the clock shows then.
@@ -262,9 +271,9 @@ def weighed(
     support: Support,
     window: Window,
     step: StepProblem | None,
-    unsure: float,
+    uncertainty: float,
 ) -> Balance:
-    """How far the DCM is inside what is captured, and what the last plan has made of the landing to come.
+    """Margin of the DCM in what is captured, and what the last plan has made of the landing to come.
 
     Args:
         state: now.
@@ -272,7 +281,7 @@ def weighed(
         support: what carries the robot now, with the plan frame.
         window: references.
         step: that lands next; None where none is to come.
-        unsure: how far the DCM may be from where it is estimated, by which both margins are less [m].
+        uncertainty: how far the DCM may be from where it is estimated, by which both margins are less [m].
     """
     model, last, (com, dcm) = state.model, state.plan, body
     planned = movable = model.outlook.margin(dcm, window)
@@ -286,7 +295,7 @@ def weighed(
     # Hips save many that are less far out. Steps that a law moves of its own accord may save more than that.
     tells = model.margin is not None or not model.adapts
     lost = safe = 0
-    if movable < unsure or (last is not None and last.status.falling):
-        before = _UNTOLD if last is None else last.balance
-        lost, safe = counted(before, movable, model.parameters.recovery, unsure)
-    return Balance(planned - unsure, movable - unsure, shift, delay, lost if tells else 0, False, safe)
+    if movable < uncertainty or (last is not None and last.status.falling):
+        before = _UNKNOWN if last is None else last.balance
+        lost, safe = counted(before, movable, model.parameters.recovery, uncertainty)
+    return Balance(planned - uncertainty, movable - uncertainty, shift, delay, lost if tells else 0, False, safe)

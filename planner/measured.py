@@ -1,4 +1,4 @@
-"""What a tick measures, as the planner takes it."""
+"""The measured values of a tick, as the planner takes them."""
 
 import math
 from dataclasses import dataclass
@@ -30,7 +30,7 @@ class Measured:
 
     @property
     def time(self) -> float:
-        """When that was [s]."""
+        """Instant of the measurement [s]."""
         return self.body.time
 
     def dcm(self, omega: float) -> tuple[float, float, float]:
@@ -38,7 +38,7 @@ class Measured:
         (x, y, _), (u, v, _) = self.body.com.tolist(), self.body.com_velocity.tolist()
         return x + u / omega, y + v / omega, omega
 
-    def unsure(self, omega: float) -> float:
+    def dcm_uncertainty(self, omega: float) -> float:
         """Two standard deviations of the DCM, of that rate [1/s, m]."""
         com, velocity = self.body.deviation
         return 2.0 * math.hypot(com, velocity / omega) if com or velocity else 0.0

@@ -34,7 +34,7 @@ class GroundSearch:
         hurry_speed: greatest downward speed then [m/s].
         hurry_acceleration: at which that is gained [m/s^2].
         unsure_speed: how much faster the touchdown is for each metre by which the ground's height is unsure [1/s].
-        unsure_acceleration: likewise of the acceleration [1/s^2].
+        unsure_acceleration: how much greater its acceleration is for each metre of that [1/s^2].
         unsure_aim: how far below the ground a footstep is aimed, in standard deviations of its height [-].
         most_unsure: deviation of the height beyond which nothing changes any more [m].
         most_astray: by which feet are believed more over the map, or under it, than a step before (see `astray`) [m].
@@ -65,7 +65,7 @@ class GroundSearch:
             if not math.isfinite(value) and entry.name != "hurry_after":
                 raise ParameterError(key, what, "it must be finite")
 
-    def unsure(self, deviation: float, over: float = 0.0) -> tuple["GroundSearch", float]:
+    def for_deviation(self, deviation: float, over: float = 0.0) -> tuple["GroundSearch", float]:
         """The search for ground of unsure height, and how far below it the footstep is to be aimed [m].
 
         A foot that is lower than it is believed waits for nothing; one that is higher waits the longer the more gently
@@ -88,7 +88,7 @@ class GroundSearch:
         return faster, self.unsure_aim * least - over
 
     def astray(self, before: float, over: float) -> float:
-        """How high the feet are believed over the map, once one more of them stands [m].
+        """Height at which the feet are believed over the map, once one more of them stands [m].
 
         Height goes astray little by little, and is followed however far. A foot that is off by much stands on a step of
         the ground. That counts no more than height goes astray in a step.
@@ -119,36 +119,36 @@ def _gaining(speed: float, bend: float, top: float, since: float) -> tuple[float
 
 
 class StepAdaptation(Enum):
-    """What a disturbance may change about the footsteps."""
+    """The changes that a disturbance may make to the footsteps."""
 
     NONE = "none"
-    """Nothing."""
+    """No changes."""
     LOCATION = "location"
-    """Where the next ones land."""
+    """The places of the next ones."""
     TIMING = "timing"
-    """Where and when."""
+    """Places and times."""
     CROSSING = "crossing"
-    """Where and when, and a foot may land beyond its stance foot."""
+    """Places and times, and a foot may land beyond its stance foot."""
 
     @property
     def places(self) -> bool:
-        """Whether places may change."""
+        """True if places may change."""
         return self is not StepAdaptation.NONE
 
     @property
     def timing(self) -> bool:
-        """Whether times may change."""
+        """True if times may change."""
         return self in (StepAdaptation.TIMING, StepAdaptation.CROSSING)
 
     @property
     def crossing(self) -> bool:
-        """Whether a foot may land beyond its stance foot."""
+        """True if a foot may land beyond its stance foot."""
         return self is StepAdaptation.CROSSING
 
 
 @dataclass(frozen=True, slots=True)
 class LegInertia:
-    """What the legs' inertia does to the pendulum (see `planner.references.leg_offset`); none by default.
+    """The legs' inertia in the pendulum (see `planner.references.leg_offset`); none by default.
 
     Attributes:
         mass_ratio: μ, mass over the total mass of one leg reduced to a point mass at its sole [-].
@@ -177,7 +177,7 @@ class RecoveryParameters:
 
     Each is a key ``planner.recovery.*`` of a scenario, described as here. Those with a unit beside their default follow
     the robot's size. What each moves when it is halved or doubled is measured by the campaign ``recovery-numbers`` and
-    told in docs/recovery-results.md, with the tests that notice those which move no threshold.
+    reported in docs/recovery-results.md, with the tests that notice those which move no threshold.
 
     Attributes:
         second_weight: cost of a squared shift of the second step; the other weights count against it [1/m^2].
@@ -294,7 +294,7 @@ class PlannerParameters:
         compliance_margin: change of a footstep that the paper's step law does not ask for [m].
         swing_speed: fastest mean speed of the swing foot to a shifted footstep, where the legs are not known [m/s].
         freeze_time: time before touchdown from which the footstep is fixed [s].
-        freeze_catching: likewise of a step that catches the body, since until then the DCM may go on elsewhere; not on
+        freeze_catching: that time of a step that catches the body, since until then the DCM may go on elsewhere; not on
             faces that were chosen [s].
         late_touchdown: longest wait of the phase clock for a touchdown [s].
         apex_share: share of single support after which the swing sole is highest; a late apex keeps the sole high while

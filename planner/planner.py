@@ -34,10 +34,10 @@ from surefoot.planner.walk_model import WalkModel
 class WalkingPlanner:
     """Receding-horizon planner of CoM, ZMP and footsteps, from the measured state at every tick.
 
-    It plans in a frame with origin and planned heading at the stance foot (the foot landed last in double support), so
-    that its numbers do not depend on where in the world it walks, and ZMP boxes and reach boxes are aligned with it.
-    CoM position and velocity come from the measurement, the acceleration from the plan before. How the CoM moves is
-    the profile's law of motion (see `planner.laws.profiles`); all else is common to the profiles.
+    It plans in a frame at the stance foot, or at the foot that landed last in double support, with its planned heading.
+    So its numbers do not depend on the place in the world, and ZMP boxes and reach boxes are aligned with the frame.
+    CoM position and velocity come from the measurement, the acceleration from the plan before. How the CoM moves is the
+    profile's law of motion (see `planner.laws.profiles`); all else is common to the profiles.
 
     Args:
         gait: the walk.
@@ -49,7 +49,8 @@ class WalkingPlanner:
         height_profile: vertical CoM motion; that of the profile, or else the smooth one, by default.
         profile: formulation of the planner; the robust one by default.
         region: where a step that is commanded may land; where the parameters let it by default.
-        legs: what they can do to catch the body; None lets steps be moved where the parameters let them, and only that.
+        legs: their reach to catch the body. With None the law alone moves steps, as the parameters let it, and
+            recovery neither adds nor retimes any.
 
     Attributes:
         gait: the walk.
@@ -101,7 +102,7 @@ class WalkingPlanner:
 
     @property
     def orders(self) -> Command:
-        """What the walk does of what it has been told, with the velocity that it follows."""
+        """Commands that the walk follows now, with the velocity that it follows."""
         source, gait = self.state.orders.source, self.state.schedule.gait
         now = Command(None, None, gait.single_support, gait.double_support, gait.swing_height)
         if source is None:
@@ -128,11 +129,11 @@ class WalkingPlanner:
             raise ParameterError(("command",), what, "command a walk on bare ground")
         changed = {name: getattr(command, name) for name in ("single_support", "double_support", "swing_height")}
         orders = self.state.orders
-        gait, told = orders.new or (self.state.schedule.gait, None)
+        gait, commanded = orders.new or (self.state.schedule.gait, None)
         gait = replace(gait, **{name: value for name, value in changed.items() if value is not None})
         check_durations(gait, self.parameters.sample_time)
         # Steps of a source that is kept are asked for anew, too: their strides follow from the durations.
-        source = told or orders.source
+        source = commanded or orders.source
         if command.twist is not None or command.places is not None or command.march:
             size, twist = self.parameters.size, command.twist or STANDING
             source = CommandSource(self.gait, self._region, twist, command.places or (), size, command.march)
@@ -170,14 +171,14 @@ def planned(view: View, motion: Motion) -> tuple[WalkState, WalkPlan]:
     if state.phase.swing_foot is not None:
         state = swinging_to(state, footsteps[0], measured, motion.solver is SolverStatus.HELD)
     plan = _world_plan(view, state, motion, footsteps, balance)
-    told = None if motion.memory is None else motion.memory @ support.rotation.T
-    return replace(state, plan=plan, told=told), plan
+    law_memory = None if motion.memory is None else motion.memory @ support.rotation.T
+    return replace(state, plan=plan, law_memory=law_memory), plan
 
 
 def _world_plan(
     view: View, state: WalkState, motion: Motion, footsteps: tuple[Footstep, ...], balance: Balance
 ) -> WalkPlan:
-    """What a tick has decided, in the world frame.
+    """The plan of a tick, in the world frame.
 
     Args:
         view: of the tick.
@@ -219,7 +220,7 @@ def _world_plan(
 
 
 def _status(state: WalkState, motion: Motion, balance: Balance) -> PlanStatus:
-    """How a plan was made."""
+    """The status of a plan."""
     last, swing, age = state.plan, state.swing, 0
     falls = last is not None and last.status.falling
     if motion.solver is SolverStatus.HELD:

@@ -51,7 +51,7 @@ class Pendulum:
         self.velocity = w * s * offset + c * velocity
 
     def fallen(self, support: Array, omega: float, distance: float = 1.0) -> bool:
-        """Whether the DCM is farther from the support than any foot could reach.
+        """Return true if the DCM is farther from the support than any foot could reach.
 
         Args:
             support: support polygon, shape (v, 2) [m].

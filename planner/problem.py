@@ -14,7 +14,7 @@ def problem_of(view: View) -> MotionProblem:
     state, window = view.state, view.window
     before = np.zeros((state.model.parameters.horizon, 2)) if state.plan is None else state.plan.jerk
     ahead = window.stiffness, window.omega, window.driving
-    return MotionProblem.after(before, view.local, ahead, _steps(view), view.support.rotation, state.told)
+    return MotionProblem.after(before, view.local, ahead, _steps(view), view.support.rotation, state.law_memory)
 
 
 def _steps(view: View) -> StepContext:
@@ -29,7 +29,7 @@ def _steps(view: View) -> StepContext:
 
 
 def _bounds(view: View, increment: Array, here: Array | None, left: float) -> Shifts:
-    """Where the next two footsteps may land.
+    """Boxes in which the next two footsteps may land.
 
     Args:
         view: of the tick.

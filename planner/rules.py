@@ -1,4 +1,4 @@
-"""What is made of a walk where the CoP alone does not hold the body: rules that are gone through in their order.
+"""The rules of recovery, for a walk whose CoP alone does not hold the body; they are gone through in order.
 
 A rule is a pure function from a view to a view: the same one where it does nothing, else that of another state. What
 would come of a state is asked by the same look, and nobody keeps it.
@@ -81,9 +81,9 @@ def goes_again(view: View) -> View:
     The DCM is past its inner edge, and the other foot would have to cross it. The weight has to go back meanwhile, in
     which the DCM goes on: ahead, that may be more than the steps after it catch. Steps alternate on from there.
     """
-    state, feet, unsure = view.state, view.measured.feet, view.unsure
+    state, feet, uncertainty = view.state, view.measured.feet, view.uncertainty
     model, numbers = state.model, state.model.parameters.recovery
-    if view.balance.planned + unsure > -numbers.tolerance or model.adjustment is None or not may_go_again(state):
+    if view.balance.planned + uncertainty > -numbers.tolerance or model.adjustment is None or not may_go_again(state):
         return view
     foot = state.schedule.step(state.landed).place.foot
     if not feet.contact[foot] or foot.side * float(view.dcm[1]) <= -float(model.half_size[1]):
@@ -96,7 +96,7 @@ def goes_again(view: View) -> View:
     again = view.of(other)
     if again.step is None or again.balance.movable < view.balance.movable + numbers.tolerance:
         return view
-    found = model.adjustment.solve(again.com, again.dcm, again.window, again.step, unsure)
+    found = model.adjustment.solve(again.com, again.dcm, again.window, again.step, uncertainty)
     return view if found is not None and found.cost > numbers.again_cost else again
 
 
@@ -117,7 +117,7 @@ def adjusts(view: View) -> View:
     state, adjustment = view.state, view.state.model.adjustment
     if adjustment is None or view.step is None or not state.free[0]:
         return view
-    bounds = adjustment.solve(view.com, view.dcm, view.window, view.step, view.unsure)
+    bounds = adjustment.solve(view.com, view.dcm, view.window, view.step, view.uncertainty)
     if bounds is None:
         return view
     return replace(view, bounds=bounds, state=state if state.adapted else replace(state, adapted=True))

@@ -39,4 +39,4 @@ cdef class WalkState:
     cdef readonly Memory memory
     cdef readonly Orders orders
     cdef readonly WalkPlan plan
-    cdef readonly object told
+    cdef readonly object law_memory

@@ -26,7 +26,7 @@ _SAME_TIME = 1e-3
 
 
 class SwingStage(Enum):
-    """How far the step is that lands next.
+    """The stage of the step that lands next.
 
     FLYING: its place and time are free. DECIDED: they are not any more. SEARCHING: its time is over, and its foot has
     not found the ground. LANDED: its foot was felt before its time.
@@ -74,7 +74,7 @@ class HeightMemory:
 
 @dataclass(frozen=True)
 class Memory:
-    """What one look leaves to the next.
+    """The memory that one look leaves to the next.
 
     Attributes:
         support: what carried the robot, which goes on while its key stays: to make it takes longer than ZMP reference,
@@ -92,7 +92,7 @@ class Memory:
 
 @dataclass(frozen=True)
 class Orders:
-    """What the walk has been told.
+    """The commands that the walk has been given.
 
     Attributes:
         source: of the steps to come; None for those of the gait.
@@ -119,9 +119,9 @@ class WalkState:
         lowering: how much lower than by its law the CoM is for legs to span that step, or the one just landed [m].
         astray: by how much the ground is off its map where the robot stands, see `GroundSearch.astray` [m].
         memory: of the last look.
-        orders: what the walk has been told.
+        orders: the commands to the walk.
         plan: the last one; None before the first.
-        told: vectors that the law's last motion left to be told, in the world frame; None where it left none.
+        law_memory: vectors that the law's last motion left, in the world frame; None where it left none.
     """
 
     model: WalkModel
@@ -137,7 +137,7 @@ class WalkState:
     memory: Memory = field(default_factory=Memory)
     orders: Orders = field(default_factory=Orders)
     plan: WalkPlan | None = None
-    told: Array | None = None
+    law_memory: Array | None = None
 
     @classmethod
     def start(cls, model: WalkModel, feet: FeetState) -> "WalkState":
@@ -182,7 +182,7 @@ class WalkState:
 
     @property
     def free(self) -> tuple[bool, bool]:
-        """Which of the next two footsteps exist and may be shifted."""
+        """True for each of the next two footsteps that exists and may be shifted."""
         adapts, remaining = self.model.adapts, self.schedule.last.number - self.landed
         return (adapts and remaining >= 1 and not self.decided, adapts and remaining >= 2)
 
@@ -193,7 +193,7 @@ class WalkState:
 
     @property
     def aim(self) -> Array | None:
-        """Where a swing goes that deviates from its step, shape (3,) [m]; None where none does."""
+        """Target of a swing that deviates from its step, shape (3,) [m]; None if none does."""
         swing = self.swing.trajectory
         return None if swing is None or not (self.adapted or swing.bent) else swing.footstep
 

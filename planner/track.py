@@ -1,4 +1,4 @@
-"""What has happened since the last tick: the clock went on, feet landed or slid, the walk was told something."""
+"""The events since the last tick: the clock went on, feet landed or slid, the walk was given a command."""
 
 import math
 from dataclasses import replace
@@ -71,7 +71,7 @@ def lands_short(state: WalkState, measured: Measured) -> bool:
 
 
 def obeyed(state: WalkState, time: float) -> WalkState:
-    """The state that does what it has been told since the last tick, at a time [s].
+    """The state that obeys the commands since the last tick, at a time [s].
 
     A step that is being swung, or to which the weight is being shifted, is taken as it was planned.
     """

@@ -15,7 +15,7 @@ Array = NDArray[np.float64]
 
 
 class Foot(IntEnum):
-    """Which foot; the value indexes every (2, ...) array of feet."""
+    """A foot, left or right; the value indexes every (2, ...) array of feet."""
 
     LEFT = 0
     RIGHT = 1
@@ -43,8 +43,8 @@ class PhaseKind(IntEnum):
 class Footstep:
     """A foothold: where a foot stands, stood, or is to land.
 
-    It is told in the world frame. Seen from its stance foot (`planner.geometry.plane.seen_from`) it is told in the
-    frame of that foothold: x is how far ahead it is, y how far to the left, yaw how far it is turned.
+    It is given in the world frame. Seen from its stance foot (`planner.geometry.plane.seen_from`) it is in the frame
+    of that foothold: x is how far ahead it is, y how far to the left, yaw how far it is turned.
 
     Attributes:
         foot: the foot that stands here.
@@ -64,20 +64,20 @@ class Footstep:
 
     @property
     def beside(self) -> float:
-        """Of one seen from its stance foot: distance to the foot's own side, negative where the legs cross [m]."""
+        """Distance of a foot seen from its stance foot to its own side, negative where the legs cross [m]."""
         return self.foot.side * float(self.position[1])
 
 
 class Twist(NamedTuple):
     """A planar velocity, or a planar way: of a path in a second, in one step, or from the world's origin to a place.
 
-    A velocity is told in the frame of the path's heading. The way of a step, its stride, is told in the frame midway
-    between the old and the new heading; the foot lands half a `width` beside the path's new point, so that a stride of
-    zeros brings it beside the other foot. A place is told in the world frame.
+    A velocity is given in the frame of the path's heading. The way of a step, its stride, is given in the frame midway
+    between the old and the new heading. The foot lands half a `width` beside the path's new point. So a stride of zeros
+    brings it beside the other foot. A place is given in the world frame.
 
     Attributes:
         x: forward [m/s], of a way [m].
-        y: to the left, likewise.
+        y: to the left [m/s], of a way [m].
         yaw: of the heading, positive to the left [rad/s], of a way [rad].
         width: of a stride, lateral distance of the two feet from each other about the path [m].
     """
@@ -89,7 +89,7 @@ class Twist(NamedTuple):
 
     @property
     def is_zero(self) -> bool:
-        """Whether it asks to stand."""
+        """Return true if it asks to stand."""
         return self.x == 0.0 and self.y == 0.0 and self.yaw == 0.0
 
     @property
@@ -109,12 +109,12 @@ class Twist(NamedTuple):
 
     @property
     def advance(self) -> tuple[float, float]:
-        """Of a stride: advance of the path in the frame of its old heading, forward and to the left [m]."""
+        """Advance of the path by a stride in the frame of its old heading, forward and to the left [m]."""
         c, s = math.cos(0.5 * self.yaw), math.sin(0.5 * self.yaw)
         return c * self.x - s * self.y, s * self.x + c * self.y
 
     def landing(self, foot: Foot) -> Footstep:
-        """Where a foot lands that makes this stride, seen from its stance foot on level ground."""
+        """Landing place of a foot that makes this stride, seen from its stance foot on level ground."""
         side, half = foot.side, 0.5 * self.width
         forward, left = self.advance
         ahead = forward - side * half * math.sin(self.yaw)
@@ -124,7 +124,7 @@ class Twist(NamedTuple):
 
 @dataclass(frozen=True)
 class CentroidalState:
-    """What the planner is told of the body at one instant.
+    """The state of the body that the planner is given at one instant.
 
     Attributes:
         time: instant [s].
@@ -143,7 +143,7 @@ class CentroidalState:
 
 @dataclass(frozen=True)
 class FeetState:
-    """What the planner is told of the feet at one instant.
+    """The state of the feet that the planner is given at one instant.
 
     Attributes:
         position: sole centres in the world frame, shape (2, 3) [m], left first.
@@ -161,7 +161,7 @@ class FeetState:
 
 
 class SolverStatus(IntEnum):
-    """How the jerk of a plan came about; higher is worse."""
+    """The origin of the jerk of a plan; higher is worse."""
 
     SOLVED = 0
     """The first solver solved both axes."""
@@ -173,13 +173,13 @@ class SolverStatus(IntEnum):
 
 @dataclass(frozen=True)
 class PlanStatus:
-    """How a plan was made.
+    """The status of a plan.
 
     Attributes:
         solver: the worse status of the two axes.
         zmp_slack: violation of the ZMP box that the optimum accepts, shape (2,) for the plan frame's axes [m].
         terminal_slack: violation of the terminal DCM bound, shape (2,) [m].
-        infeasible: the profile's hard constraints had no solution; it was softened by the slack told here.
+        infeasible: the profile's hard constraints had no solution; it was softened by the slack given here.
         age: number of ticks since the last plan in which both axes were solved; 0 for a fresh one.
         late_touchdown: ticks for which the phase clock has waited for the touchdown.
         early_touchdown: the swing foot has landed before its time; its foothold is fixed, single support goes on.
@@ -199,7 +199,7 @@ class PlanStatus:
 
 @dataclass(frozen=True)
 class Balance:
-    """What is left to the body, and what of it a plan makes use of; NaN from a planner that does not tell.
+    """The margins that are left to the body, and the use that a plan makes of them; NaN from a planner without them.
 
     Attributes:
         planned: how far the DCM is inside what the CoP alone captures, all steps where and when they are planned, or
@@ -210,7 +210,7 @@ class Balance:
         lost: plans on end, this one among them, whose DCM is farther outside `movable` than that of a robot that can be
             saved.
         catching: place or time of the next landing are being adapted, but on stairs and blocks.
-        safe: while a fall is told: plans on end, this one among them, whose `movable` is not negative.
+        safe: while a fall is announced: plans on end, this one among them, whose `movable` is not negative.
     """
 
     planned: float = math.nan
@@ -224,7 +224,7 @@ class Balance:
 
 @dataclass(frozen=True)
 class PhaseInfo:
-    """Where a plan stands in the gait.
+    """The place of a plan in the gait.
 
     Attributes:
         kind: support phase.

@@ -1,4 +1,4 @@
-"""What stays the same for a walk: robot and ground as the planner knows them, and what it works out of them once."""
+"""The constants of a walk: robot and ground as the planner knows them, and what it works out of them once."""
 
 import math
 from dataclasses import dataclass
@@ -31,7 +31,7 @@ class WalkModel:
         world: CoM motion between the world and the plan frame.
         outlook: what the CoP captures with the steps as planned.
         margin: what steps that are moved capture; None where the legs are not known.
-        adjustment: of the next step, likewise.
+        adjustment: of the next step; None where the legs are not known.
         leg_offset: what the legs' inertia adds to the ZMP; None for a body that is a point mass.
         softening: factor of the pendulum's stiffness by the legs' masses [-].
         parameters: the planner's own numbers.

@@ -17,7 +17,7 @@ TIME = "time_ns"
 """Key of the times of a topic's messages, among those of its fields."""
 
 HELD_BYTES = 16 << 20
-"""What all columns together may take in memory: a minute of a walk [bytes]."""
+"""Most memory of all columns together: a minute of a walk [bytes]."""
 
 
 class Columns:
@@ -115,7 +115,7 @@ class Named(Protocol):
 
     @property
     def name(self) -> str:
-        """What it is called."""
+        """Name of the column."""
 
 
 class Channel(Protocol):
@@ -123,7 +123,7 @@ class Channel(Protocol):
 
     @property
     def fields(self) -> Sequence[Named]:
-        """Those that it has."""
+        """The fields that it has."""
 
     @property
     def time_ns(self) -> NDArray[np.int64]:

@@ -15,12 +15,12 @@ Key = tuple[str | int, ...]
 
 @dataclass(frozen=True, slots=True)
 class Problem:
-    """What is wrong with one value.
+    """The fault of one value.
 
     Attributes:
         key: the value's path in the scenario.
         what: the fault.
-        right: what would be right, or what says it: of thousands of problems only the first are told.
+        right: what would be right, or what says it: of thousands of problems only the first are shown.
         at_key: whether the key is at fault rather than its value.
     """
 
@@ -30,33 +30,33 @@ class Problem:
     at_key: bool = False
 
     def __str__(self) -> str:
-        return f"{self.what}; {self._told}"
+        return f"{self.what}; {self._hint}"
 
     @property
-    def _told(self) -> str:
+    def _hint(self) -> str:
         return self.right if isinstance(self.right, str) else self.right()
 
     def __reduce__(self) -> tuple[type["Problem"], tuple[Key, str, str, bool]]:
         """Survive the way between processes, where what says what would be right may not be known."""
-        return type(self), (self.key, self.what, self._told, self.at_key)
+        return type(self), (self.key, self.what, self._hint, self.at_key)
 
 
 LONGEST_HINT = 200
-"""Characters of what would be right that are told once only, where many problems have the same."""
+"""Characters of what would be right that are shown once only, where many problems have the same."""
 
 
-def told_once(problems: Iterable[Problem]) -> Iterator[Problem]:
+def hinted_once(problems: Iterable[Problem]) -> Iterator[Problem]:
     """The problems; of those with the same long hint only the first has it."""
-    told: set[str] = set()
+    hints: set[str] = set()
     for problem in problems:
-        hint = problem._told
-        yield replace(problem, right="see the first of these" if hint in told else hint)
+        hint = problem._hint
+        yield replace(problem, right="see the first of these" if hint in hints else hint)
         if len(hint) > LONGEST_HINT:
-            told.add(hint)
+            hints.add(hint)
 
 
 LONGEST_SENTENCE = 2000
-"""Characters of a problem that are told; names and values may be longer than anyone reads."""
+"""Characters of a problem that are shown; names and values may be longer than anyone reads."""
 
 
 class ScenarioError(Exception):
@@ -134,7 +134,7 @@ def require(module: str, extra: str, purpose: str, otherwise: str = "") -> Modul
 
 
 def nearest(name: str, valid: Iterable[str]) -> str:
-    """Say which of the valid names was meant, or list them."""
+    """Name the valid one that was meant, or list them."""
     names = sorted(valid)
     close = difflib.get_close_matches(name[:100], names, n=1, cutoff=0.6)
     return f"did you mean '{close[0]}'?" if close else f"valid are {', '.join(names)}"

@@ -1,4 +1,4 @@
-"""Files that commands write: whole or not at all, and never over an existing one without being told."""
+"""Files that commands write: whole or not at all, and never over an existing one without an option that says so."""
 
 import contextlib
 import os
@@ -9,7 +9,7 @@ from surefoot.scenarios.errors import LogError
 
 
 def refuse_existing(path: Path, replace: bool = False) -> None:
-    """Say before the work what `write_whole` would say after it.
+    """Refuse before the work what `write_whole` would refuse after it.
 
     Raises:
         LogError: there is a file already that shall not be replaced, or a directory.
@@ -59,7 +59,7 @@ def write_whole(path: Path, replace: bool = False) -> Iterator[Path]:
 
 
 def reason(error: OSError) -> str:
-    """What the operating system says, to stand within a sentence."""
+    """The operating system's reason, to stand within a sentence."""
     return (error.strerror or str(error)).lower()
 
 

@@ -25,7 +25,7 @@ FEET = (GREEN, PURPLE)
 """Left and right: footprints, soles and the forces on them."""
 SUPPORT = GREEN
 FOOTSTEP = BLUE
-"""Where a foot is planned to land."""
+"""Colour of the place where a foot is planned to land."""
 PUSH = RED
 PASS, FAIL = GREEN, VERMILION
 

@@ -1,4 +1,4 @@
-"""Where the bodies of a robot are, by MuJoCo's kinematics."""
+"""Places of a robot's bodies, by MuJoCo's kinematics."""
 
 from surefoot.engines.windowless import mujoco
 from surefoot.models.convert import Coordinates

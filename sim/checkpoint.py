@@ -32,10 +32,10 @@ class Checkpoint:
         self._qvel[:] = self._last_qvel
 
     def diverged(self) -> bool:
-        """Whether the acceleration is beyond the limit, or no number."""
+        """Return true if the acceleration is beyond the limit, or no number."""
         return not linear.dot(self._qacc, self._qacc) < ACCELERATION_LIMIT * ACCELERATION_LIMIT
 
 
 def is_finite(values: Array) -> bool:
-    """Whether all numbers are finite, and the sum of their squares."""
+    """Return true if all numbers are finite, and the sum of their squares."""
     return linear.dot(values, values) < algebra.INFINITY

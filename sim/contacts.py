@@ -1,4 +1,4 @@
-"""What touches what: the ground under the feet, the ground under anything else, the robot itself."""
+"""Contacts: of the ground with the feet, of the ground with anything else, of the robot with itself."""
 
 from collections.abc import Sequence
 
@@ -23,7 +23,7 @@ class ContactSense:
         self._geoms, self._touches = b"", (False, False)
 
     def read(self) -> tuple[bool, bool]:
-        """Whether anything but a foot touches the terrain, and whether the robot touches itself."""
+        """Read two flags: anything but a foot touches the terrain, and the robot touches itself."""
         geoms = self._contact.geom
         pairs = geoms.tobytes()
         # The same geoms touch for many steps; to compare them takes a tenth of the time of sorting them.

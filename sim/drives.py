@@ -1,4 +1,4 @@
-"""What motors make of the torques that they are told: late, noisy, and less of it the faster they turn."""
+"""The torques that motors make of their commands: late, noisy, and less of it the faster they turn."""
 
 from collections import deque
 from dataclasses import dataclass
@@ -13,7 +13,7 @@ from surefoot.streams import Stream, generator
 
 @dataclass(frozen=True, slots=True)
 class DriveErrors:
-    """What a motor does with its command; the default gives it at once and as it is.
+    """The errors of a motor; by default it gives its command at once and as it is.
 
     Attributes:
         delay: time from the command until the motor gives it [s].
@@ -48,19 +48,19 @@ class Drives:
 
     def rewind(self, torque: Array) -> None:
         """Begin again, with motors that have given a torque until now, shape (nj,) [N·m]."""
-        self._given, self._told = torque.copy(), deque[tuple[int, Array]]()
+        self._given, self._commanded = torque.copy(), deque[tuple[int, Array]]()
         self._rng = generator(self._seed, Stream.MOTOR)
 
     def tell(self, tick: int, torque: Array) -> None:
         """Command a torque at a physics step, shape (nj,) [N·m]."""
         noise = self._errors.noise
         meant = torque + noise * self._rng.standard_normal(len(torque)) if noise else torque.copy()
-        self._told.append((tick + self._wait, meant))
+        self._commanded.append((tick + self._wait, meant))
 
     def torque(self, tick: int, speed: Array) -> Array:
-        """What they give in a physics step at joint speeds, shape (nj,) [rad/s]; peaks are the world's to clip."""
-        while self._told and self._told[0][0] <= tick:
-            self._given = self._told.popleft()[1]
+        """Torque of the motors in a physics step at joint speeds, shape (nj,) [rad/s]; the world clips it to peaks."""
+        while self._commanded and self._commanded[0][0] <= tick:
+            self._given = self._commanded.popleft()[1]
         knee = self._errors.torque_speed
         if knee is None:
             return self._given

@@ -1,4 +1,4 @@
-"""What can go wrong in the simulator."""
+"""The errors of the simulator."""
 
 from surefoot.errors import ParameterError
 

@@ -1,4 +1,4 @@
-"""How the IMU moves: its frame in the world from the true state, through the joints between it and the base."""
+"""The motion of the IMU: its frame in the world from the true state, through the joints between it and the base."""
 
 import math
 
@@ -175,7 +175,7 @@ def put_skew(out: Array, a: Vector) -> None:
 
 
 def skew(vector: Array) -> Array:
-    """That matrix of an array, shape (3, 3)."""
+    """The skew-symmetric matrix of an array, shape (3, 3)."""
     made = np.zeros((3, 3))
     put_skew(made, algebra.vector(vector))
     return made

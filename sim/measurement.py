@@ -1,4 +1,4 @@
-"""What the sensors of the simulated robot say at one instant."""
+"""The true values of a simulated robot at one instant, from which its sensors read."""
 
 from dataclasses import dataclass
 
@@ -9,7 +9,7 @@ Array = NDArray[np.float64]
 
 
 def is_rotation(quaternion: Array) -> bool:
-    """Whether four numbers, shape (4,), are those of a rotation but for rounding."""
+    """Return true if four numbers, shape (4,), are those of a rotation but for rounding."""
     return bool(0.81 < float(np.vdot(quaternion, quaternion)) < 1.21)
 
 
@@ -19,8 +19,8 @@ class Measurement:
 
     The arrays are buffers of the world, overwritten by its next `measure()`: copy what must live longer.
 
-    Joint state, gyro and true state are those of `time`; torques, accelerometer and wrenches are those of the physics
-    step that ended at `time` (after a reset: those of the torques that it was given); the external force is the mean
+    Joint state, gyro and true state are those of `time`. Torques, accelerometer and wrenches are those of the physics
+    step that ended at `time`; after a reset, those of the torques that it was given. The external force is the mean
     since the measurement before, so that a push of any length leaves its whole impulse in the sum.
 
     Attributes:
@@ -63,15 +63,16 @@ class Measurement:
         wrench: Array | None = None,
         external_force: Array | None = None,
     ) -> "Measurement":
-        """What is seen of a robot whose state is known from elsewhere, with no IMU and nothing that touches it.
+        """Make the measurement of a robot whose state is known from elsewhere, with no IMU and nothing that touches it.
 
         Args:
             time: instant [s].
             q: configuration in Pinocchio's convention, shape (7 + nj,) [m, -, rad].
             v: velocity in Pinocchio's convention, shape (6 + nj,) [m/s, rad/s].
             joint_torque: shape (nj,) [N m]; None where it is not known.
-            wrench: of the soles in their frames, shape (2, 6) [N, N m]; likewise.
-            external_force: sum of the pushes, mean since the measurement before, world, shape (3,) [N]; likewise.
+            wrench: of the soles in their frames, shape (2, 6) [N, N m]; None where it is not known.
+            external_force: sum of the pushes, mean since the measurement before, world, shape (3,) [N]; None
+                where it is not known.
         """
         torque = np.full(len(v) - 6, np.nan) if joint_torque is None else joint_torque
         felt = np.full((2, 6), np.nan) if wrench is None else wrench

@@ -1,4 +1,4 @@
-"""What a simulated world is made of, in the few numbers by which two worlds are told apart."""
+"""The contents of a simulated world, in the few numbers by which two worlds are distinguished."""
 
 from collections.abc import Mapping
 from typing import Any
@@ -13,14 +13,15 @@ Option = float | str | list[float] | list[str]
 _ROBOT, _GROUND = "robot", "ground"
 
 _BODY_BITS = 16
-"""Of the higher body in the signature of two whose contacts are excluded."""
+"""Bits of the higher body in the signature of two whose contacts are excluded."""
 
 
 def world_options(mjcf: str) -> Mapping[str, Option]:
     """The options of a world as MuJoCo has compiled it, by name.
 
-    Solver and medium one by one; of ground and robot the distinct values of what shapes a contact, row after row; how
-    many pairs of geoms may touch; and of what is there once for each body, joint or motor the sum of the magnitudes.
+    They are solver and medium one by one, and for ground and robot the distinct values of what shapes a contact, row
+    after row. Then come the numbers of pairs of geoms that may touch. Of what is there once for each body, joint or
+    motor they have the sum of the magnitudes.
 
     Args:
         mjcf: text of the world.
@@ -74,7 +75,7 @@ def _contacts(model: mujoco.MjModel) -> dict[str, Option]:
 
 
 def _pairs(model: mujoco.MjModel) -> dict[str, Option]:
-    """How many pairs of geoms may touch, of the robot with the ground and with itself; those named in pairs beside."""
+    """Numbers of pairs of geoms that may touch, of the robot with the ground and with itself; named pairs beside."""
     one, other = np.triu_indices(model.ngeom, 1)
     kinds, accepted = model.geom_contype, model.geom_conaffinity
     may = ((kinds[one] & accepted[other]) | (kinds[other] & accepted[one])) != 0

@@ -17,8 +17,8 @@ NEVER = 2**62
 class PushSchedule:
     """The external force of every body as a piecewise constant function of the physics tick.
 
-    A window that begins or ends inside a physics step acts in that step with the share of the step it covers, so that
-    the impulse of a push is force times duration whatever the rates.
+    A window that begins or ends inside a physics step acts in that step with the share that it covers. So the impulse
+    of a push is force times duration whatever the rates.
 
     Attributes:
         total: sum of the applied forces, world frame, shape (3,) [N].

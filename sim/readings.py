@@ -40,7 +40,7 @@ class SensorSuite:
         self._lines = _lines(errors, period, seed)
 
     def read(self, measurement: Measurement, tick: int) -> Readings:
-        """What has arrived at a tick; its arrays are never written to again, so that they may be kept.
+        """Read what has arrived at a tick; its arrays are never written to again, so that they may be kept.
 
         Args:
             measurement: the truth of this tick, none of whose values are kept.
@@ -87,7 +87,7 @@ class Buffer:
         self._array[...] = truth
 
     def copied(self) -> Array:
-        """What it holds now, in memory of its own."""
+        """Copy of its content now, in memory of its own."""
         copied: Array = self._array.copy()
         return copied
 
@@ -235,7 +235,7 @@ class Imu:
         return [self._rate.copied(), self._mean_rate.copied(), self._force.copied()]
 
     def _sense(self, now: ImuMotion) -> None:
-        """Say a motion, at the end of a period that began with that of the last call."""
+        """Sense a motion, at the end of a period that began with that of the last call."""
         mean_rate, force = self._over_period(now)
         self._before = now
         self._error[:] = 0.0

@@ -42,7 +42,7 @@ class Camera:
 
 @dataclass(frozen=True, slots=True)
 class Quality:
-    """What a picture costs; in software, at 1280x720, 0.6 s with all of it and 0.08 s with only shadows and one sample.
+    """The quality of a picture; in software, at 1280x720, all of it takes 0.6 s, shadows and one sample alone 0.08 s.
 
     Attributes:
         shadows: cast shadows.
@@ -140,7 +140,7 @@ class _Painter:
             yield self._shine_through(picture, shown) if shown else picture
 
     def _update(self, scene: mujoco.MjvScene) -> None:
-        # The engine centres the endless floor on the camera of the frame before, unless told of this one's.
+        # The engine centres the endless floor on the camera of the frame before, unless it gets this one's.
         mujoco.mjv_updateCamera(self._model, self._data, self._view, scene)
         everything = mujoco.mjtCatBit.mjCAT_ALL.value
         mujoco.mjv_updateScene(self._model, self._data, self._option, None, self._view, everything, scene)

@@ -53,9 +53,9 @@ def _around(name: str, robot: str, base: str, ground: str, timestep: float) -> s
 def _add_options(root: ElementTree.Element, timestep: float) -> None:
     """Solver options.
 
-    Euler is exact for this use where joints have no damping, and takes damping implicitly where they have; the elliptic
-    cone is Coulomb's; the dense constraint Jacobian and no islands are fastest at this size; impratio 20 keeps the
-    creep of a standing sole under 0.01 mm/s; a bad state must be reported, not reset away.
+    Euler is exact for this use where joints have no damping, and takes damping implicitly where they have. The elliptic
+    cone is Coulomb's. The dense constraint Jacobian and no islands are fastest at this size. An impratio of 20 keeps
+    the creep of a standing sole under 0.01 mm/s. A bad state must be reported, not reset away.
     """
     option = ElementTree.SubElement(
         root,

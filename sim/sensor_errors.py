@@ -1,4 +1,4 @@
-"""What the sensors of a robot add to the truth: the terms of their noise models, and presets with their sources.
+"""The errors that a robot's sensors add to the truth: terms of their noise models, and presets with their sources.
 
 Noise is white, biases are drawn once and walk from there, as in the models that data sheets and other simulators use
 (Kalibr's "IMU noise model"; the IMU plug-ins of Gazebo and RotorS). Each number is the standard deviation of what is
@@ -19,12 +19,12 @@ def _term(default: float, scales: str = "-") -> Any:
 
 
 SOON = 1e-9
-"""What arrives so shortly after a tick is there at the tick, so that no shorter time is late [s]."""
+"""Delay after a tick within which a reading is there at the tick, so that no shorter time is late [s]."""
 
 
 @dataclass(frozen=True, slots=True)
 class Delivery:
-    """How readings of one group of sensors come to the controller.
+    """The delivery of the readings of one group of sensors to the controller.
 
     Attributes:
         latency: time from the instant of a sample until it arrives [s].
@@ -108,7 +108,7 @@ PERFECT = SensorErrors()
 """The truth, of each instant, at once."""
 
 _FULL_SCALE = math.radians(2000.0)
-"""Of the gyro of either IMU, as nearly all of their kind have it [rad/s]."""
+"""Full scale of the gyro of either IMU, as nearly all of their kind have it [rad/s]."""
 
 _QUICK, _SLOW = Delivery(latency=0.002), Delivery(latency=0.005, dropout=0.02)
 
@@ -138,9 +138,9 @@ GOOD = SensorErrors(
     feet=_QUICK,
 )
 """A well built robot of the class of TALOS: absolute encoders of 19 bits at the joints, calibrated to half a
-milliradian, whose rounding is white in a noise of its size and so counts as a part of that; an industrial MEMS IMU of
-0.01 deg/s/√Hz and 0.14 mg/√Hz (the classes of Xsens' MTi-100 and of VectorNav's VN-100); six-axis force sensors that
-say a share of a percent of their range."""
+milliradian. Their rounding is white in a noise of its size and so counts as a part of that. It has an industrial MEMS
+IMU of 0.01 deg/s/√Hz and 0.14 mg/√Hz (the classes of Xsens' MTi-100 and of VectorNav's VN-100); six-axis force sensors
+that say a share of a percent of their range."""
 
 CHEAP = SensorErrors(
     encoder_noise=1e-4,
@@ -168,12 +168,12 @@ CHEAP = SensorErrors(
     imu=_SLOW,
     feet=_SLOW,
 )
-"""A robot of hobby parts: magnetic encoders of 14 bits behind the gears, calibrated by eye; a consumer MEMS IMU of
-0.015 deg/s/√Hz and 300 ug/√Hz (the classes of TDK's ICM-20948 and MPU-9250), with the accelerometer bias of 0.1 m/s^2
-that the Gazebo models of Alexander and TALOS have; load cells; a bus that is late and loses packets.
+"""A robot of hobby parts: magnetic encoders of 14 bits behind the gears, calibrated by eye. It has a consumer MEMS IMU
+of 0.015 deg/s/√Hz and 300 ug/√Hz (the classes of TDK's ICM-20948 and MPU-9250), with the accelerometer bias of 0.1
+m/s^2 that the Gazebo models of Alexander and TALOS have; load cells; a bus that is late and loses packets.
 
 Those two models have a rate noise of 2e-4 rad/s and an accelerometer noise of 1.7e-2 m/s^2 at 1 kHz. As densities, 6e-6
 rad/s/√Hz and 5e-4 m/s^2/√Hz, that is less than either preset has."""
 
 PRESETS: Mapping[str, SensorErrors] = {"perfect": PERFECT, "good": GOOD, "cheap": CHEAP}
-"""By the value of ``sensing.preset``."""
+"""Errors by the value of ``sensing.preset``."""

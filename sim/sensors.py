@@ -34,7 +34,10 @@ class SensorReader:
         self, model: mujoco.MjModel, data: mujoco.MjData, description: RobotDescription, pushes: PushSchedule
     ) -> None:
         """Look at a world; `pushes` are those of its latest steps."""
-        self.model, self._data, self._pushes, self._coordinates = model, data, pushes, Coordinates(model)
+        self.model = model
+        self._data = data
+        self._pushes = pushes
+        self._coordinates = Coordinates(model)
         base = model.body(description.pelvis_body).id
         _check_imu(model, description, base)
         sites = [model.site(name).id for name in description.sole_sites]
@@ -55,9 +58,20 @@ class SensorReader:
         self._allocate(size, size - 1, wrench)
 
     def _allocate(self, nq: int, nv: int, wrench: Array) -> None:
-        q, v, torque, felt, push = np.zeros(nq), np.zeros(nv), np.zeros(nv - 6), np.zeros(3), np.zeros(3)
-        self._q, self._v, self._torque, self._accelerometer, self._push = q, v, torque, felt, push
-        q, v, torque, felt = _read_only(q), _read_only(v), _read_only(torque), _read_only(felt)
+        q = np.zeros(nq)
+        v = np.zeros(nv)
+        torque = np.zeros(nv - 6)
+        felt = np.zeros(3)
+        push = np.zeros(3)
+        self._q = q
+        self._v = v
+        self._torque = torque
+        self._accelerometer = felt
+        self._push = push
+        q = _read_only(q)
+        v = _read_only(v)
+        torque = _read_only(torque)
+        felt = _read_only(felt)
         # Of a measurement, from the joints' positions to the push.
         self._views = (q[7:], v[6:], torque, v[3:6], felt, _read_only(wrench), q, v, _read_only(push))
 
@@ -120,7 +134,10 @@ class Sole:
     """
 
     def __init__(self, foot: int, position: Array, rotation: Array, wrench: Array) -> None:
-        self.foot, self.position, self.rotation, self.wrench = foot, position, rotation, wrench
+        self.foot = foot
+        self.position = position
+        self.rotation = rotation
+        self.wrench = wrench
 
     def feel(self, external: Array, com: Vector) -> None:
         """Take over the spatial force on its body, which MuJoCo has about the CoM in world axes, torque first.

@@ -1,4 +1,4 @@
-"""What there is to draw of a world: the geoms of a MuJoCo model as plain shapes on bodies."""
+"""Shapes to draw of a world: the geoms of a MuJoCo model as plain shapes on bodies."""
 
 from collections.abc import Iterator
 from dataclasses import dataclass
@@ -101,7 +101,7 @@ def drawn_shapes(model: mujoco.MjModel) -> Iterator[Shape]:
 
 
 def _color(model: mujoco.MjModel, geom: int) -> Color:
-    """Of the material, or else the geom's own."""
+    """Colour of the material, or else the geom's own."""
     material = int(model.geom_matid[geom])
     red, green, blue, opacity = (model.geom_rgba[geom] if material < 0 else model.mat_rgba[material]).tolist()
     return red, green, blue, opacity

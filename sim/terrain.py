@@ -19,9 +19,12 @@ SETTLING, SINKING = 0.01, 0.0001
 damped, so that a standing sole sinks in by a tenth of a millimetre."""
 
 IMPEDANCE = 0.9, 0.95
-"""Of a contact, at its first touch and at that depth [-]; MuJoCo's own. Its contacts leave out J' v, what a sole is
-accelerated by with its joints' velocities alone, which shifts the depth at which the sole bears a load. That depth
-grows with what the impedance lacks of 1: at 0.95 soles unloaded to 200 N came up out of contact for a step."""
+"""Impedance of a contact, at its first touch and at that depth [-]; MuJoCo's own.
+
+Its contacts leave out J' v, what a sole is accelerated by with its joints' velocities alone, which shifts the depth at
+which the sole bears a load. That depth grows with what the impedance lacks of 1: at 0.95 soles unloaded to 200 N came
+up out of contact for a step.
+"""
 
 
 def add_terrain(worldbody: ElementTree.Element, terrain: Terrain, size: Similarity = REFERENCE_SIZE) -> None:
@@ -53,7 +56,7 @@ def add_terrain(worldbody: ElementTree.Element, terrain: Terrain, size: Similari
 
 
 def _friction(coefficient: float) -> str:
-    """Of a geom that neither spins nor rolls with friction."""
+    """Friction of a geom that neither spins nor rolls with friction."""
     return numbers((coefficient, 0.0, 0.0))
 
 

@@ -90,13 +90,13 @@ class World:
 
     @property
     def angles(self) -> Array:
-        """Of the joints now, shape (nj,) [rad]."""
+        """Angles of the joints now, shape (nj,) [rad]."""
         found: Array = self._qpos[self._coordinates.positions]
         return found
 
     @property
     def apart(self) -> Array:
-        """Of each joint that follows another one from where it belongs now, shape (nf,) [rad]."""
+        """Distance of each joint that follows another one from where it belongs now, shape (nf,) [rad]."""
         return self._coordinates.apart(self._qpos)
 
     def mjcf(self) -> str:
@@ -104,7 +104,7 @@ class World:
         return self._mjcf
 
     def poses(self) -> BodyPoses:
-        """Of its bodies as it was made, whatever its model has become."""
+        """Poses of its bodies as it was made, whatever its model has become."""
         return BodyPoses(_compiled(self._mjcf))
 
     def reset(self, q: Array, v: Array | None = None, torque: Array | None = None) -> None:
@@ -126,7 +126,7 @@ class World:
         mujoco.mj_forward(self._model, self.data)
 
     def measure(self) -> Measurement:
-        """What the sensors say now."""
+        """Measure the true state now."""
         return self._sensors.read(self.tick / self.physics_rate)
 
     def push(self, push: Push) -> None:
@@ -177,10 +177,13 @@ class World:
         self.tick = end
 
     def act(self, command: JointCommand, period: float) -> None:
-        """Simulate what is commanded for so long, a whole number of physics steps [s]; errors as of `advance`.
+        """Simulate what is commanded for so long, a whole number of physics steps [s].
 
-        Drives with gains are faster than a step of the physics: within it they count with the speed that they make, as
-        an implicit step of their joint's own inertia does, so that no damping is too much for a light limb.
+        Drives with gains are faster than a step of the physics. Within it they count with the speed that they make, as
+        in an implicit step of their joint's own inertia. So no damping is too much for a light limb.
+
+        Raises:
+            SimulationDiverged: the torque or the state is not finite.
         """
         steps = round(period * self.physics_rate)
         if command.servo is None:

@@ -1,1 +1,1 @@
-"""What many runs say together: campaigns, checks against baselines, the paper."""
+"""Studies of many runs: campaigns, the paper, the tour."""

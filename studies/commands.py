@@ -28,7 +28,7 @@ def _campaigns_from(incomplete: str) -> list[str]:
 
 
 def _interrupted(folder: Path) -> typer.Exit:
-    """Say how to go on."""
+    """Exit with the way to go on."""
     typer.echo(f"interrupted; finished runs are kept in {folder}, the same command goes on from there", err=True)
     return typer.Exit(INTERRUPTED)
 
@@ -109,7 +109,7 @@ def _rows_from(incomplete: str) -> list[str]:
 
 @dataclass(frozen=True, slots=True)
 class BenchOptions:
-    """What `surefoot bench` is told."""
+    """The arguments of `surefoot bench`."""
 
     name: Annotated[str, typer.Argument(help="Of the benchmark: g1-tour.", autocompletion=_benches_from)]
     row: Annotated[
@@ -123,7 +123,7 @@ class BenchOptions:
 
 
 @with_options(BenchOptions)
-def bench(told: BenchOptions) -> None:
+def bench(options: BenchOptions) -> None:
     """Send a walker through the tour of a public benchmark, many times.
 
     Begun again, it goes on where it stopped.
@@ -135,21 +135,21 @@ def bench(told: BenchOptions) -> None:
         from surefoot.studies.tour.bench import Bench, lines
         from surefoot.studies.tour.rows import ROWS
 
-    if told.name not in BENCHES:
-        raise ScenarioError([f"there is no benchmark '{told.name}'; {nearest(told.name, BENCHES)}"])
-    for name in told.row or ():
+    if options.name not in BENCHES:
+        raise ScenarioError([f"there is no benchmark '{options.name}'; {nearest(options.name, BENCHES)}"])
+    for name in options.row or ():
         if name not in ROWS:
-            raise ScenarioError([f"{told.name}: no row '{name}'; {nearest(name, ROWS)}"])
-    rows = [name for name in ROWS if name in (told.row or ROWS)]
-    tours = Bench(rows, told.seeds, told.out, told.seconds)
+            raise ScenarioError([f"{options.name}: no row '{name}'; {nearest(name, ROWS)}"])
+    rows = [name for name in ROWS if name in (options.row or ROWS)]
+    tours = Bench(rows, options.seeds, options.out, options.seconds)
     try:
         with CampaignBar(len(tours.left()), "tours") as bar:
-            tours.run(told.workers or cores(), lambda _: bar.cell())
+            tours.run(options.workers or cores(), lambda _: bar.cell())
     except KeyboardInterrupt:
-        raise _interrupted(told.out) from None
+        raise _interrupted(options.out) from None
     tours.write()
     found = tours.to_json()
-    typer.echo(json.dumps(found, allow_nan=False) if told.as_json else "\n".join(lines(found)))
+    typer.echo(json.dumps(found, allow_nan=False) if options.as_json else "\n".join(lines(found)))
     raise typer.Exit(MISSED if tours.left() else 0)
 
 

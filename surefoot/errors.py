@@ -28,7 +28,7 @@ class ParameterError(ValueError):
 
 
 class PluginError(ValueError):
-    """What a package has registered cannot be used.
+    """A registration of a package cannot be used.
 
     Attributes:
         what: the fault, with the names of package and entry, without a full stop.
@@ -57,9 +57,9 @@ def at_most(value: float, decimals: int = 3) -> str:
 
 
 def at_least(value: float, decimals: int = 3) -> str:
-    """Likewise of a lower bound, never rounded down."""
+    """Write a lower bound with so many decimals, never rounded down."""
     return f"{math.ceil(value * 10**decimals - _DIGITS) / 10**decimals:.{decimals}f}"
 
 
 _DIGITS = 1e-6
-"""By what a number may miss a decimal that it is, for its last binary digits [-]."""
+"""Distance of a number from a decimal that it is, for its last binary digits [-]."""

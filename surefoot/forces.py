@@ -1,4 +1,4 @@
-"""What acts on a robot from outside: a push, which is soon over, and a load, which lasts. World frame, SI units."""
+"""External forces on a robot: a push, which is soon over, and a load, which lasts. World frame, SI units."""
 
 from dataclasses import dataclass
 
@@ -27,7 +27,7 @@ class Push:
 
 @dataclass(frozen=True)
 class ExternalLoad:
-    """What lasts of forces on the robot beside gravity and the ground, and how heavy it is.
+    """The lasting forces on the robot beside gravity and the ground, and its weight.
 
     Attributes:
         force: at the CoM, of which the vertical part counts as weight, shape (3,) [N].

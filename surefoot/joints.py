@@ -1,4 +1,4 @@
-"""What goes between a controller and the joints of a robot."""
+"""The values that pass between a controller and the joints of a robot."""
 
 from dataclasses import dataclass
 
@@ -27,7 +27,7 @@ class Servo:
 
 @dataclass(frozen=True)
 class JointCommand:
-    """What the joints are to do until the next command; the joint order is that of the robot description.
+    """The command of the joints until the next one; the joint order is that of the robot description.
 
     Attributes:
         torque: of the motors, which a servo adds to, shape (nj,) [N·m].

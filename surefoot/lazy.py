@@ -1,4 +1,4 @@
-"""What a program need not do: faces import names when they are first asked for, and imports look for no garbage."""
+"""Work that a program need not do: faces import names when first asked for, and imports look for no garbage."""
 
 import gc
 from collections.abc import Callable, Iterable, Iterator, Mapping
@@ -8,7 +8,7 @@ from typing import Any
 
 
 def face(package: str, homes: Mapping[str, Iterable[str]]) -> tuple[Callable[[str], Any], Callable[[], list[str]]]:
-    """What a package has as its ``__getattr__`` and ``__dir__``.
+    """The functions that a package has as its ``__getattr__`` and ``__dir__``.
 
     Args:
         package: its name.
@@ -32,7 +32,7 @@ def face(package: str, homes: Mapping[str, Iterable[str]]) -> tuple[Callable[[st
 
 @contextmanager
 def importing() -> Iterator[None]:
-    """What a program imports meanwhile stays to its end, and nobody looks through it for garbage.
+    """Import without looking for garbage: what a program imports meanwhile stays to its end.
 
     Looking takes a seventh of the time of importing all of the package, and finds next to nothing.
     """

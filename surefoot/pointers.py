@@ -6,7 +6,7 @@ The format is https://github.com/git-lfs/git-lfs/blob/main/docs/spec.md; Git LFS
 import re
 
 IS_A_POINTER = "a Git LFS pointer, not the file itself; run 'git lfs pull'"
-"""What stands there and what would be right, to be said behind the name of the file."""
+"""The fault and what would be right, to be said behind the name of the file."""
 
 POINTER_BYTES = 1024
 """No pointer is longer, so that so many bytes of a file are enough to know [bytes]."""
@@ -17,5 +17,5 @@ _VERSION = re.compile(
 
 
 def is_pointer(head: bytes) -> bool:
-    """Say whether a file that begins with these bytes is a Git LFS pointer: its first line is always its version."""
+    """Return true if a file that begins with these bytes is a Git LFS pointer: its first line is always its version."""
     return _VERSION.match(head) is not None

@@ -1,4 +1,4 @@
-"""What the sensors of a robot say at one instant, with how old it is: all that an estimator gets."""
+"""Readings of a robot's sensors at one instant, each with its age: all that an estimator gets."""
 
 from dataclasses import dataclass
 

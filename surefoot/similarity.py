@@ -1,7 +1,7 @@
 """Froude similarity: what becomes of any quantity when the same walk is walked by a robot of another size and mass.
 
 Gravity is the same for all, so that times grow with the root of lengths, τ = √λ; lengths and masses are free. A unit
-therefore says all: a quantity in m^a s^b kg^c grows with λ^a τ^b μ^c, where λ is the length and μ the mass of a robot
+therefore says all: a quantity in m^a s^b kg^c grows with λ^a τ^b μ^c. Here λ is the length and μ the mass of a robot
 over those of the reference (R. McNeill Alexander, "Principles of Animal Locomotion", 2003, chapter 4). Every number of
 this project that is a length, a time, a force or the like is written down for the reference robot, once, beside its
 unit.
@@ -33,7 +33,7 @@ _DECIMALS = 9
 """Sizes are rounded to so many, so that the reference robot has exactly 1 whatever rounding its sums have."""
 
 Exponents = tuple[int, int, int]
-"""Of length, time and mass."""
+"""Exponents of length, time and mass."""
 
 _EXPONENTS: Mapping[str, Exponents] = {
     "m": (1, 0, 0),
@@ -45,7 +45,7 @@ _EXPONENTS: Mapping[str, Exponents] = {
     "Hz": (0, -1, 0),
     **dict.fromkeys(("", "-", "1", "rad", "deg", "sample"), (0, 0, 0)),
 }
-"""Of the units that others are made of."""
+"""Exponents of the units that others are made of."""
 
 _FACTOR = re.compile(r"(?:\((?P<group>[^()]*)\)|(?P<name>[A-Za-z]*|-|1))(?:\^(?P<power>[0-9]+))?")
 
@@ -72,20 +72,20 @@ class Similarity:
 
     @classmethod
     def of(cls, leg_length: float, mass: float) -> "Similarity":
-        """That of a robot with this leg [m] and this mass without payload [kg]."""
+        """The similarity of a robot with this leg [m] and this mass without payload [kg]."""
         return cls(round(leg_length / LEG_LENGTH, _DECIMALS), round(mass / MASS, _DECIMALS))
 
     @property
     def time(self) -> float:
         """τ, factor of a time: √λ as nearly as rates of planner and controller can be whole numbers [-].
 
-        So that each phase of a walk lasts as many samples as that of the reference robot, which is worth more than the
-        last half percent: half a sample more in each phase doubles how far the CoP wanders.
+        So each phase of a walk lasts as many samples as that of the reference robot. That is worth more than the last
+        half percent: half a sample more in each phase doubles the way of the CoP.
         """
         return PLANS / max(1, round(PLANS / math.sqrt(self.length)))
 
     def factor(self, unit: str) -> float:
-        """By what a quantity of this unit is greater than the reference's, exactly 1 for the reference [-].
+        """Factor by which a quantity of this unit is greater than the reference's, exactly 1 for the reference [-].
 
         Raises:
             ValueError: the unit is not known.
@@ -145,7 +145,7 @@ def _outside(text: str, mark: str) -> list[str]:
 
 
 REFERENCE_SIZE = Similarity()
-"""That of the reference robot."""
+"""Similarity of the reference robot."""
 
 
 def quantity(default: Any, unit: str) -> Any:

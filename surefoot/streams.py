@@ -7,7 +7,7 @@ import numpy as np
 
 @unique
 class Stream(IntEnum):
-    """What has random numbers of its own, whatever else is drawn with the same seed.
+    """A stream of random numbers of its own, whatever else is drawn with the same seed.
 
     The pose at the start has none: it is drawn from the seed itself.
     """

@@ -14,7 +14,7 @@ except PackageNotFoundError:  # a source tree on the path that was never install
 
 
 def install_command(extra: str) -> str:
-    """What installs an extra of Surefoot where this Surefoot came from: its clone, what pip was given, or an index."""
+    """Command that installs an extra of Surefoot where it came from: its clone, what pip was given, or an index."""
     here, clone = Path(sys.executable).parent, Path(__file__).parents[1]
     pip = "pip" if Path(shutil.which("pip") or "").parent == here else f"{quote(sys.executable)} -m pip"
     if (clone / "constraints.txt").is_file():

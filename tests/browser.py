@@ -70,7 +70,7 @@ class Browser:
         self._call("POST", "/url", {"url": page if isinstance(page, str) else page.as_uri()})
 
     def complaints(self) -> list[str]:
-        """What the console has told as an error since it was last asked."""
+        """Errors of the console since it was last asked."""
         told = self._call("POST", "/se/log", {"type": "browser"})
         return [entry["message"] for entry in told if entry["level"] == "SEVERE"]
 

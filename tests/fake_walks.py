@@ -45,7 +45,7 @@ class FakeRobots:
 
 @dataclass
 class Motion:
-    """What the fake loop writes; the defaults meet the default criteria of a scenario of two steps.
+    """The motion that the fake loop writes; the defaults meet the default criteria of a scenario of two steps.
 
     Each half second: stand, step on the left foot, step on the right foot, stand. The soles turn from the first yaw by
     the second over the run; the pause holds the CoM on both feet from 1 s on. The margins of the plans are told, untold

@@ -196,5 +196,5 @@ def _unpacked(chunk: Chunk) -> bytes:
 
 
 def complaints(path: Path) -> list[str]:
-    """What the doctor would say of a file, one sentence each."""
+    """Complaints of the doctor about a file, one sentence each."""
     return _Doctor(path.read_bytes()).run()

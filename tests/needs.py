@@ -1,4 +1,4 @@
-"""What some tests need and a machine may lack: the only reasons for which a test is skipped.
+"""Needs of some tests that a machine may lack: the only reasons for which a test is skipped.
 
 Each need says what is missing, also where half of it is there: a browser without its driver, a library that gives no
 context, a compiler that compiles nothing. So a test is run where it can be, and skipped where it cannot.
@@ -39,12 +39,12 @@ class Need:
 
     @property
     def beginning(self) -> str:
-        """How the reason of each skip for its want begins."""
+        """Beginning of the reason of each skip for its want."""
         return f"needs {self.name}: "
 
     @property
     def reason(self) -> str:
-        """Why a test that needs it is skipped; empty where it is there. It is looked for once."""
+        """Reason why a test that needs it is skipped; empty where it is there. It is looked for once."""
         return _reason(self)
 
     def or_skip(self) -> None:

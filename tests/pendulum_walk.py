@@ -14,10 +14,10 @@ from surefoot.planner.swing.leg_reach import LegReach
 from surefoot.planner.types import Array, CentroidalState, FeetState
 
 MASS = 100.0
-"""Of the pendulum that walks alone, as of the reference robot [kg]."""
+"""Mass of the pendulum that walks alone, as of the reference robot [kg]."""
 
 LEGS = LegReach(0.36, 0.2, 0.115, 0.12, 0.24, (60.0, 50.0))
-"""Likewise how far its legs reach."""
+"""Reach of its legs, as of the reference robot."""
 
 
 def pushing_force(pushes: tuple[Push, ...], time: float) -> Array:
@@ -41,7 +41,7 @@ class Attended:
 
 @dataclass(frozen=True, slots=True)
 class PendulumTrace:
-    """What happened, one row per planner tick.
+    """The trace of the pendulum, one row per planner tick.
 
     Attributes:
         time: shape (k,) [s].

@@ -16,7 +16,7 @@ LEAN, SWAY = 0.4, 0.15
 """Ankle angle for a tilt of the base, and for its speed [-, s]."""
 
 SCALE = 0.25
-"""Of the actions [rad]."""
+"""Scale of the actions [rad]."""
 
 RATES = (0.2, 0.05)
 """Scales of angular velocities and joint speeds [s]."""

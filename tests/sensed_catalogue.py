@@ -20,7 +20,7 @@ def pytest_addoption(parser: Any) -> None:
 
 @pytest.fixture
 def from_sensors(pytestconfig: pytest.Config) -> bool:
-    """Whether the catalogue walks from sensors: bounds that are others then are named where they are held."""
+    """True if the catalogue walks from sensors: bounds that are others then are named where they are held."""
     return not pytestconfig.getoption("--truth")
 
 

@@ -8,7 +8,7 @@ from needs import NEEDS
 
 
 def reasons(reports: list[Any]) -> Counter[str]:
-    """How many tests were skipped for each reason."""
+    """Number of tests that were skipped for each reason."""
     found: Counter[str] = Counter()
     for report in reports:
         text = report.longrepr[-1] if isinstance(report.longrepr, tuple) else str(report.longrepr)

@@ -21,7 +21,7 @@ def ask(address: str, below: str = "", upgrade: bool = False, **headers: str | N
 
 
 def exchange(address: str, sent: bytes, whole: bool = True) -> str:
-    """What is answered to bytes, up to the end of the connection or only at first."""
+    """Answer to bytes, up to the end of the connection or only at first."""
     parts, answer = urlsplit(address), b""
     with socket.create_connection((parts.hostname, parts.port), timeout=10) as connection:
         connection.sendall(sent)
@@ -52,7 +52,7 @@ def foreign(address: str) -> Mapping[str, Mapping[str, str | None]]:
 
 
 def let_in(address: str, *sockets: str) -> list[str]:
-    """Which strangers are answered by a page or by its sockets: none, it is hoped."""
+    """Strangers who are answered by a page or by its sockets: none, it is hoped."""
     root = f"{address[: address.index('/', 8)]}/"
     strangers = [(name, address, headers) for name, headers in foreign(address).items()]
     tokens = {"no token": root, "another token": f"{root}{'a' * 22}/", "a part of it": f"{address[:-2]}/"}

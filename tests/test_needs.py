@@ -1,4 +1,4 @@
-"""What tests may lack is found missing where none of it is there, and where half of it is."""
+"""Needs of tests are found missing where none of them is there, and where half of one is."""
 
 import re
 import sys

@@ -1,4 +1,4 @@
-"""What is public and holds data, and what is raised, goes between processes as it is."""
+"""Public data and errors go between processes as they are."""
 
 import importlib
 import inspect
@@ -108,7 +108,7 @@ def test_what_is_registered_is_found_again_by_name():
 def test_a_metric_that_its_module_has_not_says_so():
     @metric()
     def local(run) -> float:
-        """Of a function within a function."""
+        """A metric that is a function within a function."""
 
     with pytest.raises(pickle.PicklingError, match="make it at the top of a module, with the decorator"):
         pickle.dumps(local)

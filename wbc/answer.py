@@ -1,4 +1,4 @@
-"""What a solution of the whole-body QP means for the robot: torques, accelerations, wrenches and task errors."""
+"""The meaning of a solution of the whole-body QP: torques, accelerations, wrenches and task errors."""
 
 from collections.abc import Sequence
 
@@ -71,7 +71,7 @@ class AnswerReader:
         """Turn wrenches in the frames of the QP into those of the soles.
 
         Args:
-            shifted: feet with what takes a wrench from their frame to the sole's, as of `RobotTerms.shift_foot`.
+            shifted: feet with the matrix of a wrench from their frame to the sole's, by `RobotTerms.shift_foot`.
         """
         for foot, to_sole in shifted:
             self.answer.wrench[foot] = to_sole @ self.answer.wrench[foot]

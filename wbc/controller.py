@@ -214,13 +214,14 @@ class WholeBodyController:
     def solve(self, qp: QpData, fail_solvers: bool = False) -> tuple[SolveStatus, QpSolution | None]:
         """A solution by the first solver whose answer holds, else by the equalities alone; None if there is none.
 
-        What holds no limits at all throws the robot. So before that some of the soft ones are broken, and where that
-        does not do soles slide, lift or turn: one that is torn off the ground by what it carries cannot be held.
+        What holds no limits at all throws the robot. So before that some of the soft ones are broken. If that is not
+        enough, soles may slide, lift or turn: a sole that its load tears off the ground cannot be held.
         """
         for status, solver in zip(_IN_TURN, () if fail_solvers else self.solvers, strict=False):
             solution = solver.solve(qp)
             if solution is not None and solution.violation <= ACCEPTED_VIOLATION:
-                # What may break limits has broken none where it answers for a solver that failed.
+                # A solver that may break limits has broken none if its solution meets all of them: it stands for one
+                # that failed.
                 if status is _SOFTENED and qp.violation(solution.x) <= ACCEPTED_VIOLATION:
                     status = SolveStatus.SECOND_SOLVER
                 return status, solution

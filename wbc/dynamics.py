@@ -23,9 +23,9 @@ class HardConstraints:
     Floating base: M_b q̈ + h_b = Σ J_bᵀ w (first six rows of the equations of motion).
     Torque: τ = M_a q̈ + h_a - Σ J_aᵀ w within the limits, with the torque itself eliminated.
     Joints: within their limits, where a foot that is held counts as at rest. What it turns is a ripple of its contact,
-    micrometres high, which the ground ends; to stop it at an ankle near its end would take the whole body. So would the
-    end of the range of an ankle that rolls a held foot: on the narrow side of its sole the joint's stop tips it over
-    its edge, where the CoP is by then, and the shank goes on as before. No row knows of that end while a foot is held.
+    micrometres high, which the ground ends; to stop it at an ankle near its end would take the whole body. The end of
+    the range of an ankle that rolls a held foot would do so, too. There the joint's stop tips the sole over its narrow
+    edge, where the CoP is by then, and the shank goes on as before. No row knows of that end while a foot is held.
     """
 
     def __init__(

@@ -7,7 +7,7 @@ from surefoot.similarity import REFERENCE_SIZE, Similarity
 from surefoot.wbc.tunable import check, number
 
 SOLVER_NAMES = ("equality-first", "daqp", "proxqp")
-"""Of the solvers of the QP, which `wbc.qp.solvers` has."""
+"""Names of the solvers of the QP, which `wbc.qp.solvers` has."""
 
 
 @dataclass(frozen=True, slots=True)
@@ -64,8 +64,8 @@ class TaskWeights:
 class TaskGains:
     """Feedback of each task: stiffness [1/s^2] and damping [1/s].
 
-    Of pelvis and torso, 40 / s^2 let a trunk fold at the waist whose mass sits 0.2 m higher than the model says, more
-    than 250 / s^2 pays for 1 degree of start noise with a ZMP at the edge. Those of the swing foot are critically
+    With a stiffness of 40 / s^2 of pelvis and torso, a trunk whose mass sits 0.2 m too high folds at the waist. With
+    more than 250 / s^2, a start noise of 1 degree brings the ZMP to the edge. Those of the swing foot are critically
     damped.
 
     Raises:
@@ -158,7 +158,9 @@ class ContactParameters:
 
 @dataclass(frozen=True, slots=True)
 class SeparationParameters:
-    """When limbs keep away from each other. An approach of up to attention / horizon can be stopped.
+    """The distances and gains by which limbs keep away from each other.
+
+    An approach of up to attention / horizon can be stopped.
 
     Raises:
         ParameterError: one is negative or not finite, or the attention or the horizon is zero.

@@ -1,4 +1,4 @@
-"""What the whole-body controller shall do in a control tick, as one value."""
+"""The reference of the whole-body controller in a control tick, as one value."""
 
 from dataclasses import Field, make_dataclass
 from typing import Any, ClassVar
@@ -12,7 +12,7 @@ Array = NDArray[np.float64]
 
 
 class WbcReference:
-    """What the whole-body controller shall do until its next tick; world frame.
+    """The reference of the whole-body controller until its next tick; world frame.
 
     Positions and velocities are those of now, accelerations and ZMPs those in the middle of the time until then. Arrays
     are fresh at every access. The standard library takes it for a frozen dataclass: ``dataclasses.replace`` changes it.
@@ -109,66 +109,66 @@ class WbcReference:
 
     @property
     def com(self) -> Array:
-        """See the class, as for all of these."""
+        """CoM position, shape (3,) [m]."""
         return np.array(self._c)
 
     @property
     def com_velocity(self) -> Array:
-        """CoM velocity."""
+        """CoM velocity, shape (3,) [m/s]."""
         return np.array(self._c_dot)
 
     @property
     def com_acceleration(self) -> Array:
-        """CoM acceleration."""
+        """CoM acceleration, shape (3,) [m/s^2]."""
         return np.array(self._c_ddot)
 
     @property
     def zmp(self) -> Array:
-        """Point that drives the pendulum."""
+        """Point that drives the pendulum, shape (2,) [m]."""
         return np.array(self._p)
 
     @property
     def zmp_offset(self) -> Array:
-        """ZMP less that point."""
+        """ZMP less that point, shape (2,) [m]."""
         return np.array(self._o)
 
     @property
     def swing_position(self) -> Array:
-        """Sole centre of the swing foot."""
+        """Sole centre of the swing foot, shape (3,) [m]."""
         return np.array(self._s)
 
     @property
     def swing_velocity(self) -> Array:
-        """Its velocity."""
+        """Velocity of that centre, shape (3,) [m/s]."""
         return np.array(self._s_dot)
 
     @property
     def swing_acceleration(self) -> Array:
-        """Its acceleration."""
+        """Acceleration of that centre, shape (3,) [m/s^2]."""
         return np.array(self._s_ddot)
 
     @property
     def swing_rotation(self) -> Array:
-        """Orientation of its sole."""
+        """Orientation of the swing sole, shape (3, 3) [-]."""
         return np.array(self._R)
 
     @property
     def swing_angular_velocity(self) -> Array:
-        """Angular velocity of its sole."""
+        """Angular velocity of the swing sole, shape (3,) [rad/s]."""
         return np.array(self._w)
 
     @property
     def swing_angular_acceleration(self) -> Array:
-        """Angular acceleration of its sole."""
+        """Angular acceleration of the swing sole, shape (3,) [rad/s^2]."""
         return np.array(self._w_dot)
 
     @property
     def ground_normal(self) -> Array:
-        """Normals of the ground under the soles."""
+        """Normals of the ground under the soles, shape (2, 3) [-]."""
         return np.array(self._n)
 
     def __repr__(self) -> str:
-        """All attributes, as of a dataclass."""
+        """All attributes, as a dataclass shows them."""
         return f"WbcReference({', '.join(f'{name}={getattr(self, name)!r}' for name in self.__match_args__)})"
 
 

@@ -1,4 +1,4 @@
-"""Numbers that one may turn: default, unit, meaning and range of each, told in one place."""
+"""Numbers that one may turn: default, unit, meaning and range of each, written in one place."""
 
 import math
 from dataclasses import MISSING, field, fields
@@ -41,7 +41,7 @@ def check(group: Any, *path: str) -> None:
 
 
 def _fault(value: Any, default: Any, unit: str, doc: str, positive: bool, most: float) -> str:
-    """What would be right; empty where the value is."""
+    """The rule that a value breaks; empty if it breaks none."""
     assert default is not MISSING
     several = isinstance(default, tuple)
     whole = isinstance(default, int)

@@ -18,7 +18,7 @@ Array = NDArray[np.float64]
 
 
 class SolveStatus(IntEnum):
-    """Where the torque of one tick came from."""
+    """The origin of the torque of one tick."""
 
     SOLVED = 0
     """The default solver solved the QP."""
@@ -52,7 +52,7 @@ NONE_TOUCHES = (False, False)
 
 @dataclass(frozen=True)
 class FootSensing:
-    """What the feet feel.
+    """The forces that the feet feel.
 
     Attributes:
         normal_force: force along each sole's normal, (left, right) [N].
@@ -74,7 +74,7 @@ class FootSensing:
 
 @dataclass(frozen=True)
 class WbcReport:
-    """What the controller did in one tick. Arrays are overwritten by the next tick.
+    """The report of the controller on one tick. Arrays are overwritten by the next tick.
 
     Attributes:
         torque: joint torques, shape (nj,) [N·m].
@@ -110,7 +110,7 @@ class WbcReport:
 
 @dataclass(frozen=True)
 class WbcAnswer:
-    """What a solution means for the robot. Arrays are overwritten by the next one.
+    """The meaning of a solution for the robot. Arrays are overwritten by the next one.
 
     Attributes:
         torque: joint torques within their limits, shape (nj,) [N·m].

@@ -29,14 +29,14 @@ if TYPE_CHECKING:
 DEFAULT_SCENARIO = "walk"
 
 SOFT_START = 0.3
-"""Time in which joints go over from being held to what they are told, in real time [s]."""
+"""Time in which joints go over from being held to their commands, in real time [s]."""
 
 _Scenario = typer.Argument(help="Catalogue name, scenario file or log.", autocompletion=scenarios_from)
 
 
 @dataclass(frozen=True, slots=True)
 class ServeOptions:
-    """What `surefoot serve` is told."""
+    """The arguments of `surefoot serve`."""
 
     scenario: Annotated[str | None, _Scenario] = None
     robot: Annotated[str | None, typer.Option(help="Robot, for which the scenario is scaled.")] = None
@@ -61,7 +61,7 @@ class ServeOptions:
 
 
 @with_options(ServeOptions)
-def serve(told: ServeOptions) -> None:
+def serve(options: ServeOptions) -> None:
     """Serve the simulated robot to a controller in another process."""
     with importing():
         from surefoot.apps.bridge.host import Care
@@ -74,20 +74,20 @@ def serve(told: ServeOptions) -> None:
         from surefoot.scenarios.setup.load import load, locate
         from surefoot.scenarios.setup.walk import resolve
 
-    reference = told.scenario or DEFAULT_SCENARIO
-    asked = overrides(told.set_, told.seed)
-    if told.robot is not None:
+    reference = options.scenario or DEFAULT_SCENARIO
+    asked = overrides(options.set_, options.seed)
+    if options.robot is not None:
         written = load(reference)
-        asked = [f"sized_for={written.sized_for or written.robot}", f"robot={told.robot}", *asked]
+        asked = [f"sized_for={written.sized_for or written.robot}", f"robot={options.robot}", *asked]
     loaded = load(reference, asked)
     try:
         with refusing():
             found = resolve(loaded)
-            disturbance = Disturbance(told.delay, told.jitter, told.drop, told.pause, found.seed)
-            apart = told.real_time or not disturbance.none
-            soft = (SOFT_START if told.real_time else 0.0) if told.soft_start is None else told.soft_start
-            care = Care(disturbance, told.watchdog, soft, TORQUE_RATE if apart else math.inf)
-            server = Server(found, told.bind, told.port, _say, care, told.real_time)
+            disturbance = Disturbance(options.delay, options.jitter, options.drop, options.pause, found.seed)
+            apart = options.real_time or not disturbance.none
+            soft = (SOFT_START if options.real_time else 0.0) if options.soft_start is None else options.soft_start
+            care = Care(disturbance, options.watchdog, soft, TORQUE_RATE if apart else math.inf)
+            server = Server(found, options.bind, options.port, _say, care, options.real_time)
     except SetupError as refusal:
         raise locate(reference, asked, refusal) from None
     typer.echo(
@@ -109,7 +109,7 @@ def _say(sentence: str) -> None:
 
 @dataclass(frozen=True, slots=True)
 class WalkOptions:
-    """What `surefoot walk` is told."""
+    """The arguments of `surefoot walk`."""
 
     scenario: Annotated[str | None, _Scenario] = None
     on: Annotated[str | None, typer.Option(metavar="ADDRESS", help="Of the plant, as surefoot serve says it.")] = None
@@ -124,27 +124,27 @@ class WalkOptions:
 
 
 @with_options(WalkOptions)
-def walk(told: WalkOptions) -> None:
+def walk(options: WalkOptions) -> None:
     """Walk a robot that another process serves, or a log's shadow."""
-    if told.on is not None and told.shadow is None:
-        walked = partial(_on, told.on)
-    elif told.shadow is not None and told.on is None:
-        walked = partial(_in_shadow, told.shadow)
+    if options.on is not None and options.shadow is None:
+        walked = partial(_on, options.on)
+    elif options.shadow is not None and options.on is None:
+        walked = partial(_in_shadow, options.shadow)
     else:
         raise typer.BadParameter("give one of --on ADDRESS and --shadow LOG")
     with importing():
         from surefoot.scenarios.setup.load import locate
         from surefoot.scenarios.show.console import print_result
 
-    asked = overrides(told.set_, told.seed, told.policy)
-    reference = told.scenario or (None if told.shadow is None else str(told.shadow))
+    asked = overrides(options.set_, options.seed, options.policy)
+    reference = options.scenario or (None if options.shadow is None else str(options.shadow))
     try:
-        name, result = walked(told, asked)
+        name, result = walked(options, asked)
     except SetupError as refusal:
         if reference is None:
             raise ScenarioError([str(refusal)]) from None
         raise locate(reference, asked, refusal) from None
-    if told.as_json:
+    if options.as_json:
         typer.echo(json.dumps({**result.verdict.to_json(), "log": str(result.log)}, allow_nan=False))
     else:
         print_result(name, result.verdict, result.log)
@@ -154,14 +154,14 @@ def walk(told: WalkOptions) -> None:
     raise typer.Exit(0 if result.verdict.passed else MISSED)
 
 
-def _on(address: str, told: WalkOptions, asked: list[str]) -> "tuple[str, Result]":
+def _on(address: str, options: WalkOptions, asked: list[str]) -> "tuple[str, Result]":
     """Walk on the plant at an address: the user's scenario, else that of the plant."""
     from surefoot.apps.bridge.remote import Remote
     from surefoot.apps.bridge.walk import walk_on
     from surefoot.scenarios.setup.load import load, read_scenario
     from surefoot.scenarios.show.console import ProgressLine
 
-    loaded = None if told.scenario is None else load(told.scenario, asked)
+    loaded = None if options.scenario is None else load(options.scenario, asked)
     hello = {} if loaded is None else {"robot": loaded.robot, "rate": loaded.rates.control}
     remote = Remote(address, hello)
     ended = "refused"
@@ -170,21 +170,21 @@ def _on(address: str, told: WalkOptions, asked: list[str]) -> "tuple[str, Result
         scenario = loaded or read_scenario(said.scenario, f"scenario served as {said.name}", said.name, asked)
         progress = ProgressLine(scenario.name)
         with progress:
-            result = walk_on(remote, scenario, told.out, progress)
-        ended = "interrupted"  # else the plant has been told that the walk is over
+            result = walk_on(remote, scenario, options.out, progress)
+        ended = "interrupted"  # else the plant has got the message that the walk is over
     finally:
         remote.close(ended)
     return scenario.name, result
 
 
-def _in_shadow(log: Path, told: WalkOptions, asked: list[str]) -> "tuple[str, Result]":
+def _in_shadow(log: Path, options: WalkOptions, asked: list[str]) -> "tuple[str, Result]":
     """Walk in the shadow of a log: the user's scenario, else that of the log."""
     from surefoot.apps.bridge.shadow import walk_in_shadow
     from surefoot.scenarios.setup.load import load
     from surefoot.scenarios.show.console import ProgressLine
 
-    scenario = load(told.scenario or str(log), asked)
+    scenario = load(options.scenario or str(log), asked)
     progress = ProgressLine(scenario.name)
     with progress:
-        result = walk_in_shadow(log, scenario, told.out, progress)
+        result = walk_in_shadow(log, scenario, options.out, progress)
     return scenario.name, result

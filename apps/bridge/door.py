@@ -1,4 +1,4 @@
-"""Who may come in to a plant: one controller, of this protocol and this robot, and nobody beside it."""
+"""The door of a plant: it lets in one controller, of this protocol and this robot, and nobody beside it."""
 
 import contextlib
 import selectors
@@ -15,10 +15,10 @@ from surefoot.scenarios.errors import LinkError
 from surefoot.scenarios.output import reason
 
 PATIENCE = 2.0
-"""How long one who comes may take to say who they are [s]."""
+"""Time within which a controller that comes has to say who it is [s]."""
 
-MOST_WAITING, MOST_TOLD = 16, 20
-"""Of those who have not said who they are yet; of refusals that are told."""
+MOST_WAITING, MOST_REFUSALS = 16, 20
+"""Most connections that have not said who they are yet; most refusals that are printed."""
 
 _LONGEST_HELLO = 1 << 16
 _LOOK = 0.2
@@ -29,10 +29,10 @@ class Door:
 
     Args:
         host: address to be bound to.
-        port: likewise; 0 for any free one.
+        port: to be bound to; 0 for any free one.
         examine: is given what a controller says of itself, and returns why it is refused; empty if it is not.
-        welcome: what it is told.
-        say: is told of each who is refused, in one sentence.
+        welcome: message to a controller that is let in.
+        say: called with one sentence on each that is refused.
 
     Attributes:
         address: that is listened at.
@@ -59,7 +59,7 @@ class Door:
         self._listener.setblocking(False)
         self.address = shown(self._listener.getsockname())
         self.guests: SimpleQueue[Link] = SimpleQueue()
-        self._guest, self._told, self._open = "", 0, True
+        self._guest, self._refusals, self._open = "", 0, True
         self._waiting: dict[socket.socket, tuple[FrameReader, float]] = {}
         self._thread = threading.Thread(target=self._watch, name="door", daemon=True)
         self._thread.start()
@@ -142,6 +142,8 @@ class Door:
             who = shown(connection.getpeername())
             connection.send(packed(Kind.REFUSED, end_bytes(why)))
         connection.close()
-        self._told += 1
-        if self._told <= MOST_TOLD:
-            self._say(f"refused {who}: {why}" + ("; further ones are not told" if self._told == MOST_TOLD else ""))
+        self._refusals += 1
+        if self._refusals <= MOST_REFUSALS:
+            self._say(
+                f"refused {who}: {why}" + ("; further ones are not reported" if self._refusals == MOST_REFUSALS else "")
+            )

@@ -23,7 +23,7 @@ _ONCE = 1 << 16
 
 
 class Kind(IntEnum):
-    """What a frame holds."""
+    """The content of a frame."""
 
     HELLO = 1
     WELCOME = 2
@@ -129,7 +129,7 @@ class Link:
                 raise LinkError(f"{self.peer} has taken no message for {patience:g} s")
 
     def offer(self, kind: Kind, payload: bytes) -> bool:
-        """Send a frame if that can be done at once; says whether; errors as of `send`."""
+        """Send a frame if that can be done at once; return true if it was done; LinkError if the link is broken."""
         if not self._flush():
             return False
         self._unsent = packed(kind, payload)
@@ -170,7 +170,7 @@ class Link:
         return frame
 
     def last_word(self) -> Frame | None:
-        """The end that the other side has told among what it sent before it was gone; None if it has told none."""
+        """The end that the other side has sent before it was gone; None if it has sent none."""
         with contextlib.suppress(LinkError):
             while (frame := self.receive(0.0)) is not None:
                 if frame.kind is Kind.END:

@@ -1,4 +1,4 @@
-"""The plant's side of a bridge: a simulated robot that does what it is told, or is damped."""
+"""The plant's side of a bridge: a simulated robot that obeys its commands, or is damped."""
 
 import math
 from dataclasses import dataclass, field, replace
@@ -19,17 +19,17 @@ from surefoot.sim.readings import SensorSuite
 from surefoot.sim.world import World
 
 _SOON = 1e-9
-"""By what times of ticks may miss one another, for rounding [s]."""
+"""Difference of the times of one tick, for rounding [s]."""
 
 
 @dataclass(frozen=True, slots=True)
 class Care:
-    """What a plant does with commands beside obeying them.
+    """The care of a plant with commands beside obeying them.
 
     Attributes:
         disturbance: of the line.
         watchdog: age of the state that the newest command answers, from which on the joints are damped [s].
-        soft_start: time in which joints go over from being held to what they are told [s].
+        soft_start: time in which joints go over from being held to their commands [s].
         torque_rate: by which torques may change; see `Limits`.
     """
 
@@ -49,7 +49,7 @@ class Host:
     Attributes:
         tick: control ticks since the start.
         rate: of them [Hz].
-        damped: why the joints are damped, whatever they are told; empty as long as they are not.
+        damped: why the joints are damped, whatever they are commanded; empty as long as they are not.
 
     Raises:
         ParameterError: it has what only one process can have.
@@ -97,14 +97,14 @@ class Host:
             raise LinkError(str(refusal)) from None
 
     def state(self) -> State:
-        """What is so now; asked once a tick."""
+        """State of now; asked once a tick."""
         measurement: Measurement = self._world.measure()
         readings = None if self._sensors is None else self._sensors.read(measurement, self.tick)
         return State(self.tick, measurement, readings, self._answered)
 
     @property
     def tells(self) -> bool:
-        """Whether the state of now gets to the controller; to be asked once a tick."""
+        """Return true if the state of now gets to the controller; to be asked once a tick."""
         return self._line.carries_state(self.time)
 
     def take(self, tick: int, command: JointCommand, now: float | None = None) -> None:
@@ -142,18 +142,18 @@ class Host:
 
     def _hear(self) -> None:
         """Take the command that has arrived, if it is a new one."""
-        arrived, told = self._line.arrived(self.time), self._answered
-        if arrived is not None and arrived[0] > told.tick:
+        arrived, answered = self._line.arrived(self.time), self._answered
+        if arrived is not None and arrived[0] > answered.tick:
             tick, self._command = arrived
-            self._answered = replace(told, tick=tick)
-        elif told.tick >= 0:
-            self._answered = replace(told, missed=told.missed + 1)
+            self._answered = replace(answered, tick=tick)
+        elif answered.tick >= 0:
+            self._answered = replace(answered, missed=answered.missed + 1)
         age = (self.tick - self._answered.tick) / self.rate
         if self._answered.tick >= 0 and age > self._care.watchdog + _SOON:
             self.damp(f"no command answers a state of the last {age:.3f} s")
 
     def _obeyed(self) -> JointCommand:
-        """What the joints do now."""
+        """Command that the joints obey now."""
         if self.damped:
             return self._limits.damping
         if self._answered.tick < 0:

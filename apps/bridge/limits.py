@@ -1,4 +1,4 @@
-"""What a plant does of what it is told: no more than its joints may, no faster than they may, and gently at first."""
+"""The limits of a plant on its commands: no more than its joints may, no faster than they may, and gently at first."""
 
 import numpy as np
 
@@ -17,7 +17,7 @@ HOLD_STIFFNESS, HOLD_DAMPING = 3.0, 0.08
 """Gains of joints that are held at the start, over their largest torque, of the reference robot [1/rad, s/rad]."""
 
 DAMPING = 0.05
-"""Damping of joints that are let go, likewise [s/rad]."""
+"""Damping of joints that are let go, over their largest torque, of the reference robot [s/rad]."""
 
 
 class Limits:
@@ -54,7 +54,7 @@ class Limits:
         return JointCommand(torque, Servo(position, np.zeros_like(position), *self._hold))
 
     def within(self, command: JointCommand, position: Array) -> tuple[JointCommand, bool]:
-        """What of a command may be done, and whether that is less than all.
+        """The part of a command that may be done, and true if that is less than all.
 
         Args:
             command: for this tick.

@@ -9,7 +9,7 @@ from surefoot.joints import JointCommand
 from surefoot.streams import Stream, generator
 
 _SOON = 1e-9
-"""What arrives so shortly after a tick is there at the tick [s]."""
+"""Delay after a tick within which a message is there at the tick [s]."""
 
 PAUSE_PERIOD = 1.0
 """In each of these the controller stands still once, at a time that is drawn [s]."""
@@ -17,7 +17,7 @@ PAUSE_PERIOD = 1.0
 
 @dataclass(frozen=True, slots=True)
 class Disturbance:
-    """What is done to messages, by numbers drawn from a seed.
+    """The disturbance of messages, by numbers drawn from a seed.
 
     Attributes:
         delay: by which every command comes later [s].
@@ -45,7 +45,7 @@ class Disturbance:
 
     @property
     def none(self) -> bool:
-        """Whether nothing is done."""
+        """True if nothing is disturbed."""
         return not (self.delay or self.jitter or self.drop or self.pause)
 
 
@@ -64,7 +64,7 @@ class Line:
         self._second, self._pause = -1, math.inf
 
     def carries_state(self, now: float) -> bool:
-        """Whether the state of an instant [s] gets to the controller; asked once for each, in order."""
+        """Return true if the state of an instant [s] gets to the controller; asked once for each, in order."""
         how = self._how
         lost = bool(how.drop) and self._lost_state.random() < how.drop
         second = math.floor(now / PAUSE_PERIOD)

@@ -89,13 +89,13 @@ def _reset(joints: int) -> np.dtype[Any]:
 
 @dataclass(frozen=True, slots=True)
 class Answered:
-    """What has become of the commands at a plant.
+    """The fate of the commands at a plant.
 
     Attributes:
         tick: of the state that the command in force answers; -1 before the first one.
         missed: ticks so far to which no new command had come.
         limited: ticks so far at which a command was bent to the limits.
-        damped: whether the plant is damped, whatever it is told.
+        damped: whether the plant is damped, whatever it is commanded.
     """
 
     tick: int = -1
@@ -106,7 +106,7 @@ class Answered:
 
 @dataclass(frozen=True, slots=True)
 class State:
-    """What a plant says at a tick.
+    """The state that a plant sends at a tick.
 
     Attributes:
         tick: number of the control tick.
@@ -127,9 +127,10 @@ def command_bytes(tick: int, command: JointCommand) -> bytes:
     message = np.zeros((), low_cmd(joints))
     message["tick"], message["tau"] = tick, command.torque
     if servo is not None:
-        message["q"], message["dq"], message["kp"], message["kd"] = (
-            servo.position, servo.velocity, servo.stiffness, servo.damping,
-        )  # fmt: skip
+        message["q"] = servo.position
+        message["dq"] = servo.velocity
+        message["kp"] = servo.stiffness
+        message["kd"] = servo.damping
     return message.tobytes()
 
 
@@ -137,7 +138,7 @@ def command_of(payload: bytes, joints: int) -> tuple[int, JointCommand]:
     """Tick and command of a message; without gains it is one of torques alone.
 
     Raises:
-        LinkError: it is of another robot, or not of numbers that joints can be told.
+        LinkError: it is of another robot, or not of numbers for joints.
     """
     message = _read(payload, low_cmd(joints), "command")
     q, dq, tau, kp, kd = numbers = [message[name] for name in ("q", "dq", "tau", "kp", "kd")]
@@ -166,7 +167,7 @@ def _refuse_unsound(numbers: Iterable[Array], what: str, known: bool = True) -> 
 
 
 def _refuse_unturned(quaternion: Array, what: str) -> None:
-    """Refuse numbers that turn nothing; errors as of `_refuse_unsound`."""
+    """Refuse numbers that turn nothing; LinkError if they do."""
     if not is_rotation(quaternion):
         raise LinkError(f"a {what} whose base has no attitude")
 
@@ -195,9 +196,10 @@ def state_bytes(state: State) -> bytes:
         message[name] = value
     for name, field in _TRUE.items():
         message[name] = getattr(seen, field)
-    message["cmd_tick"], message["missed"], message["limited"], message["damped"] = (
-        answered.tick, answered.missed, answered.limited, answered.damped,
-    )  # fmt: skip
+    message["cmd_tick"] = answered.tick
+    message["missed"] = answered.missed
+    message["limited"] = answered.limited
+    message["damped"] = answered.damped
     return message.tobytes()
 
 
@@ -268,7 +270,7 @@ def _readings(message: NDArray[np.void], time: float) -> Readings:
 
 @dataclass(frozen=True, slots=True)
 class Start:
-    """Where a plant is to stand.
+    """The start of a plant.
 
     Attributes:
         q: configuration, shape (7 + nj,).
@@ -346,15 +348,15 @@ def json_of(payload: bytes, what: str) -> dict[str, Any]:
 
 
 def end_bytes(why: str) -> bytes:
-    """Why somebody ends, as a message."""
+    """Reason of an end, as a message."""
     return json_bytes({"why": why})
 
 
 def why_of(payload: bytes) -> str:
-    """Why somebody ends or refuses, by a message of theirs; whatever they send is told in one line."""
+    """Reason of an end or a refusal, by a message of the other side; whatever it sends becomes one line."""
     why = str(json_of(payload, "reason").get("why", ""))
     return "".join(sign for sign in why if sign.isprintable())[:LONGEST_SAID]
 
 
 LONGEST_SAID = 300
-"""Characters of what another process says that are told."""
+"""Characters of what another process says that are shown."""

@@ -33,15 +33,15 @@ from surefoot.scenarios.setup.walk import Walk
 from surefoot.sim.measurement import Array, Measurement
 
 PATIENCE = 10.0
-"""How long a plant may take for an answer [s]."""
+"""Time that a plant may take for an answer [s]."""
 
 SILENCE = 0.5
-"""How long a plant that goes by the wall clock may say nothing; then its joints are damped [s]."""
+"""Time for which a plant that goes by the wall clock may say nothing; then its joints are damped [s]."""
 
 
 @dataclass(frozen=True, slots=True)
 class Welcome:
-    """What a plant says of itself.
+    """The welcome of a plant, with its data.
 
     Attributes:
         robot: its name.
@@ -118,7 +118,7 @@ class Remote:
         return RemotePlant(self._link, walk, self.welcome.real_time, recorder)
 
     def close(self, why: str) -> None:
-        """Say that the walk is over, and why."""
+        """Close the line with a message that the walk is over, and why."""
         with contextlib.suppress(LinkError):
             self._link.send(Kind.END, end_bytes(why), 1.0)
         self._link.close()
@@ -154,7 +154,10 @@ class RemotePlant:
     """
 
     def __init__(self, link: Link, walk: Walk, real_time: bool = False, recorder: LinkRecorder | None = None) -> None:
-        self._link, self._rate, self._real_time, self._recorder = link, walk.rates.control, real_time, recorder
+        self._link = link
+        self._rate = walk.rates.control
+        self._real_time = real_time
+        self._recorder = recorder
         self._patience = SILENCE if real_time else PATIENCE
         self._damping = Limits(walk.robot, walk.size, 1.0 / self._rate).damping
         self._joints, self._senses = len(walk.robot.joint_names), walk.sensing.source != "truth"
@@ -226,7 +229,7 @@ class RemotePlant:
 
     def _newest(self, frame: Frame) -> Frame:
         """The last of the states that are there, or the end if it is."""
-        with contextlib.suppress(LinkError):  # what is wrong is told when it is waited for
+        with contextlib.suppress(LinkError):  # what is wrong is reported when it is waited for
             while frame.kind is Kind.STATE and (later := self._link.receive(0.0)) is not None:
                 frame = later
         return frame

@@ -15,20 +15,20 @@ from surefoot.scenarios.errors import LinkClosedError, LinkError
 from surefoot.scenarios.setup.walk import Walk
 
 PATIENCE, GETTING_READY = 10.0, 300.0
-"""How long a controller may take for an answer, and to get ready [s]."""
+"""Times that a controller may take for an answer, and to get ready [s]."""
 
 LET_DOWN = 1.0
-"""How long a robot that is damped is simulated on [s]."""
+"""Time for which a robot that is damped is simulated on [s]."""
 
 MOST_LATE = 0.01
-"""By how much a plant in real time may be late and catch up; more of it would be simulated at once, unheard [s]."""
+"""Delay that a plant in real time may catch up; more of it would be simulated at once, unheard [s]."""
 
 _LOOK = 0.1
 
 
 @dataclass(frozen=True, slots=True)
 class Served:
-    """How serving has ended.
+    """The end of serving.
 
     Attributes:
         time: simulated [s].
@@ -49,8 +49,8 @@ class Server:
     Args:
         walk: its robot and world.
         host: address to be bound to.
-        port: likewise; 0 for any free one.
-        say: is told what happens, in sentences.
+        port: to be bound to; 0 for any free one.
+        say: called with sentences on what happens.
         care: that is taken of commands.
         real_time: whether it goes by the wall clock, and waits for nobody.
 
@@ -82,7 +82,7 @@ class Server:
         self.address = self._door.address
 
     def _examine(self, hello: Mapping[str, Any]) -> str:
-        """Why a controller cannot walk this robot."""
+        """Reason why a controller cannot walk this robot."""
         robot = self._walk.robot
         wanted = {"robot": robot.name, "joints": list(robot.joint_names), "rate": self._walk.rates.control}
         for name, what in (("robot", "robot"), ("joints", "joints in this order"), ("rate", "control rate")):

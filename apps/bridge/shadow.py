@@ -112,13 +112,13 @@ def _columns(log: Log, topic: str) -> dict[str, Any]:
 
 
 def walk_in_shadow(path: Path, scenario: Scenario, out: Path, on_progress: OnProgress | None = None) -> Result:
-    """Walk in the shadow of a log, as long as it lasts; errors as of `surefoot.run`.
+    """Walk in the shadow of a log, as long as it lasts.
 
     Args:
         path: of the log.
         scenario: what is walked.
         out: directory that gets the run's own folder.
-        on_progress: is told where the run is.
+        on_progress: called with the progress of the run.
 
     Raises:
         LogError: the log cannot be read, or is not one of such a walk.

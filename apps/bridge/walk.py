@@ -19,13 +19,13 @@ def walk_on(remote: Remote, scenario: Scenario, out: Path, on_progress: OnProgre
         remote: the plant.
         scenario: what is walked; of the plant's world it knows no more than it believes.
         out: directory that gets the run's own folder.
-        on_progress: is told where the run is.
+        on_progress: called with the progress of the run.
 
     Raises:
         LinkError: the plant is another robot's.
-        ScenarioError: as of `surefoot.run`, as are the following.
-        SetupError: likewise.
-        LogError: likewise.
+        ScenarioError: the scenario cannot be run.
+        SetupError: a part of it is refused.
+        LogError: the log cannot be written.
     """
 
     def simulate(walk: Walk, writer: LogWriter, on_progress: OnProgress) -> End:

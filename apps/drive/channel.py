@@ -15,10 +15,10 @@ LONGEST_INPUT = 10_000
 """Characters of an input; no honest one is longer."""
 
 DRAWN = "drawn"
-"""Kind of what a page sends when it has drawn what it was told last."""
+"""Kind of what a page sends when it has drawn what it was sent last."""
 
 PATIENCE = 2.0
-"""How long a page may draw until it is told of something newer in any case [s]."""
+"""Time that a page may draw until it gets something newer in any case [s]."""
 
 
 @dataclass(slots=True, eq=False)
@@ -46,17 +46,17 @@ class PageChannel:
 
     @property
     def looked_at(self) -> bool:
-        """Whether a page has been open until now."""
+        """Return true if a page has been open until now."""
         return self._looked_at
 
     @property
     def drawn(self) -> bool:
-        """Whether every page has drawn what was told last, and there is one."""
+        """Return true if every page has drawn what it was sent last, and there is one."""
         with self._lock:
             return {watcher.number for watcher in self._watchers} - {None} == {self._number}
 
     def tell(self, text: str) -> None:
-        """Tell all who look at the page; a page that is too slow for it misses some."""
+        """Send to all who look at the page; a page that is too slow for it misses some."""
         with self._lock:
             self._number, self._text = self._number + 1, text
             for watcher in self._watchers:

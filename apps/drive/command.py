@@ -52,7 +52,7 @@ def drive(
 
 
 def drive_scenario(scenario: "Scenario", out: Path, port: int | None, say: Callable[[str], None]) -> None:
-    """Drive a scenario's robot until a signal ends it; ``say`` is told of page and logs where they are, and their size.
+    """Drive a scenario's robot until a signal ends it; ``say`` gets the places of page and logs, and their size.
 
     Raises:
         MissingExtraError: viser is not installed.
@@ -98,7 +98,7 @@ MOST_BEGINNINGS = 4
 
 
 def log_size(simulation: "Simulation", path: Path) -> str:
-    """Say what the log of a simulation that has just begun takes; the simulation goes on until that is known."""
+    """Growth of the log of a simulation that has just begun; the simulation goes on until that is known."""
     from surefoot.scenarios.run.planning import RunFault
 
     with suppress(RunFault):  # its end says why

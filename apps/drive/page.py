@@ -35,13 +35,13 @@ LIMITS = Twist(0.6, 0.25, 0.6)
 
 GAIT_RANGES = {"single_support": (0.35, 1.2), "double_support": (0.08, 0.6), "swing_height": (0.02, 0.12)}
 GAIT_UNITS = {"single_support": "s", "double_support": "s", "swing_height": "m"}
-"""Of the sliders [s, s, m]."""
+"""Units of the sliders [s, s, m]."""
 
 SPEEDS = (1.0, 0.5, 0.25, 0.1)
-"""Of simulated over wall-clock time; less than 1 is slow motion."""
+"""Speeds of simulated over wall-clock time; less than 1 is slow motion."""
 
 IMPULSE, GREATEST_IMPULSE = 15.0, 60.0
-"""Of a click at first, and the greatest of any push [N·s]."""
+"""Impulses of a click at first, and the greatest of any push [N·s]."""
 
 PULL = 100.0
 """Impulse of a drag for each metre [N·s/m]."""
@@ -50,10 +50,10 @@ LAYERS = (
     *("Robot", SEE_THROUGH, "CoM", "DCM", "ZMP", "Support polygon", "Planned footprints", "Taken footprints"),
     *("Contact forces", "Pushes"),
 )
-"""Of the scene, that can be switched off."""
+"""Layers of the scene that can be switched off."""
 
 FARTHER = 1.5
-"""How much farther the camera stands than in a replay, since the robot may go anywhere [-]."""
+"""Distance of the camera over that in a replay, since the robot may go anywhere [-]."""
 
 LEAST_PULL = 1.0
 """A shorter drag pushes nothing [N·s]."""
@@ -86,7 +86,7 @@ class DrivePage:
 
     @property
     def address(self) -> str:
-        """Where the page is."""
+        """Address of the page."""
         return self._gate.address
 
     def begin(self, robot: Simulation) -> None:
@@ -94,7 +94,7 @@ class DrivePage:
         self._robot, self._pushed = robot, None
         if self._scene is None:
             self._pictures, self._size = Pictures(robot.walk), robot.walk.size
-            if self._impulse is None:  # a page may have told its own before the first run begins
+            if self._impulse is None:  # a page may have sent its own before the first run begins
                 self._impulse = self._size.times(IMPULSE, "N·s")
             self._gate.page = _page(_viewer_page(self._gate), robot.walk)
         self._pictures.begin()
@@ -102,7 +102,7 @@ class DrivePage:
     def pushed(self, push: PushInput, time: float) -> None:
         """See `session.DriveView`."""
         self._pictures.pushed(push, time)
-        self._pushed = {**self._told(np.array(push.impulse)), "body": push.body, "time": time}
+        self._pushed = {**self._arrow_data(np.array(push.impulse)), "body": push.body, "time": time}
 
     @property
     def looked_at(self) -> bool:
@@ -131,7 +131,7 @@ class DrivePage:
             "alone": self._pictures.alone,
             "tick": tick.time,
             "pushed": self._pushed,
-            "pull": None if pull is None else self._told(pull),
+            "pull": None if pull is None else self._arrow_data(pull),
         }
         self._channel.tell(json.dumps(news).replace("NaN", "null"))
 
@@ -184,7 +184,7 @@ class DrivePage:
         with suppress(ValueError):  # of more pushes than anyone can click the last are left out
             self._inputs.put(push)
 
-    def _told(self, impulse: Array) -> dict[str, float]:
+    def _arrow_data(self, impulse: Array) -> dict[str, float]:
         size = float(np.linalg.norm(impulse))
         return {"impulse": size, "specific": size / self._pictures.walk.true_mass}
 
@@ -291,7 +291,7 @@ def _page(viewer: str, walk: Walk) -> str:
     size, ranges = walk.size, _gait_ranges(walk.size)
     gait = {key: float(getattr(walk.gait, key)) for key in ranges}
     data = {
-        "charts": [chart.told() for chart in CHARTS],
+        "charts": [chart.to_json() for chart in CHARTS],
         "limits": _numbers(_limits(size)),
         "gait": {key: [*ranges[key], value] for key, value in gait.items()},
         "speeds": SPEEDS,
@@ -307,7 +307,7 @@ def _page(viewer: str, walk: Walk) -> str:
 
 @contextmanager
 def opened(port: int | None, inputs: Inputs) -> Iterator[DrivePage]:
-    """A page for as long as the context lasts; errors as of `serving`."""
+    """A page for as long as the context lasts; LogError if the port is taken."""
     gate = Gate(port)
     with serving(gate) as viewer:
         yield DrivePage(viewer, gate, inputs)

@@ -1,4 +1,4 @@
-"""What is to be seen of a simulation at one of its ticks: the robot, its marks, and the values of its charts."""
+"""The picture of a simulation at one of its ticks: the robot, its marks, and the values of its charts."""
 
 import math
 from collections import deque
@@ -85,7 +85,7 @@ class Pictures:
         self._push = (time + PUSH_TIME + PUSH_SHOWN, np.array(push.impulse) / PUSH_TIME, push.body)
 
     def picture(self, tick: Tick) -> Picture:
-        """What is to be seen at a tick; in order of time."""
+        """The picture of a tick; in order of time."""
         measurement = tick.measurement
         assert measurement is not None, "a pendulum has no body to show"
         self._poses.update(measurement.q)
@@ -109,7 +109,7 @@ class Pictures:
         )
 
     def values(self, tick: Tick) -> tuple[list[float], ...]:
-        """What the charts show: ZMP, CoM, DCM, then as planned, ahead and left of the stance foot; margins; forces.
+        """Values of the charts: ZMP, CoM, DCM, then as planned, ahead and left of the stance foot; margins; forces.
 
         After `picture` of the same tick.
         """
@@ -184,7 +184,7 @@ class Pictures:
         self._look_at, self._time = self._look_at + share * (base - self._look_at), time
 
     def _footholds(self, tick: Tick) -> tuple[Footstep, ...]:
-        """Where the feet stand by the plan, or, without one, where they stand that have come to the ground."""
+        """Footholds of the feet by the plan, or, without one, those of the feet that have come to the ground."""
         if tick.planned is not None:
             return tuple(tick.planned[0].footholds)
         contacts = _contacts(tick)

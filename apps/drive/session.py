@@ -18,7 +18,7 @@ from surefoot.scenarios.run.skeleton import End
 
 @dataclass(frozen=True, slots=True)
 class GaitInput:
-    """How it shall step; None leaves as it is [s, s, m]."""
+    """The gait that the user asks for; None leaves as it is [s, s, m]."""
 
     single_support: float | None = None
     double_support: float | None = None
@@ -53,7 +53,7 @@ MOST_WAITING = 1000
 
 
 class Inputs(Queue[Input]):
-    """What waits to take effect, from any thread.
+    """Inputs that wait to take effect, from any thread.
 
     Of velocities and of resets only the last one waits, which therefore always finds room. Others are refused by a
     ValueError while `MOST_WAITING` wait.
@@ -70,7 +70,7 @@ class Inputs(Queue[Input]):
 
 
 PUSH_TIME = 0.1
-"""How long a push acts, simulated [s]."""
+"""Duration of a push, simulated [s]."""
 
 COMMAND_PERIOD = 0.1
 """Least time between two commands, simulated [s]; a stop does not wait."""
@@ -79,7 +79,7 @@ PICTURE_PERIOD, SLOWEST_PICTURES = 1 / 30, 1 / 5
 """Time between pictures where there is time for them and the browser keeps up, and otherwise [s]."""
 
 BURST = 0.008
-"""How long control ticks are simulated before inputs are looked at again [s]."""
+"""Time for which control ticks are simulated before inputs are looked at again [s]."""
 
 NO_TIME = 0.03
 """Lag behind the wall clock from which on pictures are left out [s]."""
@@ -88,7 +88,7 @@ TOO_FAR = 1.0
 """Lag that is not caught up any more [s]; the machine is too slow."""
 
 IDLE = 0.004
-"""How long is waited when nothing is due [s]."""
+"""Wait when nothing is due [s]."""
 
 _PACE_SPAN = 2.0
 _SLOW_SHOWN = 4.0
@@ -96,13 +96,13 @@ _SLOW_SHOWN = 4.0
 
 @dataclass(frozen=True, slots=True)
 class DriveStatus:
-    """What is to be told beside a picture.
+    """The status beside a picture.
 
     Attributes:
         run: number of the run, from 1 on.
         time: simulated time of the run [s].
         speed: asked for, simulated over wall-clock time [-].
-        pace: reached in the last seconds, likewise [-].
+        pace: reached in the last seconds, simulated over wall-clock time [-].
         paused: whether time stands still.
         over: whether the run has ended.
         wanted: velocity that was asked for last.
@@ -120,15 +120,15 @@ class DriveStatus:
 
 
 class DriveView(Protocol):
-    """Where the robot is seen."""
+    """The view of the robot for people."""
 
     @property
     def looked_at(self) -> bool:
-        """Whether anybody has looked until now."""
+        """True if anybody has looked until now."""
 
     @property
     def drawn(self) -> bool:
-        """Whether all that was shown has been drawn where somebody looks."""
+        """True if all that was shown has been drawn where somebody looks."""
 
     def begin(self, robot: Simulation) -> None:
         """A run begins."""
@@ -159,7 +159,10 @@ class Session:
         inputs: Inputs,
         clock: Callable[[], float] = time.perf_counter,
     ) -> None:
-        self._make, self._page, self._inputs, self._clock = begin, page, inputs, clock
+        self._make = begin
+        self._page = page
+        self._inputs = inputs
+        self._clock = clock
         self._speed, self._paused, self._waits = 1.0, False, True
         self._gait = GaitInput()
         self._runs = 0
@@ -224,7 +227,7 @@ class Session:
         return simulated + (now - wall) * self._speed
 
     def _lag(self, now: float) -> float:
-        """How far the run is behind, in wall-clock time [s]."""
+        """Delay of the run, in wall-clock time [s]."""
         return (self._due(now) - self._robot.time) / self._speed
 
     def _pace(self, now: float) -> float:
@@ -249,7 +252,7 @@ class Session:
 
     @property
     def _still(self) -> bool:
-        """Whether time stands still."""
+        """Return true if time stands still."""
         return self._paused or self._waits
 
     def _take_inputs(self) -> None:

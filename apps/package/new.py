@@ -17,7 +17,7 @@ if TYPE_CHECKING:
 _NAME = re.compile(r"[a-z][a-z0-9]*(?:[-_][a-z0-9]+)*")
 _LONGEST = 60
 _SUFFIX, _DOT = ".tmpl", "dot-"
-"""Of a file of the template, which is no module of this package; of a name that begins with a dot."""
+"""Ending of a file of the template, which is no module of this package; begin of a name that begins with a dot."""
 
 
 def new(name: str, folder: Path) -> Path:

@@ -101,8 +101,8 @@ def _described(name: str) -> "RobotDescription":
 
 
 def lines(found: "Checked") -> list[str]:
-    """What a check has found, for a person."""
-    said = ["", f"as given: {_told(found.given)}"]
+    """The findings of a check, for a person."""
+    said = ["", f"as given: {_line(found.given)}"]
     if found.asymmetry is not None:
         said.append(f"left and right are treated unlike by {100 * found.asymmetry:.0f} % (the network mirrored)")
     if found.given.sound:
@@ -114,13 +114,13 @@ def lines(found: "Checked") -> list[str]:
     for one in found.tried:
         if one.fault.name not in best or one.trial.cost < best[one.fault.name].trial.cost:
             best[one.fault.name] = one
-    said += [f"  {name}: {one.change}: {_told(one.trial)}" for name, one in best.items()]
+    said += [f"  {name}: {one.change}: {_line(one.trial)}" for name, one in best.items()]
     if found.cause is None:
         return [*said, "cause: none of these alone lets it walk; more than one thing may be wrong"]
     return [*said, f"cause: {found.cause.fault.name}; {found.cause.fault.sign} ({found.cause.change})"]
 
 
-def _told(trial: "Trial") -> str:
+def _line(trial: "Trial") -> str:
     word = "walks" if trial.sound else f"up for {trial.stood:.2f} of {trial.lasted:.2f} s"
     if trial.astray < 1e6:
         word += f", velocity off by {100 * trial.astray:.0f} %"

@@ -22,7 +22,7 @@ def check(
     out: Annotated[Path, typer.Option(help="Directory of the logs.")] = Path("runs/robot"),
     as_json: AsJson = False,
 ) -> None:
-    """Say what was derived of a robot, measure it, and which scenarios it takes."""
+    """Print what was derived of a robot, measure it, and list the scenarios that it takes."""
     from surefoot.apps.robots.examine import examine, known, print_examination, to_json
     from surefoot.apps.robots.taken import CatalogueBar, chosen, rows, summary
     from surefoot.scenarios.run.processes import cores
@@ -39,8 +39,8 @@ def check(
         typer.echo("interrupted", err=True)
         raise typer.Exit(INTERRUPTED) from None
     if as_json:
-        told = {**to_json(explained, found), "scenarios": [row.to_json() for row in table]}
-        typer.echo(json.dumps(told, allow_nan=False))
+        shown = {**to_json(explained, found), "scenarios": [row.to_json() for row in table]}
+        typer.echo(json.dumps(shown, allow_nan=False))
     else:
         typer.echo(summary(table))
     sound = not found.faults and any(row.outcome in ("walks", "accepted") for row in table)
@@ -65,10 +65,10 @@ def new(
     from surefoot.scenarios.errors import ScenarioError
 
     try:
-        made, told = first_file(model, Path() if out is None else out.parent)
+        made, notes = first_file(model, Path() if out is None else out.parent)
     except RobotError as error:
         raise ScenarioError([str(error)]) from None
-    for line in told:
+    for line in notes:
         typer.echo(line, err=True)
     if out is None:
         typer.echo(made.text, nl=False)

@@ -80,7 +80,7 @@ def draft(model: str, folder: Path) -> Draft:
     if feet is None:
         ends = ", ".join(_link(source.model, joint) for joint in _ends(source.model)) or "none"
         text = f"{head}feet: {{left: LINK, right: LINK}}  # two of the links at the ends of chains: {ends}\n"
-        return Draft(_commented(text, None), f"the feet of {model} cannot be told by shape; name their links in feet")
+        return Draft(_commented(text, None), f"the feet of {model} cannot be found by shape; name their links in feet")
     orders = [f"{head}feet: {{left: {_scalar(left)}, right: {_scalar(right)}}}\n" for left, right in (feet, feet[::-1])]
     refusal = ""
     for more in ("", "inertia: repair\n"):  # an inertia that no body can have is refused before feet are looked at
@@ -96,7 +96,7 @@ def draft(model: str, folder: Path) -> Draft:
 
 
 def _name(document: Document) -> str:
-    """What the model calls itself; the name of its file where it says nothing of its own."""
+    """Name of the model by itself; the name of its file where it has none of its own."""
     root = document.root
     for text in (root.get("name" if root.tag == "robot" else "model", ""), document.path.stem):
         name = re.sub(r"[^A-Za-z0-9._-]+", "-", text).strip("._-")
@@ -122,7 +122,7 @@ def _centre(model: pin.Model, lines: str, found: Explanation) -> str:
 
 
 def _tried(lines: str, model: str, path: Path) -> Explanation:
-    """What is derived from the lines of a file, wherever it will be."""
+    """Derive a robot from the lines of a file, wherever it will be."""
     with tempfile.TemporaryDirectory() as folder:
         file = Path(folder) / "robot.yaml"
         there = lines.replace(f"model: {_scalar(model)}\n", f"model: {_scalar(str(path.absolute()))}\n")

@@ -1,4 +1,4 @@
-"""What a described robot is worth, measured and told: engines, legs, soles, and torque in standing."""
+"""An examination of a described robot: engines, legs, soles, and torque in standing."""
 
 import math
 from collections.abc import Callable, Iterator
@@ -28,7 +28,7 @@ PARITY = 1e-9
 """Engines that differ by more do not compute the same robot; over the mass in kilograms, or absolute below 1 kg."""
 
 _ALIKE = 1e-3
-"""Relative difference of left and right from which on it is told [-]."""
+"""Relative difference of left and right from which on it is reported [-]."""
 
 HEIGHTS = (0.98, 1.02, 0.96, 1.04, 0.94, 0.92, 0.9, 0.87)
 """CoM heights that are proposed, over the nominal one, the nearest first [-]."""
@@ -39,7 +39,7 @@ _LEVEL, _TILT = 1e-4, 1e-3
 
 @dataclass(frozen=True, slots=True)
 class Examination:
-    """What was measured of a description.
+    """The measurements of a description.
 
     Attributes:
         parity: largest difference between MuJoCo and Pinocchio over random states, over the mass in kilograms, or
@@ -48,9 +48,9 @@ class Examination:
         sole_height: how much higher the right sole is than the left one in the nominal posture [m].
         sole_tilt: larger angle of a sole's normal from the vertical there, pelvis upright [rad].
         both_feet: static torques of standing with the CoM between the soles at its nominal height.
-        one_foot: likewise with the CoM over one sole, which bears all; the worse of both.
+        one_foot: static torques of standing with the CoM over one sole, which bears all; the worse of both.
         both_height: CoM height at which the joints could stand on both feet; None where no other is needed or does [m].
-        one_height: likewise on one foot [m].
+        one_height: CoM height at which they could stand on one foot; None where no other is needed or does [m].
         longest_step: with flat soles at the nominal CoM height [m].
         touching: bodies that touch each other in that stance, by pairs.
     """
@@ -68,7 +68,7 @@ class Examination:
 
     @property
     def faults(self) -> tuple[str, ...]:
-        """What keeps it from walking, one sentence each; what is merely unlike is none."""
+        """Faults that keep it from walking, one sentence each; what is merely unlike is none."""
         return tuple(self._faults())
 
     def _faults(self) -> Iterator[str]:
@@ -101,7 +101,7 @@ class Examination:
 
     @property
     def notes(self) -> tuple[str, ...]:
-        """What is to be known of it, and keeps it from nothing, one sentence each."""
+        """Notes on it that keep it from nothing, one sentence each."""
         leaning = "it cannot stand still on one foot at its nominal CoM height, which walking need not"
         wide = () if self.one_foot.joint else (f"{leaning}; {self._height(self.one_height)}",)
         return (*self.differences, *wide)
@@ -182,7 +182,7 @@ def _differences(body: Body) -> Iterator[str]:
 
 
 def _soles(body: Body) -> tuple[float, float]:
-    """How much higher the right sole is, and the larger tilt, with the pelvis upright in the nominal posture."""
+    """Height of the right sole over the left, and the larger tilt, with the pelvis upright in the nominal posture."""
     q = pin.neutral(body.model)
     q[7:] = body.robot.nominal_joint_positions
     data = body.model.createData()
@@ -257,7 +257,7 @@ def _margin(margin: TorqueMargin) -> str:
 
 
 def to_json(explained: Explanation, found: Examination) -> dict[str, Any]:
-    """What was derived and measured as one object; what could not be measured is null."""
+    """Everything derived and measured, as one object; what could not be measured is null."""
     return {
         "robot": explained.description.name,
         "facts": dict(_facts(explained.description)),

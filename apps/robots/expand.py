@@ -24,7 +24,7 @@ def expanded(model: Path, refusal: UnexpandedError) -> Path:
 
     Args:
         model: the xacro.
-        refusal: what was found left in it, which is told where it cannot be expanded here.
+        refusal: what was found left in it, which is raised where it cannot be expanded here.
 
     Raises:
         ScenarioError: `xacro` is not installed or cannot expand it, or something else has the name of the URDF.
@@ -44,7 +44,7 @@ def expanded(model: Path, refusal: UnexpandedError) -> Path:
 
 
 def _text(model: Path, refusal: UnexpandedError) -> str:
-    """What `xacro` makes of a file, in a process of its own, since expressions in it are evaluated.
+    """Text that `xacro` makes of a file, in a process of its own, since expressions in it are evaluated.
 
     Raises:
         ScenarioError: it makes nothing of it.

@@ -18,7 +18,7 @@ def first_file(model: str, folder: Path) -> tuple[Draft, tuple[str, ...]]:
         folder: where the file will be.
 
     Returns:
-        the file, and what is to be told of how it came to be, one line each.
+        the file, and notes on how it came to be, one line each.
 
     Raises:
         RobotError: the model cannot be read.
@@ -28,8 +28,8 @@ def first_file(model: str, folder: Path) -> tuple[Draft, tuple[str, ...]]:
         return draft(_from(model, folder), folder), ()
     except UnexpandedError as refusal:
         made = expanded(resolve(model, Path()), refusal)
-    told = f"expanded by xacro: {model} is {made}, which is the model of this robot file"
-    return draft(_from(str(made), folder), folder), (told,)
+    note = f"expanded by xacro: {model} is {made}, which is the model of this robot file"
+    return draft(_from(str(made), folder), folder), (note,)
 
 
 def _from(model: str, folder: Path) -> str:

@@ -1,4 +1,4 @@
-"""Which scenarios of the catalogue a robot takes, looked at or run, and how far that is."""
+"""The scenarios of the catalogue that a robot takes, looked at or run, and how far that is."""
 
 from collections.abc import Callable, Iterable, Iterator, Mapping, Sequence
 from dataclasses import dataclass, replace
@@ -55,7 +55,7 @@ class _Looked(NamedTuple):
 
 
 def chosen(names: Sequence[str]) -> tuple[str, ...]:
-    """Those of the catalogue that are named, in its order; all where none is.
+    """Scenarios of the catalogue that are named, in its order; all where none is.
 
     Raises:
         ScenarioError: the catalogue has no such scenario.
@@ -69,7 +69,7 @@ def chosen(names: Sequence[str]) -> tuple[str, ...]:
 def rows(
     robot: str, names: Sequence[str], walk: bool, jobs: int, out: Path, begun: Callable[[int, float], None]
 ) -> Iterator[CatalogueRow]:
-    """Scenarios on a robot as they are known; ``begun`` is told how many runs of how many seconds in all are to come.
+    """Scenarios on a robot as they are known; ``begun`` gets the number of runs to come, and their seconds.
 
     The longest runs come first, so that no process waits for the others at the end.
     """

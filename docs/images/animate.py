@@ -16,7 +16,7 @@ EVERY = 3
 
 @dataclass(frozen=True, slots=True)
 class Shot:
-    """How a run is shown.
+    """The view of a run.
 
     Attributes:
         window: part of it [s].

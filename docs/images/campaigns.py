@@ -19,7 +19,7 @@ sys.path.insert(0, str(FOLDER.parent))
 from measured import MADE, limit_of, searches
 
 WIDTH = 1300
-"""Of a picture that is as wide as a page [px]."""
+"""Width of a picture that is as wide as a page [px]."""
 
 
 def push_map(name: str) -> Any:

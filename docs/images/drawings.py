@@ -9,7 +9,7 @@ from html import escape
 from surefoot.scenarios.palette import BLACK, DARK, GREEN, ORANGE, PURPLE, SKY, WHITE, hexadecimal, paler
 
 WIDTH, BOX_HEIGHT, GAP, MARGIN = 880, 74, 46, 16
-"""Of a drawing, a box, the room between rows, and the rim [px]."""
+"""Sizes of a drawing, a box, the room between rows, and the rim [px]."""
 
 INK, LINE, PAPER = hexadecimal(BLACK), hexadecimal(DARK), hexadecimal(WHITE)
 FILLS = tuple(hexadecimal(paler(color, 0.8)) for color in (SKY, ORANGE, GREEN, PURPLE))
@@ -17,7 +17,7 @@ FILLS = tuple(hexadecimal(paler(color, 0.8)) for color in (SKY, ORANGE, GREEN, P
 
 @dataclass(frozen=True)
 class Drawing:
-    """What a drawing shows.
+    """The content of a drawing.
 
     Attributes:
         title: for who cannot see it.
@@ -147,4 +147,4 @@ DRAWINGS = {
         "what the / controller / decided",
     ),
 }
-"""By the name of the file."""
+"""Drawings by the name of the file."""

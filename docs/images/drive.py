@@ -37,7 +37,7 @@ KEYS = ((0.3, "w", True), (3.0, "q", True), (4.6, "q", False), (6.4, "w", False)
 """Simulated time, key, and whether it is pressed or let go of."""
 
 PUSH, END = 5.4, 7.6
-"""When the body is dragged, and when it ends, simulated [s]."""
+"""Times when the body is dragged, and when it ends, simulated [s]."""
 
 
 def post(address: str, **given: object) -> None:

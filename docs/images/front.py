@@ -25,7 +25,7 @@ RATE = 25.0
 
 KEYS = (*NATURAL, "gait.steps=9", "gait.step_length=0.36")
 PUSH = "{step: 3, phase: single, fraction: 0.5, duration: 0.1, impulse: 0.5, direction: -1.5708}"
-"""To the right while the left foot swings: it lands 12 cm beyond the right one."""
+"""Push to the right while the left foot swings: it lands 12 cm beyond the right one."""
 
 SHOT = Shot(
     ReplayWindow(1.7, 6.1, frame_rate=EVERY * RATE),
@@ -34,7 +34,7 @@ SHOT = Shot(
     lower=0.12,
 )
 QUALITY = 58
-"""Of WebP: the lowest at which thin marks keep their edges."""
+"""Quality of WebP: the lowest at which thin marks keep their edges."""
 
 
 def draw(log: Log) -> None:

@@ -38,7 +38,7 @@ def cells() -> dict[Cell, Row]:
 
 
 def outcome(row: Row) -> str:
-    """What became of a cell."""
+    """Outcome of a cell."""
     if row["status"] == "refused":
         return "refused"
     if float(row["torque_at_limit_fraction"]) > 0.01:

@@ -25,7 +25,7 @@ FOLDER = Path(__file__).parent
 SIZE = (320, 320)
 
 DISTANCE, LOWER = 3.1, 0.15
-"""Of the camera from the robot, and of the middle of the picture under its base, in lengths of its leg [-]."""
+"""Distances of the camera, and of the middle of the picture under the base, in lengths of the robot's leg [-]."""
 
 STRIDES = (0, 4)
 """Footsteps between whose landings the robot is shown: two strides, after which it stands as before."""

@@ -21,9 +21,12 @@ from PIL import Image
 from sources import DRAWINGS, FOLDER, RECOVERIES, ROBOTS, ROOT, digest, save_png
 
 SIZE = (1300, 750)
-"""Of the figure, which on the page is as wide as the text. It keeps all colours: few of them make thin curves alike."""
+"""Size of the figure, which on the page is as wide as the text.
+
+It keeps all colours: few of them make thin curves alike.
+"""
 FALLING = (3.0, 4.4)
-"""What is shown of the walk that falls [s]."""
+"""Part that is shown of the walk that falls [s]."""
 
 
 @contextmanager
@@ -103,7 +106,7 @@ def drawing(name: str) -> Callable[[], None]:
 
 
 def by(module: str, *arguments: str) -> Callable[[], None]:
-    """What another module of this folder draws, when it is given these words."""
+    """A function that another module of this folder is, given these words."""
     return lambda: import_module(module).main(list(arguments))
 
 
@@ -122,7 +125,7 @@ PICTURES: dict[str, Callable[[], None]] = {
     "gait-map.png": by("gait_map"),
     **{f"{name}.png": by("campaigns", name) for name in ("push-map", "push-map-pendulum")},
 }
-"""What draws a picture."""
+"""Functions that draw the pictures."""
 
 OF_CAMPAIGNS = ("gait-map.png", "push-map-pendulum.png", "push-map.png")
 """Drawn from the results of campaigns in docs/results."""
@@ -133,13 +136,13 @@ def main() -> None:
     parser = argparse.ArgumentParser(description=__doc__, formatter_class=argparse.RawDescriptionHelpFormatter)
     parser.add_argument("names", nargs="*", metavar="NAME", help=", ".join(PICTURES))
     parser.add_argument("--campaigns", action="store_true", help="run the campaigns anew, for an hour or more")
-    told = parser.parse_args()
-    names = told.names or [*PICTURES]
+    options = parser.parse_args()
+    names = options.names or [*PICTURES]
     if unknown := set(names) - set(PICTURES):
         parser.error(f"no picture {', '.join(sorted(unknown))}; there are {', '.join(PICTURES)}")
     for name in names:
         if name in OF_CAMPAIGNS and (
-            told.campaigns or not (FOLDER.parent / "results" / f"{Path(name).stem}.csv").exists()
+            options.campaigns or not (FOLDER.parent / "results" / f"{Path(name).stem}.csv").exists()
         ):
             run_anew(Path(name).stem)
         PICTURES[name]()

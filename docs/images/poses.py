@@ -15,11 +15,11 @@ from surefoot.sim.render import Camera, render_frames
 WIDTH, HEIGHT = 1280, 570
 OVERSAMPLING = 2
 TIMES = [3.35, 5.1, 6.85, 8.6, 10.35]
-"""Of the poses, the farthest first [s]."""
+"""Times of the poses, the farthest first [s]."""
 
 CAMERA = Camera(3.9, 114.0, -7.0, tracking=False)
 FAR_AWAY = 300.0
-"""Where the robot is sent to photograph the ground without it [m]."""
+"""Place to which the robot is sent to photograph the ground without it [m]."""
 
 
 def poses(log: Log, times: list[float]) -> list[NDArray[np.float64]]:

@@ -23,7 +23,7 @@ from surefoot.sim.render import Camera
 
 FOLDER = Path(__file__).parent
 SIZE, LOWER = (400, 320), 0.2
-"""Of a picture [px], and of its middle below the base [m]."""
+"""Sizes of a picture [px], and depth of its middle below the base [m]."""
 
 NATURAL = (
     "robot_options.foot_length=0.22",

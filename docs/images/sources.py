@@ -1,6 +1,9 @@
-"""Which code a picture of the documentation is drawn by; its digest is in the picture, and the tests compare both."""
+"""The code that draws each picture of the documentation; its digest is in the picture, and the tests compare both."""
 
+import ast
 import hashlib
+import io
+import tokenize
 from pathlib import Path
 
 from PIL import Image
@@ -45,12 +48,28 @@ SOURCES: dict[str, tuple[str, ...]] = {
     "push-map.png": (*_MAPS, f"{_RESULTS}/push-map.csv"),
     "push-map-pendulum.png": (*_MAPS, f"{_RESULTS}/push-map-pendulum.csv"),
 }
-"""What else than its run a picture follows from: colours, camera, how it is drawn, and results that are kept."""
+"""Files beside its run that a picture follows from: colours, camera, drawing code, and results that are kept."""
 
 
 def digest(name: str) -> str:
-    """Of the sources of a picture."""
-    return hashlib.sha256(b"".join((ROOT / source).read_bytes() for source in SOURCES[name])).hexdigest()[:16]
+    """Digest of the sources of a picture, without their docstrings and comments, which draw nothing."""
+    return hashlib.sha256("".join(map(_drawing, SOURCES[name])).encode()).hexdigest()[:16]
+
+
+def _drawing(source: str) -> str:
+    """The part of a file that draws: of Python its lines without prose."""
+    text = (ROOT / source).read_text(encoding="utf-8")
+    if not source.endswith(".py"):
+        return text
+    lines = text.splitlines()
+    for token in tokenize.generate_tokens(io.StringIO(text).readline):
+        if token.type == tokenize.COMMENT:
+            row, column = token.start
+            lines[row - 1] = lines[row - 1][:column]
+    for node in ast.walk(ast.parse(text)):
+        if isinstance(node, ast.Expr) and isinstance(node.value, ast.Constant):
+            lines[node.lineno - 1 : node.end_lineno] = [""] * (node.end_lineno - node.lineno + 1)
+    return "".join(f"{line.rstrip()}\n" for line in lines if line.strip())
 
 
 def noted(name: str) -> str:

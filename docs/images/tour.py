@@ -25,11 +25,11 @@ from surefoot.studies.tour.rows import ROWS
 PICTURE = Path(__file__).parent / "tour.webp"
 ROW, SEED = "torque", 0
 START, END, PERIOD = 9.8, 15.8, 0.08
-"""What is shown of the tour, and the time from picture to picture [s]."""
+"""Part of the tour that is shown, and the time from picture to picture [s]."""
 
 SIZE, CAMERA, LOWER = (400, 320), Camera(distance=2.3, azimuth=150.0, elevation=-12.0), 0.1
 SHOWN, LENGTH = 0.4, 0.001
-"""How long a punch is shown, longer than it acts [s], and the length of its arrow for each newton [m/N]."""
+"""Time for which a punch is shown, longer than it acts [s], and length of its arrow for each newton [m/N]."""
 
 
 def main(_: Sequence[str] = ()) -> None:

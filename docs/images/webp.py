@@ -7,7 +7,7 @@ from PIL import Image
 from sources import KEY, digest
 
 QUALITY = 60
-"""Of WebP: thin marks keep their edges."""
+"""Quality of WebP: thin marks keep their edges."""
 
 
 def save_webp(path: Path, images: Sequence[Image.Image], period: int, quality: int = QUALITY, method: int = 4) -> None:

@@ -70,7 +70,7 @@ def with_links(page: str, text: str) -> str:
 
 
 def led(page: str, target: str) -> str:
-    """Where a link leads in the site.
+    """Target of a link in the site.
 
     Args:
         page: path of its page in the site.

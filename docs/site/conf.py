@@ -1,4 +1,4 @@
-"""How Sphinx makes the site of the pages that `build.py` lays out; docs/decisions/site.md says why so."""
+"""Settings by which Sphinx makes the site of the pages of `build.py`; docs/decisions/site.md says why so."""
 
 from typing import Any
 

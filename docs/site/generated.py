@@ -54,9 +54,9 @@ def pages() -> dict[str, str]:
     return made
 
 
-def heading(level: int, name: str, told: str = "") -> str:
+def heading(level: int, name: str, suffix: str = "") -> str:
     """A heading, whose anchor on the page is the name with dashes."""
-    return f"{'#' * level} `{name}`{told}"
+    return f"{'#' * level} `{name}`{suffix}"
 
 
 def keys_page() -> str:
@@ -86,7 +86,7 @@ _SIGNS = {"gt": ">", "ge": "at least", "lt": "<", "le": "at most", "min_length":
 
 
 def _range(field: FieldInfo) -> list[str]:
-    """What a value may be."""
+    """Range of a value."""
     annotation = field.annotation
     choices = [a for part in (annotation, *get_args(annotation)) if get_origin(part) is Literal for a in get_args(part)]
     if choices:
@@ -171,7 +171,7 @@ ERRORS = (
     *("surefoot.PluginError", "surefoot.PartError", "surefoot.models.RobotError", "surefoot.models.UnknownRobotError"),
     *("surefoot.sim.WorldError", "surefoot.sim.SimulationDiverged"),
 )
-"""What the interface raises on purpose."""
+"""Errors that the interface raises on purpose."""
 
 
 def errors_page() -> str:
@@ -190,10 +190,10 @@ def interface_page(face: str) -> str:
     module = importlib.import_module(face)
     names = sorted(name for name in module.__all__ if f"{face}.{name}" not in ERRORS and not name.startswith("__"))
     head = f"# {face}\n\n```{{eval-rst}}\n.. automodule:: {face}\n   :no-members:\n```\n"
-    return "\n".join([head, *(_told(face, name) for name in names)])
+    return "\n".join([head, *(_entry(face, name) for name in names)])
 
 
-def _told(face: str, name: str) -> str:
+def _entry(face: str, name: str) -> str:
     """A public name: what it is, or where that stands when a layer has it too."""
     thing = getattr(importlib.import_module(face), name)
     others = (layer for layer in FACES if layer != face and layer.startswith(f"{face}."))

@@ -32,7 +32,7 @@ BOUNDS = {
     "wbc_fallbacks": {"max": 0},
     "torque_ratio_max": {"max": 1.0},
 }
-"""Of a pushed walk, in either engine."""
+"""Bounds of a pushed walk, in either engine."""
 RIGID = {
     "criteria.zmp_inside_fraction": {"min": 0.99},
     "criteria.zmp_error_rms": {"max": 0.01},

@@ -20,7 +20,7 @@ Array = NDArray[np.float64]
 FAR = 60.0
 """Sides of the box that stands for a plane [m]."""
 SHARE = 0.2
-"""Of the newest acceleration in what turns the rotors [-]; all of it rings with the blows of rigid contact."""
+"""Share of the newest acceleration in what turns the rotors [-]; all of it rings with the blows of rigid contact."""
 SHAPES = {
     mujoco.mjtGeom.mjGEOM_SPHERE: lambda size: dart.dynamics.SphereShape(size[0]),
     mujoco.mjtGeom.mjGEOM_CAPSULE: lambda size: dart.dynamics.CapsuleShape(size[0], 2 * size[1]),
@@ -234,7 +234,7 @@ STILL = "the ground"
 
 @dataclass
 class _Rotor:
-    """What a motor turns faster than its joint, in DART's place of a reflected inertia.
+    """A body that a motor turns faster than its joint, in DART's place of a reflected inertia.
 
     Attributes:
         dof: of its joint in the skeleton.

@@ -4,7 +4,7 @@ Lengths are those of a person of 1.80 m, in metres, with the joints standing str
 follow the adult male averages of de Leva (1996), scaled to 100 kg; motors and links of the multi-axis joints take
 their share from the neighbouring segments.
 
-Motors are sized like frameless torque motors of about 115, 95, 70 and 40 mm outer diameter; gears are those of
+Motors are sized like frameless torque motors of about 115, 95, 70 and 40 mm outer diameter. Gears are those of
 low-ratio planetary drives, so that the reflected rotor inertia stays of the order of the links' own.
 """
 

@@ -68,7 +68,7 @@ def base_frame(model: pin.Model, joint: int, masses: Mapping[str, float]) -> pin
 
 
 def moved(model: pin.Model, joint: int, base: pin.Frame) -> bool:
-    """Whether a base is other than what joint 1 moves, or has another frame."""
+    """Return true if a base is other than what joint 1 moves, or has another frame."""
     return joint != 1 or not np.allclose(base.placement.homogeneous, np.eye(4), rtol=0.0, atol=_SAME)
 
 
@@ -111,7 +111,7 @@ def _add(into: pin.Model, model: pin.Model, joint: int, parent: int, place: pin.
     return added
 
 
-def told(names: Sequence[str], dropped: float) -> str:
+def base_note(names: Sequence[str], dropped: float) -> str:
     """A note on joints that are left out.
 
     Args:

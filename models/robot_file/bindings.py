@@ -43,7 +43,7 @@ class Follower:
     ratio: float | None = None
 
     @property
-    def told(self) -> str:
+    def cause(self) -> str:
         """Its element and what that does."""
         element = element_name(self.kind, self.name)
         return f"{element} holds it" if self.leader is None else f"by {element} it follows '{self.leader}'"
@@ -98,7 +98,7 @@ def element_name(kind: str, name: str) -> str:
     return f"{kind} '{name}'" if name else kind
 
 
-def told_locked(names: Sequence[str], why: str, followers: Mapping[str, Follower]) -> str:
+def locked_note(names: Sequence[str], why: str, followers: Mapping[str, Follower]) -> str:
     """A line on joints that are locked for a reason, and on the elements by which they would follow others."""
     first = ", ".join(names[:_SHOWN])
     more = f" and {len(names) - _SHOWN} more" if len(names) > _SHOWN else ""
@@ -131,7 +131,7 @@ def rolling(model: pin.Model, joints: Sequence[int]) -> tuple[str, str] | None:
     return None
 
 
-def told_rolling(pair: tuple[str, str]) -> str:
+def rolling_note(pair: tuple[str, str]) -> str:
     """A line on such a pair."""
     what = f"left out: a coupling of {pair[0]} and {pair[1]}, if they roll on each other as one"
     return (

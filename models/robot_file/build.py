@@ -43,7 +43,7 @@ def explain(path: Path, options: RobotOptions, by_name: ByName) -> Explanation:
 
 
 def _is_name(model: str) -> bool:
-    """Whether a model is that of a robot by its name, and no path."""
+    """Return true if a model is that of a robot by its name, and no path."""
     return "/" not in model and "." not in model
 
 
@@ -105,7 +105,7 @@ def _unchanged(made_of: _Unchanged) -> Explanation:
 
 
 def _loaded(description: RobotDescription, options: RobotOptions) -> RobotDescription:
-    """With the payload of the options.
+    """The robot with the payload of the options.
 
     Raises:
         RobotError: the mass is out of range, or its body unknown.

@@ -26,7 +26,7 @@ _ENTRY = Kind((), "", MESH.most, "")
 
 
 def digest(files: Iterable[tuple[str, Path | None]]) -> str:
-    """Of files, each with what refers to it, of the code that reads them and of the engines' versions.
+    """Digest of files, each with what refers to it, of the code that reads them and of the engines' versions.
 
     Raises:
         RobotError: a file cannot be read.

@@ -27,7 +27,7 @@ _INFERRED = 'inertiafromgeom="true"'
 _OF_ENGINE = re.compile(
     r"^Error: |;? perhaps this is an ASCII file\?| ?\. Try setting inertia to shell| Element name [^,]*, id -?\d+"
 )
-"""What MuJoCo adds to a reason, which helps nobody here."""
+"""Text that MuJoCo adds to a reason, which helps nobody here."""
 
 
 class Bare:
@@ -42,7 +42,7 @@ class Bare:
         self.unseen: list[RobotError] = []
 
     def compiled(self) -> mujoco.MjModel:
-        """What MuJoCo makes of it, without the meshes of looks of which it makes nothing.
+        """Compile it with MuJoCo, without the meshes of looks of which MuJoCo makes nothing.
 
         Raises:
             RobotError: it compiles nothing of it, or a mesh is missing by which the robot touches or weighs.
@@ -73,18 +73,18 @@ class Bare:
 
     @cached_property
     def _contents(self) -> "dict[str, _Content | RobotError]":
-        """What is in each mesh file by the name that the document gives it, or why it cannot be read."""
+        """Content of each mesh file by the name that the document gives it, or why it cannot be read."""
         sources = {name: (mesh, PurePath(name).suffix) for name, mesh in self._document.meshes.items()}
         read = {source: _read(*source) for source in dict.fromkeys(sources.values())}
         return {name: read[source] for name, source in sources.items()}
 
     def _faults(self, spec: mujoco.MjSpec) -> dict[str, RobotError]:
-        """Why meshes cannot be read, by name."""
+        """Reasons why meshes cannot be read, by name."""
         found = {mesh.name: self._contents[mesh.file] for mesh in spec.meshes if mesh.file}
         return {name: fault for name, fault in found.items() if isinstance(fault, RobotError)}
 
     def _fault_of_mesh(self, spec: mujoco.MjSpec, error: Exception) -> dict[str, RobotError]:
-        """Why MuJoCo makes nothing of a mesh, by its name.
+        """Reason why MuJoCo makes nothing of a mesh, by its name.
 
         Raises:
             Exception: the error itself, if it is of something else.
@@ -106,16 +106,16 @@ class Bare:
         """
         for geom in [geom for geom in spec.geoms if geom.meshname in faults]:
             body, fault = geom.parent, faults[geom.meshname]
-            told = RobotError(fault.key, f"body '{body.name}' of {self._path}: {fault.what}", fault.right)
+            named = RobotError(fault.key, f"body '{body.name}' of {self._path}: {fault.what}", fault.right)
             if geom.contype or geom.conaffinity or not body.explicitinertial:
-                raise told
-            self.unseen.append(told)
+                raise named
+            self.unseen.append(named)
             spec.delete(geom)
         for mesh in [mesh for mesh in spec.meshes if mesh.name in faults]:
             spec.delete(mesh)
 
     def _said(self, text: str) -> str:
-        """What MuJoCo says in one line, with the files' own names and the place where it stands in them."""
+        """Message of MuJoCo in one line, with the files' own names and the place where it stands in them."""
         for name, mesh in self._document.meshes.items():
             text = text.replace(f"'{name}'", f"'{mesh.name}'")
         return _placed(text, self._document)
@@ -123,7 +123,7 @@ class Bare:
 
 @dataclass(frozen=True, slots=True)
 class _Content:
-    """What is in a mesh file.
+    """The content of a mesh file.
 
     Attributes:
         source: the file, and the ending of its kind.
@@ -137,7 +137,7 @@ class _Content:
 
 
 def _read(mesh: Path, ending: str) -> _Content | RobotError:
-    """What is in a mesh file; an STL that is text becomes one that is none, which MuJoCo can read."""
+    """Read a mesh file; an STL that is text becomes one that is none, which MuJoCo can read."""
     if not is_file(mesh):
         return RobotError(("model",), f"mesh {mesh.name} is not there", f"put it at {mesh}")
     try:
@@ -152,7 +152,7 @@ def _read(mesh: Path, ending: str) -> _Content | RobotError:
 def _moderate(
     spec: mujoco.MjSpec, path: Path, document: Assembled, contents: dict[str, _Content], notes: list[str]
 ) -> dict[str, bytes]:
-    """What is in the mesh files of a document, dense ones made coarser where they say nothing of inertia or size.
+    """Contents of a document's mesh files, dense ones made coarser where they say nothing of inertia or size.
 
     Raises:
         RobotError: a mesh cannot be read, or those that cannot be made coarser have too many triangles.
@@ -203,7 +203,7 @@ def _level(counts: list[int], most: int) -> int:
 
 
 def _placed(said: str, document: Assembled) -> str:
-    """What MuJoCo says in one line, with the place where it stands in the files."""
+    """Message of MuJoCo in one line, with the place where it stands in the files."""
     line = re.search(r",? *\bline (\d+)", said)
     place = document.places[int(line[1]) - 1] if line and 0 < int(line[1]) <= len(document.places) else ""
     said = " ".join((said.replace(line[0], "") if line else said).split())[:200]

@@ -65,7 +65,7 @@ def _root(name: str, followers: Mapping[str, Follower]) -> tuple[str, _Law | Non
 
 
 def _as_one(model: pin.Model, data: pin.Data, leg: Sequence[int], ratios: Mapping[int, float]) -> bool:
-    """Whether joints, with their ratios, stand one after the other in a leg and turn what is below about one axis."""
+    """Return true if joints of a leg, with their ratios, follow one another and turn what is below about one axis."""
     joints = sorted(ratios)
     first = leg.index(joints[0])
     if joints != list(leg[first : first + len(joints)]) or not all(is_revolute(model, one) for one in joints):
@@ -99,7 +99,10 @@ def joined(model: pin.Model, couplings: Sequence[Coupling]) -> pin.Model:
     effort, speed, rate = np.array(model.upperEffortLimit), np.array(model.upperVelocityLimit), model.idx_vs
     for one in couplings:
         leader, follower = (model.getJointId(name) for name in (one.leader, one.follower))
-        p, q, u, v = at[leader], at[follower], rate[leader], rate[follower]
+        p = at[leader]
+        q = at[follower]
+        u = rate[leader]
+        v = rate[follower]
         reached = sorted((float(end[q]) - one.offset) / one.ratio for end in ends)
         ends[0][p], ends[1][p] = max(ends[0][p], reached[0]), min(ends[1][p], reached[1])
         if not ends[0][p] < ends[1][p]:
@@ -119,7 +122,7 @@ def _slower(speed: float, other: float) -> float:
     return min(known, default=0.0)
 
 
-def told(model: pin.Model, couplings: Iterable[Coupling]) -> Iterator[str]:
+def coupling_notes(model: pin.Model, couplings: Iterable[Coupling]) -> Iterator[str]:
     """A line for each joint that follows another one, with what drives both."""
     for one in couplings:
         leader = model.getJointId(one.leader)

@@ -7,7 +7,7 @@ import pinocchio as pin
 
 from surefoot.engines.mimic import names_of
 from surefoot.models.inertia import LEAST_MASS
-from surefoot.models.robot_file.bindings import rolling, told_rolling
+from surefoot.models.robot_file.bindings import rolling, rolling_note
 from surefoot.models.robot_file.engine_mesh import compiled, taken
 from surefoot.models.robot_file.files import Originals
 from surefoot.models.robot_file.imu import find_imu
@@ -76,7 +76,7 @@ class _Deriver:
         self.lines: list[str] = []
         self.legs = find_legs(reduced, file)
         pairs = (rolling(reduced.model, leg.joints) for leg in self.legs)
-        reduced.left_out.extend(told_rolling(pair) for pair in pairs if pair is not None)
+        reduced.left_out.extend(rolling_note(pair) for pair in pairs if pair is not None)
         self.upper = find_upper(reduced, file, self.legs)
         self.reduced = reduced = with_upright(reduced, self.upper.torso)
         self.hulls = find_hulls(reduced, self.legs, self.upper)
@@ -180,7 +180,7 @@ class _Deriver:
         )
 
     def _looks(self) -> list[list[Shape]]:
-        """What is drawn, with as many triangles as a viewer needs; what comes to none that an engine draws is told."""
+        """Shapes to draw, with as many triangles as a viewer needs; a shape that no engine draws is noted."""
         shapes = [(joint, shape) for joint, group in enumerate(self.reduced.visual) for shape in group]
         few = decimated([(shape.vertices, shape.faces) for _, shape in shapes])
         small = [(np.round(vertices, _ROUND) + 0.0, faces) for vertices, faces in few]
@@ -205,7 +205,7 @@ class _Deriver:
         return list(dict.fromkeys((*found, *joined(bodies, parents))))
 
     def _com_height(self, posture: Array) -> float:
-        """Of the CoM over the soles in the posture [m]."""
+        """Height of the CoM over the soles in the posture [m]."""
         if self.file.com_height is not None:
             return self.file.com_height
         data, q = self.model.createData(), pin.neutral(self.model)
@@ -282,7 +282,7 @@ class _Deriver:
         return tuple(name for name, inertia in pairs if name in named or inertia.mass > LEAST_MASS)
 
     def _say(self, robot: RobotDescription, excluded: list[tuple[str, str]]) -> None:
-        """Tell what was derived."""
+        """Note what was derived."""
         given = self.file.model_fields_set
         lines = self.lines
         left, right = self.legs
@@ -313,5 +313,5 @@ class _Deriver:
         lines.append(f"shank_spacing: {robot.shank_spacing:.3f} m, from the contact shapes of the shanks")
         lines.append(self.imu_line)
         if excluded:
-            told = ", ".join(f"{one} and {other}" for one, other in excluded)
-            lines.append(f"may overlap, joined or since they do in the posture: {told}")
+            listed = ", ".join(f"{one} and {other}" for one, other in excluded)
+            lines.append(f"may overlap, joined or since they do in the posture: {listed}")

@@ -15,7 +15,7 @@ from surefoot.models.types import RobotError
 from surefoot.pointers import IS_A_POINTER, is_pointer
 
 MOST_ELEMENTS = 20_000
-"""Of a model with all that it includes."""
+"""Most elements of a model with all that it includes."""
 
 DEEPEST = 200
 """Elements inside each other."""
@@ -26,7 +26,7 @@ LONGEST_NAME = 200
 
 @dataclass(frozen=True, slots=True)
 class Kind:
-    """What a file is for.
+    """The purpose of a file.
 
     Attributes:
         key: of the robot file that names it, for messages.
@@ -49,7 +49,7 @@ MESH_TEXT = Kind(("model",), "mesh ", 32 << 20, "give at most 32 MiB of DAE or O
 
 
 def raw(path: Path, kind: Kind) -> bytes:
-    """What is in a file, whatever it is.
+    """Read a file, whatever is in it.
 
     Raises:
         RobotError: it is no regular file, larger than one of its kind may be, or cannot be read.
@@ -69,7 +69,7 @@ def raw(path: Path, kind: Kind) -> bytes:
 
 
 def content(path: Path, kind: Kind) -> bytes:
-    """What is in a file that is there, and of which nothing else stands in the place.
+    """Read a file that is there, and in whose place nothing else stands.
 
     Raises:
         RobotError: as `raw`, or it is a Git LFS pointer.
@@ -119,8 +119,8 @@ def decoded(data: bytes, path: Path, kind: Kind) -> str:
             return data.decode(name)
         except UnicodeDecodeError:
             continue
-    told = "".join(f"{name} or " for name in _named(data) if name != "utf-8-sig")
-    raise RobotError(kind.key, f"{kind.noun}{path}: cannot be read, it is no {told}UTF-8 text", kind.right)
+    encodings = "".join(f"{name} or " for name in _named(data) if name != "utf-8-sig")
+    raise RobotError(kind.key, f"{kind.noun}{path}: cannot be read, it is no {encodings}UTF-8 text", kind.right)
 
 
 def _named(data: bytes) -> tuple[str, ...]:
@@ -136,7 +136,7 @@ def _named(data: bytes) -> tuple[str, ...]:
 
 
 def signature(path: Path) -> tuple[int, ...]:
-    """What changes when a file does; nothing where there is none."""
+    """Signature of a file that changes when it does; empty where there is none."""
     try:
         status = path.stat()
     except (OSError, ValueError):
@@ -226,7 +226,7 @@ _WITHOUT_PREFIX = ("include", "macro", "property", "insert_block", "if", "unless
 """Elements of a robot that xacro took for its own when it had no name space, and that no URDF has."""
 
 _FILLED_IN = re.compile(r"\$\{[^}]*\}?|\$\((?:find|arg|eval|env|optenv|dirname|anon)\b[^)]*\)?")
-"""Of a value, what xacro computes or looks up (http://wiki.ros.org/xacro)."""
+"""Parts of a value that xacro computes or looks up (http://wiki.ros.org/xacro)."""
 
 
 class _Builder:

@@ -1,4 +1,4 @@
-"""What MuJoCo takes of a robot's text: it refuses meshes that are flat or too small, by an error for each kind."""
+"""Meshes that MuJoCo takes in a robot's text: it refuses flat and too small ones, by an error for each kind."""
 
 from collections.abc import Iterable, Sequence
 from xml.etree import ElementTree
@@ -25,7 +25,7 @@ def add_mesh(asset: ElementTree.Element, name: str, part: Triangles, drawn: bool
 
 
 def taken(parts: Sequence[Triangles], drawn: bool) -> list[bool]:
-    """Whether MuJoCo takes each of some meshes.
+    """Mark each of some meshes that MuJoCo takes.
 
     Args:
         parts: as they stand in the text.

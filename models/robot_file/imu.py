@@ -1,4 +1,4 @@
-"""Where the IMU of a model is: at the link or site that the file names, else at one of the trunk that is called so."""
+"""The place of a model's IMU: the link or site that the file names, else one of the trunk that is called so."""
 
 import pinocchio as pin
 

@@ -30,12 +30,12 @@ _PART = 0.3
 
 
 def require_inertia(model: pin.Model, postures: Sequence[Array], notes: list[str]) -> None:
-    """Refuse joints that repeat each other's motion in a posture; those that do elsewhere in their ranges are told.
+    """Refuse joints that repeat each other's motion in a posture; those that do elsewhere in their ranges are noted.
 
     Args:
         model: joint 1 is the floating base.
         postures: joint angles in which the robot stands and walks, shape (nj,) each [rad].
-        notes: is told.
+        notes: gets the note.
 
     Raises:
         RobotError: names the joints.

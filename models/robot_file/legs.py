@@ -19,7 +19,7 @@ FEWEST, MOST = WITHOUT_ROLL, 7
 _LATERAL = 0.7
 _STEPS, _DAMPING = 60, 1e-6
 _ENDS = 0.02
-"""How far solved angles stay from the ends of a joint [rad]."""
+"""Distance of solved angles from the ends of a joint [rad]."""
 
 _GRID, _SLOPE, _HALVINGS = 181, 1e-4, 60
 """Angles at which a knee with followers is tried, half of the span of its slope [rad], and halvings of an interval."""
@@ -65,7 +65,7 @@ class Leg:
 
     @property
     def leans(self) -> bool:
-        """Whether no joint is left to roll the foot, which leans sideways with its shank."""
+        """True if no joint is left to roll the foot, which leans sideways with its shank."""
         return len(self.joints) == WITHOUT_ROLL
 
 
@@ -140,7 +140,7 @@ def _own(model: pin.Model, chain: tuple[int, ...]) -> tuple[int, ...]:
 
 
 def _counted(model: pin.Model, chain: tuple[int, ...]) -> str:
-    """How many joints a chain has, and which follow others."""
+    """Number of joints of a chain, and those that follow others, in words."""
     following = [f"'{model.names[joint]}'" for joint in chain if not model.nvs[joint]]
     count = f"{len(_own(model, chain))} joints"
     follow = "follow" if following[1:] else "follows"
@@ -184,7 +184,7 @@ def _distance_squared(model: pin.Model, joints: tuple[int, ...], knee: int, angl
 
 
 def _extreme(value: Callable[[float], float], lower: float, upper: float) -> float:
-    """Where a smooth function has its maximum between two ends: by bisection of its slope."""
+    """Argument at which a smooth function has its maximum between two ends: by bisection of its slope."""
 
     def slope(at: float) -> float:
         return value(at + _SLOPE) - value(at - _SLOPE)

@@ -1,4 +1,4 @@
-"""Sizes that no robot has, told by the robot itself: each number of a part against the size or the mass of the whole.
+"""Sizes that no robot has, by the robot itself: each number of a part against the size or the mass of the whole.
 
 A number in another unit is off by a factor of ten and more, while what robots are made of is alike at every size. So
 each law is a ratio, and its bound lies between the farthest of some 130 public models and the nearest unit that is none
@@ -27,12 +27,12 @@ RADIANS: Units = ((math.pi / 180.0, "radians, while the file's compiler reads de
 TORQUES: Units = ((1000.0, "N mm"),)
 SPEEDS: Units = ((180.0 / math.pi, "deg/s"), (30.0 / math.pi, "turns a minute"))
 INERTIAS: Units = ((1e2, "kg cm^2"), (1e3, "kg mm^2"), (3.2e3, "g cm^2"), (3.2e4, "g mm^2"))
-"""Of a radius of gyration, which grows with the root of the moment."""
+"""Units of a radius of gyration, which grows with the root of the moment."""
 
 
 @dataclass(frozen=True, slots=True)
 class Law:
-    """What a ratio may be.
+    """The bounds of a ratio.
 
     Attributes:
         said: a sentence about ``{what}`` whose number is ``{value}``, up to what it is measured by.
@@ -57,10 +57,10 @@ class Law:
     then: str = "refused"
 
     def holds(self, value: float, size: float) -> bool:
-        """Say whether a number is of a robot of that size."""
+        """Return true if a number is of a robot of that size."""
         return self.least * size <= value <= self.most * size
 
-    def told(self, what: str, value: float, size: float) -> tuple[str, str]:
+    def refusal(self, what: str, value: float, size: float) -> tuple[str, str]:
         """A number that is of no robot, and what would be right."""
         ratio = value / size if size > 0.0 else math.inf
         said = self.said.format(what=what, value=f"{_shown(value)} {self.unit}")
@@ -187,7 +187,7 @@ class Part:
 
 @dataclass(frozen=True, slots=True)
 class Held:
-    """What came of a model that was held against itself.
+    """The results of a model that was held against itself.
 
     Attributes:
         drawn: shapes of a size that they can have.
@@ -229,13 +229,13 @@ def check_parts(
 
 
 def _unseen(shape: Shape, span: float) -> str:
-    """Why a shape cannot be drawn; empty where it can."""
+    """Reason why a shape cannot be drawn; empty where it can."""
     what = f"link '{shape.link}'"
     if not len(shape.faces):
         return f"a shape of {what} has no surface"
     for law, size in ((EXTENT, _extent(shape)), (SPECK, _across(shape))):
         if not law.holds(size, span):
-            return "; ".join(law.told(what, size, span))
+            return "; ".join(law.refusal(what, size, span))
     return ""
 
 
@@ -271,7 +271,7 @@ def check_joints(model: pin.Model) -> list[str]:
     ):
         worst = int(np.argmax(values))
         if not law.holds(float(values[worst]), size):
-            what, right = law.told(f"joint '{names[worst]}' of {model.name}", float(values[worst]), size)
+            what, right = law.refusal(f"joint '{names[worst]}' of {model.name}", float(values[worst]), size)
             raise RobotError((key,), what, right)
     for law, values, size in (
         (TORQUE, model.upperEffortLimit[6:], mass * _GRAVITY * span),
@@ -282,12 +282,12 @@ def check_joints(model: pin.Model) -> list[str]:
 
 
 def _remark(law: Law, kind: str, wrong: Sequence[tuple[str, float, float]]) -> list[str]:
-    """What is remarked of names, each with its number and its size, in one line; none where none is wrong."""
+    """Remark on names, each with its number and its size, in one line; none where none is wrong."""
     if not wrong:
         return []
     name, value, size = wrong[0]
     others = f" and {len(wrong) - 1} more" if len(wrong) > 1 else ""
-    return ["; ".join(law.told(f"{kind} '{name}'{others}", float(value), size))]
+    return ["; ".join(law.refusal(f"{kind} '{name}'{others}", float(value), size))]
 
 
 def check_angle(what: str, angle: float, key: tuple[str, ...]) -> None:
@@ -297,7 +297,7 @@ def check_angle(what: str, angle: float, key: tuple[str, ...]) -> None:
         RobotError: it is.
     """
     if not TURN.holds(abs(angle), math.tau):
-        raise RobotError(key, *TURN.told(what, abs(angle), math.tau))
+        raise RobotError(key, *TURN.refusal(what, abs(angle), math.tau))
 
 
 def _bounded(model: pin.Model) -> list[str]:
@@ -335,7 +335,7 @@ def check_figure(
         (COM, "com_height", com_height, leg_length),
     ):
         if not law.holds(value, size):
-            raise RobotError((key,), *law.told(robot, value, size))
+            raise RobotError((key,), *law.refusal(robot, value, size))
 
 
 class _Whole:
@@ -357,17 +357,17 @@ class _Whole:
         far = max(apart, key=lambda joint: apart[joint])
         usual, joint = math.cbrt(self.mass / _CUBIC), f"joint '{self._model.names[far]}'"
         if not FAR.holds(apart[far], usual):
-            yield FAR.told(joint, apart[far], usual)
+            yield FAR.refusal(joint, apart[far], usual)
         if not LONG.holds(self.span, usual):
-            yield LONG.told("the joints", self.span, usual)
+            yield LONG.refusal("the joints", self.span, usual)
         if not APART.holds(apart[far], self.span):
-            yield APART.told(joint, apart[far], self.span)
+            yield APART.refusal(joint, apart[far], self.span)
         heaviest = max(self._parts, key=lambda part: part.mass)
         if not SHARE.holds(heaviest.mass, self.mass - heaviest.mass):
-            yield SHARE.told(f"link '{heaviest.link}'", heaviest.mass, self.mass - heaviest.mass)
+            yield SHARE.refusal(f"link '{heaviest.link}'", heaviest.mass, self.mass - heaviest.mass)
         for shape in touching:
             if not EXTENT.holds(_extent(shape), self.span):
-                yield EXTENT.told(f"link '{shape.link}'", _extent(shape), self.span)
+                yield EXTENT.refusal(f"link '{shape.link}'", _extent(shape), self.span)
 
     def astray(self, shapes: Sequence[Shape]) -> Iterator[tuple[str, str]]:
         """Links that are too dense, and whose mass is where they are not, or spread over more than there is of them."""
@@ -377,18 +377,18 @@ class _Whole:
             box = boxes.get(joint)
             cube = 0.0 if box is None else _WATER * float(np.linalg.norm(np.ptp(box, axis=0))) ** 3
             if cube and part.mass > _MASSIVE * self.mass and not DENSE.holds(part.mass, cube):
-                yield DENSE.told(what, part.mass, cube)
+                yield DENSE.refusal(what, part.mass, cube)
             outside = self._outside(part, box)
             if part.mass > _WEIGHTY * self.mass and not LEVER.holds(outside, self.span):
-                yield LEVER.told(what, outside, self.span)
+                yield LEVER.refusal(what, outside, self.span)
             radius = math.sqrt(part.moment / part.mass) if part.mass else 0.0
             counts = part.moment > _TURNING * self.mass * self.span**2
             if counts and not GYRATION.holds(radius, self.span):
-                yield GYRATION.told(what, radius, self.span)
+                yield GYRATION.refusal(what, radius, self.span)
         usual, heaviest = _CUBIC * self.span**3, max(self._parts, key=lambda part: part.mass)
         if not HEAVY.holds(self.mass, usual):
             what = f"the robot, with {heaviest.mass:.3g} kg of link '{heaviest.link}',"
-            yield HEAVY.told(what, self.mass, usual)
+            yield HEAVY.refusal(what, self.mass, usual)
 
     def remarked(self, shapes: Sequence[Shape]) -> Iterator[str]:
         """Links whose mass is beside their shapes, or spread over more than these; the first of each kind."""
@@ -418,7 +418,7 @@ class _Whole:
         return {joint: _box(np.concatenate(points)) for joint, points in found.items()}
 
     def _outside(self, part: Part, box: Array | None) -> float:
-        """How far a CoM is from the box around a link's shapes, its joint and the joints that it carries [m]."""
+        """Distance of a CoM from the box around a link's shapes, its joint and the joints that it carries [m]."""
         joint, model = self._joint(part), self._model
         ends = [model.jointPlacements[child].translation for child in model.children[joint]]
         low, high = _box(np.vstack((np.zeros((1, 3)), *ends, *(() if box is None else box))))
@@ -436,7 +436,7 @@ def _across(shape: Shape) -> float:
 
 
 def _extent(shape: Shape) -> float:
-    """Of a shape from the frame of its link, so that one that is far away counts as well [m]."""
+    """Extent of a shape from the frame of its link, so that one that is far away counts as well [m]."""
     if not np.isfinite(shape.vertices).all():
         return math.inf
     return float(np.abs(shape.vertices).max(initial=0.0))

@@ -38,7 +38,7 @@ def _read(path: Path, _unchanged: tuple[int, ...]) -> Triangles:
 
 
 def mesh_content(path: Path, ending: str) -> bytes:
-    """What is in a mesh file, of text less than of bytes.
+    """Read a mesh file, of text less than of bytes.
 
     Raises:
         RobotError: it is too long, or cannot be read.
@@ -70,13 +70,13 @@ def triangles(path: Path, ending: str, data: bytes) -> Triangles:
 
 
 def is_binary_stl(data: bytes) -> bool:
-    """Say whether bytes are as long as a binary STL says in its head."""
+    """Return true if bytes are as long as a binary STL says in its head."""
     count = int.from_bytes(data[80:_STL_HEAD], "little")
     return len(data) == _STL_HEAD + count * _STL.itemsize
 
 
 def is_sound_stl(data: bytes) -> bool:
-    """Say whether bytes are a binary STL of some triangles, all finite."""
+    """Return true if bytes are a binary STL of some triangles, all finite."""
     if not is_binary_stl(data) or len(data) == _STL_HEAD:
         return False
     return bool(np.isfinite(np.frombuffer(data, _STL, -1, _STL_HEAD)["corners"]).all())
@@ -94,7 +94,7 @@ def _finite(path: Path, points: Array) -> Array:
 
 
 def burden(ending: str, data: bytes) -> int:
-    """What compiling a mesh costs: its triangles, vertices, or triangles of an STL as long, whichever are most."""
+    """Cost of compiling a mesh: its triangles, vertices, or triangles of an STL as long, whichever are most."""
     counts = {"f": 0, "v": 0}
     for line in re.finditer(rb"^[ \t]*([fv])[ \t][^\n]*", data, re.MULTILINE) if ending == ".obj" else ():
         counts[line[1].decode()] += len(line[0].split()) - 3
@@ -114,7 +114,7 @@ def _unread(path: Path, reason: str) -> RobotError:
 
 
 _NOT_FINITE = rb"(?:nan|inf|e\+?0*(?:39|[4-9][0-9]|[1-9][0-9]{2,}))"
-"""What of a row of numbers is none that single precision holds; readers find nothing wrong in it."""
+"""Numbers in a row that single precision does not hold; readers find nothing wrong in them."""
 
 _ROWS = {
     ".obj": rb"(?im)^[ \t]*v[ \t][^\n]*",
@@ -206,7 +206,7 @@ class _Collada:
                 raise _unread(self._path, f"{name} of {tag} is '{value[:20]}'")
 
     def _length(self, unit: dict[str, str]) -> float:
-        """Of the unit [m]: without `meter` it is one metre (Collada 1.4.1, section 5), unless its name is another.
+        """Length of the unit [m]: without `meter` one metre (Collada 1.4.1, section 5), unless its name is another.
 
         Raises:
             RobotError: it has none.

@@ -1,9 +1,9 @@
 """Meshes of links, small enough to stand inside a text: decimated ones to look at, convex hulls to touch with.
 
-A CAD system's meshes have some hundred thousand triangles, of which a viewer needs a twentieth. Vertices in one cell of
-a grid much finer than the triangles to be become one first: that closes seams between parts, drops what is too small to
-be seen, and takes a fraction of the time. Quadric edge collapse (Garland and Heckbert, 1997) does the rest: first up to
-one error for all meshes, so that each keeps the triangles that it needs, then down to the number that there may be.
+A CAD system's meshes have some hundred thousand triangles, of which a viewer needs a twentieth. First, vertices in one
+cell of a grid much finer than the final triangles become one. That closes seams between parts, drops what is too small
+to be seen, and takes a fraction of the time. Quadric edge collapse (Garland and Heckbert, 1997) does the rest: first up
+to one error for all meshes, so that each keeps the triangles that it needs, then down to the number that there may be.
 """
 
 from collections.abc import Sequence
@@ -44,7 +44,7 @@ DEPTH = 2e-4
 """Depth outside a hull at which points of more join it, over their extent [-]."""
 
 _CAREFUL, _WILLING = 3.0, 5.0
-"""How the thresholds of the collapse grow: so that it ends at what can be seen, or at the number that is asked for."""
+"""Steps of the collapse's thresholds, so that it ends at what can be seen, or at the number that is asked for."""
 
 _PACKED = 21
 """Bits of each of the three coordinates of a cell in one integer."""

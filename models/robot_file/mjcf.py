@@ -168,7 +168,7 @@ class _Folder:
 
 
 def _folder_of_meshes(root: Node) -> _Folder:
-    """What the compiler sections of a document say together, which they then say no more."""
+    """Settings that the compiler sections of a document have together, which are taken out of them."""
     name, strip = "", False
     for compiler in root.findall("compiler"):
         name = compiler.get("meshdir", compiler.get("assetdir", name))

@@ -45,7 +45,7 @@ class MjcfBindings:
             yield self._joints[follower], Follower(_JOINT, name, self._joints[leader], *law)
 
     def again(self, name: str, follower: Follower) -> Binding:
-        """What binds a joint that another equality binds already."""
+        """The fault of a joint that two equalities bind."""
         joints = {name} if follower.leader is None else {name, follower.leader}
         return Binding(element_name(follower.kind, follower.name), frozenset(joints))
 

@@ -46,7 +46,7 @@ def _own(mj: mujoco.MjModel, root: int, kind: str) -> list[int]:
 
 
 def _differs(mj: mujoco.MjModel, one: LeftOut, at: int) -> bool:
-    """Whether a thing has another value than a plain one."""
+    """Return true if a thing has another value than a plain one."""
     plain = _plain()
     return any(bool(np.any(_of(mj, field, at) != _of(plain, field, 0))) for field in one.fields)
 

@@ -51,7 +51,7 @@ def _torques(mj: mujoco.MjModel, actuator: int) -> tuple[float, float]:
 
 
 def _is_direct(mj: mujoco.MjModel, actuator: int) -> bool:
-    """Whether the force is the control, filtered, times a constant gain."""
+    """Return true if the force is the control, filtered, times a constant gain."""
     gain, bias = int(mj.actuator_gaintype[actuator]), int(mj.actuator_biastype[actuator])
     constant = gain == int(mujoco.mjtGain.mjGAIN_FIXED) or (
         gain == int(mujoco.mjtGain.mjGAIN_AFFINE) and not mj.actuator_gainprm[actuator, 1:].any()

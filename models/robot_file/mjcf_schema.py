@@ -25,7 +25,7 @@ class LeftOut:
 
     Attributes:
         attributes: names, with spaces between them.
-        fields: of a compiled model, where other values than those of a plain element are told.
+        fields: of a compiled model, where other values than those of a plain element are reported.
         why: for the message.
         of: things whose fields those are: joint, dof, geom, body or actuator.
         called: how a message names them; empty where it names the first of them.
@@ -39,7 +39,7 @@ class LeftOut:
 
     @property
     def name(self) -> str:
-        """What they are in a message."""
+        """Their name in a message."""
         return self.called or self.attributes.split()[0]
 
 
@@ -277,7 +277,7 @@ DEFAULTS = {
 """Elements of a default class by those that they are defaults of; others are of the actuator of their name."""
 
 META = ("body/frame", "body/replicate")
-"""Of those that MuJoCo's schema lacks; includes are gone before a document is looked at."""
+"""Elements that MuJoCo's schema lacks; includes are gone before a document is looked at."""
 
 
 @lru_cache(maxsize=1)

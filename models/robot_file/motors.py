@@ -1,4 +1,4 @@
-"""What the motors of a model give: limits of torque and speed, rotors; and what an SRDF knows of them."""
+"""The motors of a model: limits of torque and speed, rotors; and what an SRDF knows of them."""
 
 from pathlib import Path
 from typing import NamedTuple
@@ -88,7 +88,7 @@ SPEED = 12.0
 
 
 def require_limits(model: pin.Model, notes: list[str]) -> None:
-    """Refuse joints whose motors nobody knows; those without a speed limit get a usual one, which is told.
+    """Refuse joints whose motors nobody knows; those without a speed limit get a usual one, which is noted.
 
     Raises:
         RobotError: a torque limit or a range is missing.

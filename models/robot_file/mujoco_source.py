@@ -15,8 +15,8 @@ from surefoot.models.robot_file.mjcf_losses import losses
 from surefoot.models.robot_file.mjcf_motors import rotor, torques
 from surefoot.models.robot_file.schema import RobotFile
 from surefoot.models.robot_file.shapes import (
+    Remarks,
     Shape,
-    Told,
     box,
     capsule,
     cylinder,
@@ -25,7 +25,7 @@ from surefoot.models.robot_file.shapes import (
     require_moderate,
     solid,
 )
-from surefoot.models.robot_file.sift import told_absent
+from surefoot.models.robot_file.sift import absent_notes
 from surefoot.models.robot_file.source import ROOT, Source, physical
 from surefoot.models.types import Array, RobotError
 
@@ -44,10 +44,10 @@ def read_mjcf(file: RobotFile, path: Path, document: Assembled) -> Source:
     Raises:
         RobotError: MuJoCo does not compile it, or it is no single robot of hinges.
     """
-    notes, left_out = list[str](), list(told_absent(document.absent))
+    notes, left_out = list[str](), list(absent_notes(document.absent))
     bare = Bare(path, document, notes)
     mj = bare.compiled()
-    Told(notes, left_out).missing("visual", bare.unseen)
+    Remarks(notes, left_out).missing("visual", bare.unseen)
     return _Reader(mj, file, path, _robot_of(mj, path, left_out), notes, left_out).read()
 
 
@@ -76,7 +76,10 @@ class _Reader:
     def __init__(
         self, mj: mujoco.MjModel, file: RobotFile, path: Path, root: int, notes: list[str], left_out: list[str]
     ) -> None:
-        self._mj, self._file, self._path, self._root = mj, file, path, root
+        self._mj = mj
+        self._file = file
+        self._path = path
+        self._root = root
         self._model = pin.Model()
         self._model.name = file.name
         self._links = {mj.body(body).name for body in range(mj.nbody)}
@@ -260,6 +263,6 @@ def _free(name: str, taken: set[str]) -> str:
 
 
 def _placement(position: Array, quaternion: Array) -> pin.SE3:
-    """Of MuJoCo's position and quaternion w, x, y, z."""
+    """The placement of MuJoCo's position and quaternion w, x, y, z."""
     w, x, y, z = quaternion
     return pin.SE3(pin.Quaternion(w, x, y, z).normalized().toRotationMatrix(), np.array(position))

@@ -1,4 +1,4 @@
-"""Where the files of a model are: beside it, or in a package that is installed."""
+"""The places of a model's files: beside it, or in a package that is installed."""
 
 import os
 import re
@@ -19,17 +19,17 @@ _EXTRA = ("jvrc_description", "fourier_robot_descriptions")
 """Packages of the extra that brings more robots."""
 
 _NAME = re.compile(r"[A-Za-z0-9_][A-Za-z0-9._-]{0,99}")
-"""Of a package: it is a folder's name, and none above it."""
+"""Name of a package: it is a folder's name, and none above it."""
 
 _VARIABLES = ("ROS_PACKAGE_PATH", "GAZEBO_MODEL_PATH", "GZ_SIM_RESOURCE_PATH")
-"""Of the environment: folders of packages."""
+"""Environment variables with folders of packages."""
 
 _SHARES = ("cmeel.prefix/share", "share")
 """Folders of an environment in which packages put their data, from those of ``sys.path``."""
 
 
 def is_file(path: Path) -> bool:
-    """Whether there is a file; never an error, however the path is spelt."""
+    """Return true if there is a file; never an error, however the path is spelt."""
     try:
         return path.is_file()
     except (OSError, ValueError):

@@ -1,4 +1,4 @@
-"""What the numbers of a model may be: each finite, and no larger than any walking machine has it."""
+"""The range of a model's numbers: each finite, and no larger than any walking machine has it."""
 
 from collections.abc import Callable
 from dataclasses import dataclass
@@ -17,7 +17,7 @@ NONE = 1e17
 
 @dataclass(frozen=True, slots=True)
 class Quantity:
-    """What an attribute may hold.
+    """The range and unit of an attribute.
 
     Attributes:
         most: largest absolute value.
@@ -33,7 +33,7 @@ class Quantity:
 
     @property
     def rule(self) -> str:
-        """What would be right."""
+        """The rule for the attribute, for messages."""
         how_many = {1: "a decimal number"}.get(self.count or 0, f"{self.count or ''} decimal numbers".lstrip())
         return f"give {how_many} from {self.smallest:g} to {self.most:g} {self.unit}".rstrip()
 
@@ -59,7 +59,7 @@ URDF = {
     "mesh": {"scale": Quantity(1e6, "", 3)},
     "color": {"rgba": Quantity(1e3, "", 4)},
 }
-"""By element and attribute, where a robot is read from."""
+"""Quantities by element and attribute, where a robot is read from."""
 
 REQUIRED = {
     "box": ("size",),
@@ -86,24 +86,24 @@ MJCF = {
     "gear": Quantity(1e6),
     "params": Quantity(100.0),
 }
-"""By attribute, wherever it stands."""
+"""Quantities by attribute, wherever it stands."""
 
 
 _SRDF = {"mass": Quantity(MASS, "kg", 1), "gear_ratio": Quantity(1e5, "", 1), "value": Quantity(1e4, "", 0)}
 
 
 def of_urdf(tag: str, attribute: str) -> Quantity | None:
-    """What an attribute of a URDF may hold; None where nothing reads it as a number."""
+    """The quantity of an attribute of a URDF; None where nothing reads it as a number."""
     return URDF.get(tag, {}).get(attribute)
 
 
 def of_srdf(_tag: str, attribute: str) -> Quantity | None:
-    """What an attribute of an SRDF may hold; None where nothing reads it as a number."""
+    """The quantity of an attribute of an SRDF; None where nothing reads it as a number."""
     return _SRDF.get(attribute)
 
 
 def of_mjcf(_tag: str, attribute: str) -> Quantity | None:
-    """What an attribute of an MJCF may hold, if it holds numbers; None for names."""
+    """The quantity of an attribute of an MJCF, if it holds numbers; None for names."""
     return None if attribute == "name" else MJCF.get(attribute, Quantity(NONE))
 
 
@@ -139,7 +139,7 @@ def _fits(text: str, quantity: Quantity) -> bool:
 
 
 def _means_number(token: str) -> bool:
-    """Whether an engine might take for a number what is no decimal one."""
+    """Return true if an engine might take for a number what is no decimal one."""
     try:
         float(token)
     except ValueError:

@@ -9,8 +9,8 @@ import pinocchio as pin
 
 from surefoot.models.inertia import LEAST_MASS, MASSLESS
 from surefoot.models.joints import is_revolute
-from surefoot.models.robot_file.bindings import check_bindings, told_locked
-from surefoot.models.robot_file.couplings import joined, kept, told
+from surefoot.models.robot_file.bindings import check_bindings, locked_note
+from surefoot.models.robot_file.couplings import coupling_notes, joined, kept
 from surefoot.models.robot_file.files import Originals
 from surefoot.models.robot_file.magnitudes import check_angle, check_joints
 from surefoot.models.robot_file.mjcf_schema import FOLLOWING
@@ -34,14 +34,14 @@ _TURNS = {"x": 0, "y": 1, "-x": 2, "-y": 3}
 
 @dataclass(frozen=True, slots=True)
 class Reduced:
-    """What is left of a model, and what is known of its links.
+    """The rest of a model, with what is known of its links.
 
     Attributes:
         model: joint 1 is the floating base, whose x points ahead; all others are revolute.
         bodies: name of the link that each joint moves, the floating base first; by joint index less 1.
         feet: frames of the left and right foot's links.
         visual: what is drawn, by joint, vertices in the joint's frame.
-        collision: what touches, likewise.
+        collision: what touches, by joint, vertices in the joint's frame.
         turned: angle about z by which the base's frame was turned [rad].
         states: postures of the SRDF by name.
         notes: what was derived or altered.
@@ -89,7 +89,10 @@ def reduced(made_of: Originals, source: Source) -> Reduced:
     Raises:
         RobotError: a name or pattern means nothing, or a limit is missing.
     """
-    file, srdf, full, notes = made_of.file, made_of.srdf, source.model, source.notes
+    file = made_of.file
+    srdf = made_of.srdf
+    full = source.model
+    notes = source.notes
     names = tuple(full.names)[2:]
     set_limits(full, file, names)
     rotors, states, passive = read_srdf(srdf, names)
@@ -107,7 +110,7 @@ def reduced(made_of: Originals, source: Source) -> Reduced:
         names_of = [str(full.names[joint]) for joint, (reason, _) in locked.items() if reason == why]
         notes.append(f"locked, {why}: {', '.join(names_of)}")
         if why != _GIVEN or set(names_of) & set(source.followers):
-            source.left_out.append(told_locked(names_of, why, source.followers))
+            source.left_out.append(locked_note(names_of, why, source.followers))
     q = pin.neutral(full)
     for joint, (_, angle) in locked.items():
         model_joint = full.joints[joint]
@@ -121,7 +124,7 @@ def reduced(made_of: Originals, source: Source) -> Reduced:
     model = _without(full, list(locked), q)
     model.name = file.name
     model = joined(model, couplings)
-    notes += told(model, couplings)
+    notes += coupling_notes(model, couplings)
     require_limits(model, notes)
     notes += check_joints(model)
     frames = tuple(frame_of(model, link, "feet") for link in (feet.left, feet.right))
@@ -231,7 +234,7 @@ def _locked(
         elif joint not in legs and data.mass[joint] <= LEAST_MASS and not shown & set(model.subtrees[joint]):
             why = "move nothing"
         if why and joint in legs and name not in given:
-            cause = source.followers[name].told if why == _FOLLOWS else why
+            cause = source.followers[name].cause if why == _FOLLOWS else why
             what = f"joint '{name}' of {file.name} is in a leg and cannot be driven ({cause})"
             right = _ITS_MOTOR if why == _FOLLOWS else _MOTORS
             raise RobotError(("feet",), what, right)
@@ -300,8 +303,8 @@ def _require_inertias(
         model.inertias[joint] = pin.Inertia(inertia.mass, inertia.lever, inertia.inertia + ball * np.eye(3))
         balls.append(body)
     if balls:
-        told = ", ".join(balls)
-        yield f"without a moment of inertia in the model, and with that of a ball of {_BALL} m here: {told}"
+        listed = ", ".join(balls)
+        yield f"without a moment of inertia in the model, and with that of a ball of {_BALL} m here: {listed}"
 
 
 def _turn(model: pin.Model, feet: tuple[int, ...], file: RobotFile, notes: list[str]) -> float:

@@ -145,7 +145,7 @@ def _lines(node: yaml.Node | None, key: tuple[str, ...] = ()) -> dict[tuple[str,
 
 
 def _refusal(path: Path, fault: Any, lines: Mapping[tuple[str, ...], int]) -> RobotError:
-    """What pydantic found first, in a sentence."""
+    """The first fault that pydantic found, in a sentence."""
     key = tuple(str(part) for part in fault["loc"])
     known = next((key[:size] for size in range(len(key), 0, -1) if key[:size] in lines), ())
     place = f"{path}:{lines[known]}" if known else str(path)

@@ -18,7 +18,7 @@ from surefoot.models.types import Array, RobotError
 Colour = tuple[float, float, float, float]
 
 MOST_TRIANGLES = 2_500_000
-"""Of all shapes of a robot, what is drawn and what touches."""
+"""Most triangles of all shapes of a robot, what is drawn and what touches."""
 
 GREY: Colour = (0.7, 0.7, 0.72, 1.0)
 _CORNERS = np.array(list(itertools.product((-1.0, 1.0), repeat=3)))
@@ -27,7 +27,7 @@ _AROUND = np.arange(24) * (math.tau / 24)
 
 @dataclass(frozen=True, slots=True)
 class Shape:
-    """What is fixed to a link.
+    """A shape that is fixed to a link.
 
     Attributes:
         link: frame to which it is fixed.
@@ -96,8 +96,8 @@ def _ring(radius: float, height: float) -> Array:
 
 
 @dataclass(frozen=True, slots=True)
-class Told:
-    """What is said of shapes while they are read.
+class Remarks:
+    """The remarks on shapes while they are read.
 
     Attributes:
         notes: what was taken in another way than it is written.
@@ -108,7 +108,7 @@ class Told:
     left_out: list[str]
 
     def missing(self, kind: str, faults: Sequence[RobotError]) -> None:
-        """Tell of meshes of a kind, visual or collision, that are missing or cannot be read, by the first of them."""
+        """Note meshes of a kind, visual or collision, that are missing or cannot be read, by the first of them."""
         if not faults:
             return
         more = f" and {len(faults) - 1} more" if len(faults) > 1 else ""
@@ -119,7 +119,7 @@ class Told:
             self.notes.append(f"{said}: what has no collision mesh touches by what is drawn")
 
     def turned(self, kind: str, axes: Mapping[Path, str]) -> None:
-        """Tell of Collada files that say another axis than z is up."""
+        """Note Collada files that say another axis than z is up."""
         if axes:
             file, axis = next(iter(axes.items()))
             more = f" and {len(axes) - 1} more" if len(axes) > 1 else ""
@@ -128,7 +128,7 @@ class Told:
 
 
 def urdf_shapes(
-    root: ElementTree.Element, path: Path, kind: str, told: Told, drawn: Sequence[Shape] | None = None
+    root: ElementTree.Element, path: Path, kind: str, remarks: Remarks, drawn: Sequence[Shape] | None = None
 ) -> tuple[Shape, ...]:
     """Shapes of all links.
 
@@ -136,7 +136,7 @@ def urdf_shapes(
         root: of the URDF.
         path: of the URDF.
         kind: visual or collision.
-        told: is told of links whose meshes are missing and not needed.
+        remarks: gets a note on links whose meshes are missing and not needed.
         drawn: by which links touch where a mesh is missing; None where physics needs no mesh.
 
     Raises:
@@ -167,8 +167,8 @@ def urdf_shapes(
                     raise fault from None
                 missing.append(fault)
             require_moderate((*(drawn or ()), *found))
-    told.missing(kind, missing)
-    told.turned(kind, axes)
+    remarks.missing(kind, missing)
+    remarks.turned(kind, axes)
     return tuple(found)
 
 

@@ -30,7 +30,7 @@ def sift(root: Node) -> tuple[Absent, ...]:
     return tuple(_sifted(root, "", False))
 
 
-def told_absent(absent: Iterable[Absent]) -> Iterator[str]:
+def absent_notes(absent: Iterable[Absent]) -> Iterator[str]:
     """A line for each reason, with all elements that go for it."""
     reasons: dict[str, dict[str, None]] = {}
     for one in absent:
@@ -40,7 +40,7 @@ def told_absent(absent: Iterable[Absent]) -> Iterator[str]:
 
 
 def _sifted(node: Node, at: str, quiet: bool) -> Iterator[Absent]:
-    """What goes from below a node of a path.
+    """The absent elements below a node of a path.
 
     Default classes are quiet, since the elements that are of them tell it, and so is what is part of an absent element.
     """

@@ -1,4 +1,4 @@
-"""Where a foot touches the ground: the rectangle inside the lowest face of its shapes."""
+"""The soles: the rectangle inside the lowest face of a foot's shapes, where it touches the ground."""
 
 from dataclasses import dataclass
 
@@ -44,7 +44,7 @@ def sole_of(points: Array, upright: Array, link: str, robot: str) -> SolePlate:
         points: vertices of its shapes in the frame of its joint, shape (n, 3) [m].
         upright: axes forward, left and up as columns in that frame, as far as they are known, shape (3, 3).
         link: for messages.
-        robot: likewise.
+        robot: name of the robot, for messages.
 
     Raises:
         RobotError: no face of the foot is a sole.

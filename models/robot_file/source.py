@@ -8,15 +8,15 @@ from xml.etree import ElementTree
 import numpy as np
 import pinocchio as pin
 
-from surefoot.models.robot_file.base import base_frame, based_on, held_by, moved, told
+from surefoot.models.robot_file.base import base_frame, base_note, based_on, held_by, moved
 from surefoot.models.robot_file.bindings import Binding, Follower
 from surefoot.models.robot_file.document import Node, number
 from surefoot.models.robot_file.files import Document
 from surefoot.models.robot_file.magnitudes import Part, check_parts
 from surefoot.models.robot_file.quantities import INERTIA, LENGTH, MASS
 from surefoot.models.robot_file.schema import RobotFile
-from surefoot.models.robot_file.shapes import Shape, Told, urdf_shapes
-from surefoot.models.robot_file.sift import told_absent
+from surefoot.models.robot_file.shapes import Remarks, Shape, urdf_shapes
+from surefoot.models.robot_file.sift import absent_notes
 from surefoot.models.robot_file.urdf import kinematics
 from surefoot.models.robot_file.urdf_schema import absent_of
 from surefoot.models.types import Array, RobotError
@@ -25,7 +25,7 @@ ROOT = "floating base\n"
 """Name of the joint of the floating base, which no name of a model is, since those can be printed."""
 
 SITES = ("imu", "left_sole", "right_sole")
-"""Of every description."""
+"""Sites of every description."""
 
 RESERVED = ("world", "universe")
 """Names that the engines give to what stands still."""
@@ -92,7 +92,7 @@ def _freed(source: Source) -> Source:
     if held:
         data = model.createData()
         pin.computeSubtreeMasses(model, data)
-        source.notes.append(told(held, data.mass[1] - data.mass[joint]))
+        source.notes.append(base_note(held, data.mass[1] - data.mass[joint]))
     if not moved(model, joint, base):
         return source
     model = based_on(model, joint, base)
@@ -106,12 +106,12 @@ def _freed(source: Source) -> Source:
 
 def _read_urdf(file: RobotFile, document: Document) -> Source:
     root, path, source_notes = document.root, document.path, list[str]()
-    left_out = list(told_absent(absent_of(root)))
+    left_out = list(absent_notes(absent_of(root)))
     followers = dict(_mended_joints(root, source_notes))
     parts = tuple(_checked_inertias(root, file, path, source_notes))
-    told = Told(source_notes, left_out)
-    visual = urdf_shapes(root, path, "visual", told)
-    collision = urdf_shapes(root, path, "collision", told, visual)
+    remarks = Remarks(source_notes, left_out)
+    visual = urdf_shapes(root, path, "visual", remarks)
+    collision = urdf_shapes(root, path, "collision", remarks, visual)
     try:
         model = pin.buildModelFromXML(kinematics(root), pin.JointModelFreeFlyer(), ROOT)
     except Exception as error:

@@ -18,12 +18,12 @@ from surefoot.models.robot_file.touch import Hull, shape_name
 from surefoot.models.types import Coupling
 
 SOLE_THICKNESS = 0.02
-"""Of the contact box over the leg's length [-]."""
+"""Thickness of the sole's contact box over the leg's length [-]."""
 
 
 @dataclass(frozen=True, slots=True)
 class Parts:
-    """What the text of a robot is made of.
+    """The parts of a robot's text.
 
     Attributes:
         name: of the robot.

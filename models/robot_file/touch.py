@@ -1,4 +1,4 @@
-"""Which links touch each other, and which are kept apart: convex hulls, and pairs of them."""
+"""The links that touch each other, and those that are kept apart: convex hulls, and pairs of them."""
 
 import itertools
 from contextlib import suppress
@@ -38,7 +38,7 @@ class Hull:
 
 
 _LEAST_VOLUME = 1e-12
-"""Of a contact shape, below which an engine takes it for flat [m^3]."""
+"""Volume of a contact shape, below which an engine takes it for flat [m^3]."""
 
 
 def find_hulls(reduced: Reduced, legs: tuple[Leg, Leg], upper: Upper) -> dict[int, Hull]:

@@ -171,8 +171,8 @@ def with_upright(reduced: Reduced, torso: int) -> Reduced:
     if torso == 1 or angle < _SAME:
         return reduced
     turn(reduced.model, torso, R.T)
-    told = f"the frame of '{reduced.bodies[torso - 1]}' is turned by {np.degrees(angle):.3g} deg"
-    reduced.notes.append(f"{told}, so that it is upright at zero angles")
+    note = f"the frame of '{reduced.bodies[torso - 1]}' is turned by {np.degrees(angle):.3g} deg"
+    reduced.notes.append(f"{note}, so that it is upright at zero angles")
     back = pin.SE3(R, np.zeros(3))
     visual, collision = list(reduced.visual), list(reduced.collision)
     for shapes in (visual, collision):

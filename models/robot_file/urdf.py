@@ -9,10 +9,10 @@ from surefoot.models.types import nearest
 MOST_LINKS, MOST_SHAPES = 1_000, 2_000
 
 _LEAST = 1e-6
-"""Of the largest part of an axis."""
+"""Smallest part of an axis that counts, over the largest one [-]."""
 
 _PARTS = ("inertial", "visual", "collision", "origin", "axis", "limit", "color")
-"""Of links, joints and materials, what is read of numbers; others are for other programs."""
+"""Parts of links, joints and materials of which numbers are read; others are for other programs."""
 
 _JOINTS = ("revolute", "continuous", "prismatic", "fixed", "floating", "planar")
 

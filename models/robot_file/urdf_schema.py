@@ -37,7 +37,7 @@ URDF_ELEMENTS = (
     Elements(Fate.REFUSED, "gazebo", "joint", _LOOP),
     Elements(Fate.REFUSED, "", "loop_joint drake:linear_bushing_rpy drake:ball_constraint tendon", _LOOP),
 )
-"""What is in links, joints and materials; parts of inertials and shapes are read as the specification has them."""
+"""Elements in links, joints and materials; parts of inertials and shapes are read as the specification has them."""
 
 _BY_PATH = {path: group for group in URDF_ELEMENTS for path in group.paths}
 _WITHIN = ("link", "joint", "material", "gazebo")
@@ -86,6 +86,6 @@ def _shared(node: Node) -> str:
 
 
 def _says_nothing(node: Node) -> bool:
-    """Whether an element has numbers alone, and all are zero."""
+    """Return true if an element has numbers alone, and all are zero."""
     values = [number(token) for text in node.attrib.values() for token in text.split()]
     return bool(values) and not len(node) and all(value == 0.0 for value in values)

@@ -47,8 +47,8 @@ def sole_rates(angles: Array, rates: Array, accelerations: Array) -> tuple[Array
         rates: their rates, shape (3,) [rad/s].
         accelerations: their second derivatives, shape (3,) [rad/s^2].
     """
-    told, turning, bending = (algebra.vector(np.asarray(part, float)) for part in (angles, rates, accelerations))
-    return np.array(sole_spin(told, turning)), np.array(sole_spin_rate(told, turning, bending))
+    angle, turning, bending = (algebra.vector(np.asarray(part, float)) for part in (angles, rates, accelerations))
+    return np.array(sole_spin(angle, turning)), np.array(sole_spin_rate(angle, turning, bending))
 
 
 def sole_spin(angles: algebra.Vector, rates: algebra.Vector) -> algebra.Vector:
@@ -83,7 +83,7 @@ def roll_sole(
         pitch: by which it is turned [rad].
         rate: of that [rad/s].
         centre: to be written, shape (3,) [m]; it may be part of `level`.
-        velocity: likewise, shape (3,) [m/s], of `rates`.
+        velocity: to be written, shape (3,) [m/s]; it may be part of `rates`.
     """
     angles, turning = algebra.vector(level[3:]), algebra.vector(rates[3:])
     sine, cosine = math.sin(pitch), math.cos(pitch)

@@ -75,7 +75,7 @@ def sole_corners(footstep: Footstep, half_size: Array) -> Array:
 
 
 def points_of_sole(footstep: Footstep, points: Array) -> Array:
-    """Points of a sole seen from above, which are told in its own frame, shape (n, 2) [m]."""
+    """Points of a sole seen from above, given in its own frame, shape (n, 2) [m]."""
     R, placed = sole_rotation(footstep.yaw, *sole_angles(footstep.normal, footstep.yaw)), np.empty((len(points), 2))
     place_points(footstep.position, R, points, placed)
     return placed
@@ -194,7 +194,7 @@ def quintic(start: Array, end: Array, duration: float) -> Array:
 
 
 greatest = np.maximum.reduce
-"""Of an array along its first axis; the method ``max`` goes through Python first."""
+"""The largest of an array along its first axis; the method ``max`` goes through Python first."""
 
 
 def shifted(coefficients: Array, time: float) -> Array:
@@ -223,5 +223,8 @@ def yaw_rotations(yaw: Array) -> Array:
     Args:
         yaw: shape (n,) [rad].
     """
-    c, s, zero, one = np.cos(yaw), np.sin(yaw), np.zeros_like(yaw), np.ones_like(yaw)
+    c = np.cos(yaw)
+    s = np.sin(yaw)
+    zero = np.zeros_like(yaw)
+    one = np.ones_like(yaw)
     return np.moveaxis(np.array(((c, -s, zero), (s, c, zero), (zero, zero, one))), -1, 0)

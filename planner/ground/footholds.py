@@ -1,4 +1,4 @@
-"""What may be done with footsteps on a ground: where they land freely, and where each was chosen for its face."""
+"""The freedom of footsteps on a ground: they land anywhere, or each was chosen for its face."""
 
 from dataclasses import dataclass
 
@@ -23,10 +23,10 @@ class Footholds:
         return most if self.follow else min(ahead, most)
 
     def shifted(self, shift: Array, yaw: float, room: Array) -> Array:
-        """How far a footstep goes that is to be shifted, world frame, shape (2,) [m].
+        """Shift of a footstep that its face allows, world frame, shape (2,) [m].
 
         Args:
-            shift: by so much, likewise.
+            shift: by which it is to be shifted, world frame, shape (2,) [m].
             yaw: its heading [rad].
             room: least and greatest way on its face in that heading, shape (2, 2) [m].
         """
@@ -34,12 +34,12 @@ class Footholds:
         return shift if self.follow else np.asarray(axes @ np.clip(shift @ axes, *room))
 
     def crossed(self, lift: float) -> bool:
-        """Whether a foot may land beyond its stance foot, with a step that takes the body so much higher [m].
+        """Return true if a foot may land beyond its stance foot, with a step that takes the body so much higher [m].
 
         On faces a leg that lets the body down has its knee in the way.
         """
         return self.follow or lift >= 0.0
 
     def edged(self, climb: float) -> bool:
-        """Whether edges are before a foot that lands so much higher than it stood [m]."""
+        """Return true if edges are before a foot that lands so much higher than it stood [m]."""
         return not self.follow and climb != 0.0

@@ -11,7 +11,7 @@ from surefoot.planner.ground.terrain import HALF_WIDTH, Box, Site, Terrain
 
 
 class Direction(Enum):
-    """Which way a staircase goes."""
+    """The direction in which a staircase goes."""
 
     UP = "up"
     DOWN = "down"

@@ -15,7 +15,7 @@ HALF_WIDTH = 1.0
 """Half of the lateral extent of stairs and slopes [m]."""
 
 DEEPER = 0.05
-"""How far tilted solids reach below the ground plane at least, and the lowest blocks rise above it [m]."""
+"""Least depth of tilted solids below the ground plane, and least height of the lowest blocks above it [m]."""
 
 _FREE, _FACES = Footholds(follow=True), Footholds(follow=False)
 
@@ -53,7 +53,7 @@ class Box:
         return z, np.min(self.half_size[:2] - np.abs(local), axis=1)
 
     def touched(self, soles: Array, half: Array) -> NDArray[np.bool_]:
-        """Which soles have a part over it: rectangles on the ground are apart if an axis of one of them parts them.
+        """Mark the soles with a part over it: rectangles on the ground are apart if an axis of one of them parts them.
 
         Args:
             soles: places and headings, shape (n, 3) [m, rad].
@@ -93,12 +93,12 @@ class Terrain:
 
     @property
     def has_edges(self) -> bool:
-        """Whether there is anything that a swing foot may have to clear."""
+        """True if there is anything that a swing foot may have to clear."""
         return bool(self.boxes)
 
     @property
     def footholds(self) -> Footholds:
-        """What may be done with footsteps: they were chosen for its faces unless these are wide, or there are none."""
+        """The freedom of footsteps: they were chosen for its faces unless these are wide, or there are none."""
         return _FREE if self.wide or not self.boxes else _FACES
 
     def height(self, x: float, y: float) -> float:
@@ -158,7 +158,13 @@ class Terrain:
         return margins
 
     def carries(self, soles: Array, half: Array, number: int) -> bool:
-        """Whether a sole [m] has a part over a box that other ground does not bury there; as of `Box.touched`."""
+        """Return true if a sole has a part over a box that other ground does not bury there.
+
+        Args:
+            soles: places and headings, shape (n, 3) [m, rad].
+            half: half length and width of a sole, shape (2,) [m].
+            number: of the box.
+        """
         box = self.boxes[number]
         over = soles[box.touched(soles, half)]
         ahead = np.stack([np.cos(over[:, 2]), np.sin(over[:, 2])], axis=-1)
@@ -171,7 +177,7 @@ class Terrain:
         return bool((free.any(axis=1) | ~within.any(axis=1)).any())
 
     def free_area(self, position: Array, yaw: float, half_size: Array, length: float = 1.0) -> Array:
-        """How far a sole may be moved on the face that carries it, ahead and to the left of where it was to land.
+        """Room of a sole on the face that carries it, ahead and to the left of where it was to land.
 
         Args:
             position: where it was to, shape (3,) [m].
@@ -224,7 +230,7 @@ def _unknown() -> tuple[Footstep, ...]:
 
 @dataclass(frozen=True, slots=True)
 class Site:
-    """Where ground is built, and for which walk.
+    """The place where ground is built, and the walk for which it is.
 
     Attributes:
         origin: start of the walk in the world frame, x, y, shape (2,) [m].

@@ -16,7 +16,7 @@ TILE = 0.5
 """Side of a tile, as of a paving slab, for the reference robot [m]."""
 
 AROUND = 2
-"""How many tiles are laid around the one that a footstep is on, to each side [-]."""
+"""Number of tiles that are laid around the one that a footstep is on, to each side [-]."""
 
 _WINDOW = np.array(list(product(range(-AROUND, AROUND + 1), repeat=2)))
 
@@ -57,7 +57,7 @@ class Tiles:
         return Terrain(tuple(boxes), site.friction, plane=-self.noise)
 
     def cells(self, site: Site) -> NDArray[np.int64]:
-        """Which tiles of the grid are laid, ordered, shape (n, 2)."""
+        """Tiles of the grid that are laid, ordered, shape (n, 2)."""
         rotation, origin = self._grid(site)
         places = np.array([step.position[:2] for step in site.footsteps()])
         under = np.floor((places - origin) @ rotation[:2, :2] / self.side).astype(np.int64)

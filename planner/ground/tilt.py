@@ -10,7 +10,7 @@ from surefoot.planner.ground.terrain import DEEPER, Box, Site, Terrain
 from surefoot.planner.types import Array
 
 FAR = 50.0
-"""How far the ground reaches to each side, farther than any walk goes, for the reference robot [m]."""
+"""Reach of the ground to each side, farther than any walk goes, for the reference robot [m]."""
 
 
 @dataclass(frozen=True, slots=True)

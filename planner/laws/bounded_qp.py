@@ -39,7 +39,10 @@ class BoundedQp(DualMethod):
     def __init__(self, rows: int, variables: int) -> None:
         # No more than n normals are independent of each other.
         super().__init__(2 * variables + rows, variables + 1, MOST_ROUNDS, DEPENDENT)
-        self._n, self._rows, self._tolerance, self.is_definite = variables, rows, TOLERANCE, False
+        self._n = variables
+        self._rows = rows
+        self._tolerance = TOLERANCE
+        self.is_definite = False
         self._U, self._R = np.zeros((variables, variables)), np.zeros((variables, variables))
         # Transposed, since both are used by columns.
         self._U_inverse, self._J = np.zeros((variables, variables)), np.zeros((variables, variables))

@@ -10,8 +10,8 @@ with the response P to the moves, the free motion x(k) from what the state diffe
 γ of the reference to the shifts, and the weights w of `planner.model.dcm.viability_weights` over the preview.
 
 Cost (eq. (7) with what it lacks): squared ZMP error, terminal DCM error, footstep shifts, moves, slacks. The terminal
-cost is what the best linear feedback would still spend on the squared ZMP error after the horizon; without it the
-optimum prefers a constant ZMP error of millimetres to paying once for its correction.
+cost is the squared ZMP error that the best linear feedback leaves after the horizon. Without it the optimum keeps a
+constant ZMP error of millimetres.
 
 All constraints on the motion are soft (the paper's hard ones are infeasible under noise), so that the problem always
 has a solution. The paper's box (eq. (9)) is printed as an equality that is not centred on the foot; here it is
@@ -84,7 +84,10 @@ class FootstepQps:
             problem: this tick; its last jerk enters only with a finite rate limit.
         """
         steps, reference, size = problem.steps, problem.reference, self.size
-        P, q, G, h = np.zeros((size, size)), np.zeros((2, size)), np.zeros((self.rows, size)), np.empty((2, self.rows))
+        P = np.zeros((size, size))
+        q = np.zeros((2, size))
+        G = np.zeros((self.rows, size))
+        h = np.empty((2, self.rows))
         lower, upper = np.empty((2, size)), np.empty((2, size))
         if len(problem.stiffness) != self._count:
             self._look(len(problem.stiffness))
@@ -102,7 +105,7 @@ class FootstepQps:
     def _predict(
         self, state: Array, stiffness: Array, omega: Array, point: Array, gain: Array, half_size: Array
     ) -> None:
-        """Errors of a window: its first argument as of `MotionProblem`, the last three as of its reference."""
+        """Errors of a window: by its state, and by point, gain and half size of its ZMP reference."""
         n = self._horizon
         self._begin(state, point, stiffness)
         dcm.fade(stiffness[n:], omega[n:], self._sample_time, self._decay)
@@ -122,7 +125,7 @@ class FootstepQps:
             self._beside[axis, 2] = state[axis, 2] - self._nominal.a[0, axis]
 
     def _free(self, axis: int, time: float) -> algebra.Vector:
-        """What position, velocity and acceleration differ by from the nominal ones after a time without moves."""
+        """Difference of position, velocity and acceleration from the nominal ones after a time without moves."""
         x, v, a = self._beside[axis, 0], self._beside[axis, 1], self._beside[axis, 2]
         return x + time * v + (0.5 * time * time) * a, v + time * a, a
 
@@ -141,7 +144,7 @@ class FootstepQps:
                 self._box[axis, k - 1] = half_size[k, axis]
 
     def _end_errors(self, omega: float, gain: Array, half_size: Array) -> None:
-        """Their last row: the error of the DCM at the end of the horizon, and its bound."""
+        """The last row of the errors: the error of the DCM at the end of the horizon, and its bound."""
         n, m, P = self._horizon, self._moves, self._response
         period = 1.0 / omega
         for j in range(m):
@@ -210,9 +213,9 @@ class FootstepQps:
 
         Args:
             lower: to be written, shape (axis, size).
-            upper: likewise.
+            upper: to be written, shape (axis, size).
             least: of the shifts, shape (step, axis) [m].
-            most: likewise.
+            most: of the shifts, shape (step, axis) [m].
         """
         m = self._moves
         for axis in range(2):

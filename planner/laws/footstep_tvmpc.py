@@ -17,7 +17,7 @@ from surefoot.planner.references.leg_offset import softening
 from surefoot.planner.types import GRAVITY, SolverStatus
 
 _STATUSES = tuple(SolverStatus)
-"""By the number of solvers that have failed."""
+"""Statuses by the number of solvers that have failed."""
 
 
 class FootstepTvmpc:

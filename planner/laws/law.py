@@ -1,4 +1,4 @@
-"""What a law of motion is: one problem in, one motion out, with a QP per axis between them or without.
+"""A law of motion: one problem in, one motion out, with a QP per axis between them or without.
 
 A law of another package needs nothing but this module: a class with `plan`, and a `planner.laws.profiles.Profile` that
 makes it. Laws that solve QPs do so in three public steps, `build`, `solve` and `interpret`, so that each can be looked
@@ -44,7 +44,7 @@ class StepContext:
 
 @dataclass(frozen=True)
 class MotionProblem:
-    """What is known of one tick, in the plan frame (origin and heading of the stance foot, or of the last landed one).
+    """The data of one tick, in the plan frame (origin and heading of the stance foot, or of the last landed one).
 
     The window is the horizon of N samples and a preview of M more. The pendulum is c'' = λ (c - p) for the ZMP p of
     the reference; what the swing leg adds to the ZMP is already taken out of the reference.
@@ -83,14 +83,14 @@ class MotionProblem:
         rotation: Array,
         memory: Array | None = None,
     ) -> "MotionProblem":
-        """That after a jerk sequence, of which the jerk and the fallback follow.
+        """Problem after a jerk sequence, of which the jerk and the fallback follow.
 
         Args:
             before: the previous jerk sequence in the world frame, shape (N, 2) [m/s^3].
-            state: as of the attribute, shape (2, 3) [m, m/s, m/s^2].
+            state: CoM, its velocity and acceleration per axis, shape (2, 3) [m, m/s, m/s^2].
             window: stiffness and omega, shape (N + M + 1,) each [1/s^2, 1/s], and reference.
-            steps: as of the attribute.
-            rotation: likewise, shape (2, 2) [-].
+            steps: the next two footsteps.
+            rotation: plan frame to world, shape (2, 2) [-].
             memory: vectors that the law's last motion left, turned to the world frame.
         """
         turned, (stiffness, omega, reference) = np.zeros((len(before) + 1, 2)), window
@@ -108,7 +108,7 @@ class Motion:
         shifts: shifts of the next two footsteps, shape (step, axis) = (2, 2) [m].
         zmp_slack: violation of the ZMP box that was accepted, per axis; NaN for an axis that was not solved, shape (2,)
             [m].
-        terminal_slack: violation of the terminal DCM bound, likewise, shape (2,) [m].
+        terminal_slack: violation of the terminal DCM bound that was accepted, per axis, shape (2,) [m].
         solver: the worse status of the two axes.
         infeasible: a hard problem had no solution and was softened.
         qps: the problems that were solved, x and y axis, to be looked at or stored; none where a law needs no QP.
@@ -155,7 +155,7 @@ class QpLaw(MotionPlanner, Protocol):
         """The QPs of a tick."""
 
     def solve(self, built: BuiltQps) -> tuple[QpSolution, QpSolution]:
-        """Their solutions."""
+        """Solve the problems."""
 
     def interpret(self, problem: MotionProblem, built: BuiltQps, solutions: tuple[QpSolution, QpSolution]) -> Motion:
         """The motion that the solutions mean."""

@@ -1,4 +1,4 @@
-"""Which profiles of the planner there are; their laws are imported when one is asked for."""
+"""The profiles of the planner; their laws are imported when one is asked for."""
 
 from typing import TYPE_CHECKING
 

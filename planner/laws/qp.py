@@ -87,7 +87,7 @@ class AxesSolver:
     """Solves QPs that share P and G, by `BoundedQp` in place of DAQP as far as that can.
 
     Args:
-        solvers: as of `solve`.
+        solvers: names known to qpsolvers, in the order to try.
     """
 
     def __init__(self, solvers: tuple[str, ...]) -> None:
@@ -95,7 +95,7 @@ class AxesSolver:
         self._bounded, self._shape = BoundedQp(0, 0), (0, 0)
 
     def solve(self, x: Qp, y: Qp) -> tuple[QpSolution, QpSolution]:
-        """Their solutions, as those of `solve`."""
+        """Solve both; see `solve`."""
         if self._solvers[:1] != ("daqp",):
             return solve(x, self._solvers), solve(y, self._solvers)
         self._factorise(x)

@@ -23,12 +23,12 @@ from surefoot.planner.types import Array, SolverStatus
 
 
 def paper_shift(problem: MotionProblem, parameters: PlannerParameters) -> Array:
-    """As printed in eq. (14): S_L(t) = (ζ_t - f_i) e^{ω (T_ss + T_ds - t)}, in both axes.
+    """Shift as printed in eq. (14): S_L(t) = (ζ_t - f_i) e^{ω (T_ss + T_ds - t)}, in both axes.
 
     Changes within the compliance margin are not made; the footstep is saturated in the reach box. The law is kept with
-    what is wrong in it, for comparison: the foot lands T_ds earlier than it counts with, it steps *onto* the DCM, where
-    a walk would stop, and it amplifies a DCM error by up to e^{2 ω} = 523. It changes nominal steps, and a walk with it
-    falls without any push.
+    its faults, for comparison. The foot lands T_ds earlier than the law assumes. It steps *onto* the DCM, where a walk
+    would stop. It amplifies a DCM error by up to e^{2 ω} = 523. It changes nominal steps, and a walk with it falls
+    without any push.
 
     Args:
         problem: the tick; the stance foot f_i is the origin of the plan frame.
@@ -51,9 +51,9 @@ def paper_shift(problem: MotionProblem, parameters: PlannerParameters) -> Array:
 def corrected_shift(problem: MotionProblem, parameters: PlannerParameters) -> Array:
     """The law that a walk needs: f = ξ_T - b, with the DCM ξ_T at touchdown that the CoP can no longer prevent.
 
-    Erratum: eq. (14) counts until T_ss + T_ds and steps onto the DCM; here the horizon ends at touchdown, b is
-    the offset of the DCM from the foot in the nominal gait, and only what the CoP cannot correct until then is left to
-    the foot, because a gain of e^{ω (T_ss + T_ds)} turns 0.1 mm of DCM error into a step of 5 cm.
+    Erratum: eq. (14) counts until T_ss + T_ds and steps onto the DCM; here the horizon ends at touchdown, and b is the
+    offset of the DCM from the foot in the nominal gait. Only what the CoP cannot correct until then is left to the
+    foot, because a gain of e^{ω (T_ss + T_ds)} turns 0.1 mm of DCM error into a step of 5 cm.
 
     Without DCM error the step is the nominal one. A shift d of the foot moves the DCM that its future ZMP keeps bounded
     by g d at touchdown, with g < 1 as the ZMP reaches the new foot only during double support. The shift stays within
@@ -93,9 +93,8 @@ def build_hard_problem(
     those of the jerk's rate. A block of several samples may change the jerk by the rate times the samples since the
     last block began; the first one, the only one that is applied, begins one sample after the last jerk.
 
-    - Erratum: eq. (9) prints G = [0.9 L_f/2, -0.9 L_f/2] for F = [1, -1]; here both are +0.9 L_f/2 and
-      count from the moving reference, because as printed the ZMP would have to equal +34 mm and the box would not
-      follow the feet.
+    - Erratum: eq. (9) prints G = [0.9 L_f/2, -0.9 L_f/2] for F = [1, -1]; here both are +0.9 L_f/2 and count from the
+      moving reference. As printed the ZMP would have to equal +34 mm, and the box would not follow the feet.
     - Erratum: eq. (8) runs over j = 0..N_p; here 1..N_p, because C has no feed-through and y(k) is past.
     - Erratum: z_k of eq. (7) holds N_p increments; here N_c, as announced.
     - Erratum: the rate of change of the jerk is limited to "0.1" without a unit; here per sample, because no motion at
@@ -134,8 +133,8 @@ def build_hard_problem(
 def softened(qp: Qp, hard: slice, cost: tuple[float, float]) -> Qp:
     """The same problem with one slack s >= 0 on all rows but the hard ones, as the last variable.
 
-    Erratum: ε = [0, 0] of eq. (9), "the solution must always satisfy it"; here a slack steps in when it
-    cannot, because with the paper's own parameters the hard problem has no solution at a third of all ticks.
+    Erratum: ε = [0, 0] of eq. (9), "the solution must always satisfy it"; here a slack steps in when it cannot. With
+    the paper's own parameters the hard problem has no solution at a third of all ticks.
 
     Args:
         qp: problem without a solution.

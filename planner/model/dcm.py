@@ -90,12 +90,12 @@ def weigh(decay: Array, weights: Array) -> None:
 
 
 def weight(decay: Array, k: int) -> float:
-    """That of sample k: w_k = (d_{k-1} - d_k) / 2 + (d_k - d_{k+1}) / 2, and d_k in place of the last half."""
+    """Weight of sample k: w_k = (d_{k-1} - d_k) / 2 + (d_k - d_{k+1}) / 2, and d_k in place of the last half."""
     return (share(decay, k - 1) if k > 0 else 0.0) + share(decay, k)
 
 
 def share(decay: Array, k: int) -> float:
-    """What each end of the interval after sample k counts by: (d_k - d_{k+1}) / 2, and d_k after the last one."""
+    """Weight of each end of the interval after sample k: (d_k - d_{k+1}) / 2, and d_k after the last one."""
     last = decay.shape[0] - 1
     counted: float = 0.5 * (decay[k] - decay[k + 1]) if k < last else decay[last]
     return counted

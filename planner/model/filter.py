@@ -20,8 +20,8 @@ ZMP_ONLY = (True, False, False)
 class FilterNoise:
     """Standard deviations that a filter counts on.
 
-    The defaults of the process are small against those of the sensors: position and acceleration come from the model,
-    and what no model knows of (the low level's corrections, pushes) enters as a change of velocity.
+    The defaults of the process are small against those of the sensors, since position and acceleration come from the
+    model. Corrections of the low level and pushes, which no model knows, enter as a change of velocity.
 
     Attributes:
         zmp: of the measured ZMP; large, since it also holds what the point mass has not got [m].

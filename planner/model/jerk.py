@@ -2,8 +2,8 @@
 
 The Δu form Y = S_x x(0) + S_u1 u(-1) + S_u ΔU is eq. (10) and eq. (11) of the paper. Errata of eq. (11):
 
-- Erratum: the first row of S_u is printed as zeros and the second as "S_u1 C(2)B(1)"; here row i, column j <= i is
-  C(i) Σ_k [Π A] B(k) with k from j, because a line break was lost: y(1) depends on Δu(0) as it does on u(-1).
+- Erratum: the first row of S_u is printed as zeros and the second as "S_u1 C(2)B(1)"; here row i, column j <= i is C(i)
+  Σ_k [Π A] B(k) with k from j. A line break was lost in print: y(1) depends on Δu(0) as it does on u(-1).
 - Erratum: the products Π A(i) are printed without an order; here later matrices stand on the left, because
   x(k+1) = A(k) x(k) + B(k) u(k).
 - Erratum: S_u is printed with N_p columns although N_c < N_p moves are announced; here only the columns of samples at
@@ -126,12 +126,12 @@ def zmp_response(response: Array, stiffness: Array) -> Array:
 
 @dataclass(frozen=True, slots=True)
 class CachedResponse:
-    """What of the Δu form of the jerk-driven CoM does not depend on λ.
+    """The part of the Δu form of the jerk-driven CoM that does not depend on λ.
 
     Attributes:
         position: P_x, response of the position to x(0), u(-1) and ΔU side by side, shape (N, 4 + m).
-        acceleration: P_a, likewise, shape (N, 4 + m).
-        last: responses (x, x', x'') at sample N, likewise, shape (3, 4 + m).
+        acceleration: P_a, response of the acceleration to the same, shape (N, 4 + m).
+        last: responses (x, x', x'') to the same at sample N, shape (3, 4 + m).
     """
 
     position: Array

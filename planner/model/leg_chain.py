@@ -22,7 +22,7 @@ knee of a straight leg would move infinitely fast. Two per cent cost ordinary wa
 pushes of the paper's gait fell that are survived with one [-]."""
 
 _GUESS = -0.1
-"""Where the middle of the hips is sought at first, from the CoM: below it, as in any walk [m]."""
+"""Height of the middle of the hips from the CoM where its search begins: below it, as in any walk [m]."""
 
 HIPS, KNEES, ANKLES, FEET, TRUNK, BESIDE = 0, 2, 4, 6, 8, 9
 """First rows of points of a body: of the left and then of the right leg each; `BESIDE` are ways from rods to CoMs, of
@@ -122,12 +122,20 @@ class LegChain:
     def joints(
         self, com: Array, soles: Array, heading: Array, pitch: Array | None = None, toe: float = 0.0
     ) -> tuple[Array, Array, Array]:
-        """Hips, knees and ankles in the world, shape (2, n, 3) each [m]; arguments as of `momentum_rate`."""
+        """Hips, knees and ankles in the world, shape (2, n, 3) each [m]; the arguments are those of `body`."""
         points = self.body(com, soles, heading, pitch, toe).points.swapaxes(1, 2) + com
         return points[HIPS:KNEES], points[KNEES:ANKLES], points[ANKLES:FEET]
 
     def body(self, com: Array, soles: Array, heading: Array, pitch: Array | None = None, toe: float = 0.0) -> "Body":
-        """The body placed at samples; arguments as of `momentum_rate`."""
+        """The body placed at samples.
+
+        Args:
+            com: CoM, shape (n, 3) [m].
+            soles: centres of the left and the right sole, shape (2, n, 3) [m].
+            heading: of the left and the right knee and foot, shape (2, n) [rad].
+            pitch: of the soles about their toe edges, heel up positive, shape (2, n) [rad]; level by default.
+            toe: toe edge from the sole's centre [m].
+        """
         body = Body(self, toe, len(com))
         body.turn_legs(heading, np.zeros_like(heading) if pitch is None else pitch, len(com))
         body.place(com, soles, len(com))
@@ -135,13 +143,13 @@ class LegChain:
 
     @property
     def links_beside(self) -> bool:
-        """Whether the CoM of a link lies beside the line between its joints."""
+        """Return true if the CoM of a link lies beside the line between its joints."""
         return any(link.ahead or link.outward for link in (self.thigh, self.shank))
 
     def mass_pairs(self) -> Iterator[tuple[int, int, float]]:
         """Points i and j and their mass M_ij [-], of which the momentum is Σ M_ij x_i x x_j', row by row.
 
-        Those on rods are told by the mass matrices of these. With a the point of a rod beside its CoM, and b the way
+        Those on rods follow from the mass matrices of these. With a the point of a rod beside its CoM, and b the way
         from there to it, Σ m (a x b'' + b x a'') counts too; b x b'' is in the rods' inertia.
         """
         count = BESIDE + 4 if self.links_beside else BESIDE
@@ -267,12 +275,13 @@ class Body:
 
     def _pitched(self, way: Vector, ahead: float, outward: float, leg: int, k: int) -> Vector:
         """A way in a foot that is pitched heel up about a point so far ahead."""
-        c, s, cp, sp = self._c[leg, k], self._s[leg, k], self._cp[leg, k], self._sp[leg, k]
+        c, s = self._c[leg, k], self._s[leg, k]
+        cp, sp = self._cp[leg, k], self._sp[leg, k]
         x, y = ahead + cp * way[0] + sp * way[2], way[1] + outward
         return x * c - y * s, x * s + y * c, cp * way[2] - sp * way[0]
 
     def _place_legs(self, count: int) -> None:
-        """Hips beside the middle of the pelvis, where the trunk's point is told, and knees."""
+        """Hips beside the middle of the pelvis, where the trunk's point is placed, and knees."""
         for leg in range(2):
             self._place_hip(leg, count)
             for k in range(count):
@@ -328,8 +337,9 @@ class Body:
 
     def _correct(self, count: int) -> None:
         """Move the middle of the pelvis by what the CoM is off."""
-        m, at_hip, at_knee, at_ankle = self._trunk_mass, self._at_hip, self._at_knee, self._at_ankle
-        thigh, shank, own, share = self._thigh_pull, self._shank_pull, self._own, 1.0 / self._carried
+        m, share = self._trunk_mass, 1.0 / self._carried
+        at_hip, at_knee, at_ankle = self._at_hip, self._at_knee, self._at_ankle
+        thigh, shank, own = self._thigh_pull, self._shank_pull, self._own
         for k in range(count):
             c, s, middle = self._c[_MIDDLE, k], self._s[_MIDDLE, k], self._point(TRUNK, k)
             one, other = self._point(HIPS, k), self._point(HIPS + 1, k)
@@ -349,7 +359,9 @@ class Body:
 
     def _settle(self, k: int) -> None:
         """Put the trunk's CoM beside the middle of the pelvis, and the links' beside their rods."""
-        c, s, middle, trunk = self._c[_MIDDLE, k], self._s[_MIDDLE, k], self._point(TRUNK, k), self._trunk
+        c, s = self._c[_MIDDLE, k], self._s[_MIDDLE, k]
+        middle = self._point(TRUNK, k)
+        trunk = self._trunk
         x, y = trunk[0] * c - trunk[1] * s, trunk[0] * s + trunk[1] * c
         self._put(TRUNK, k, (middle[0] + x, middle[1] + y, middle[2] + trunk[2]))
         if self._links_beside:

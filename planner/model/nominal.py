@@ -1,8 +1,8 @@
 """The CoM motion with nothing to correct: what of a plan's motion is known before anything is optimised.
 
-A few blocks of jerk cannot follow a ZMP that jumps half a metre in a tenth of a second at the far end of the horizon,
-nor a leg that swings in a third of a second; planned with them alone, fast steps are shortened for no physical reason.
-So the optimiser plans only what differs from this motion.
+A few blocks of jerk cannot follow a ZMP that jumps half a metre in a tenth of a second at the far end of the horizon.
+Nor do they follow a leg that swings in a third of a second. Planned with them alone, fast steps are shortened for no
+physical reason. So the optimiser plans only what differs from this motion.
 """
 
 import numpy as np
@@ -12,15 +12,15 @@ from surefoot.planner.types import Array
 
 
 class NominalMotion:
-    """A CoM motion with constant jerk between samples, at rest over the origin until it is told what to follow.
+    """A CoM motion with constant jerk between samples, at rest over the origin until it is given what to follow.
 
     Args:
         sample_time: length of an interval, T [s].
         count: samples.
 
     Attributes:
-        sample_time: likewise [s].
-        count: likewise.
+        sample_time: length of an interval, T [s].
+        count: samples.
         com: position, velocity, acceleration at the samples, shape (3, count, 2) [m, m/s, m/s^2].
         jerk: of each interval, shape (count - 1, 2) [m/s^3].
     """

@@ -7,7 +7,7 @@ import math
 
 
 def moving_cop(start: float, end: float, omega: float, time: float) -> float:
-    """How much a CoP that moves evenly from start to end takes off the DCM in a time [m].
+    """Decrease of the DCM in a time by a CoP that moves evenly from start to end [m].
 
     ξ(T) = e^{ωT} ξ - p0 (e^{ωT} - 1) - (p1 - p0) ((e^{ωT} - 1) / (ωT) - 1).
     """

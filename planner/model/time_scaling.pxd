@@ -4,7 +4,7 @@ from surefoot.planner.geometry cimport quintic
 from surefoot.planner.geometry.quintic cimport quintic6
 
 @cython.locals(k=Py_ssize_t, way=double, rate=double, bend=double)
-cpdef void follow(quintic6 course, double length, double begun, const double[:] time, double[:, ::1] told) noexcept
+cpdef void follow(quintic6 course, double length, double begun, const double[:] time, double[:, ::1] out) noexcept
 
 @cython.locals(t=double)
 cpdef vector3 followed(quintic6 course, double length, double time) noexcept nogil

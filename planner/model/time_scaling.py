@@ -26,7 +26,7 @@ _LOOKED_AT = 33
 """Instants of a quintic at which its rate is looked at: some four for each of its turning points [-]."""
 
 Course = tuple[float, tuple[float, ...]]
-"""What the clock showed when it began to follow a quintic [samples], and the coefficients of that."""
+"""Time of the clock when it began to follow a quintic [samples], and the coefficients of the quintic."""
 
 
 @dataclass(frozen=True)
@@ -55,24 +55,24 @@ class TimeScaling:
 
     @property
     def steady(self) -> bool:
-        """Whether the clock goes by one sample a tick."""
+        """True if the clock goes by one sample a tick."""
         return not self.coefficients or self.elapsed >= self.length - CLOCK_ROUNDING
 
     @property
     def course(self) -> Course:
-        """The last quintic, by which two scalings are told apart; without coefficients of a clock that was set."""
+        """The last quintic, by which two scalings are distinguished; without coefficients of a clock that was set."""
         return self.begun, self.coefficients
 
     def at(self, ahead: Array) -> tuple[Array, Array, Array]:
         """The clock, its rate and the derivative of that by samples, so many samples from now, shape (n,) each."""
         if self.steady:
             return self.now + ahead, np.ones_like(ahead), np.zeros_like(ahead)
-        (a, b, c, d, e, f), told = self.coefficients, np.empty((3, len(ahead)))
-        follow((a, b, c, d, e, f), self.length, self.begun, self.elapsed + ahead, told)
-        return told[0], told[1], told[2]
+        (a, b, c, d, e, f), found = self.coefficients, np.empty((3, len(ahead)))
+        follow((a, b, c, d, e, f), self.length, self.begun, self.elapsed + ahead, found)
+        return found[0], found[1], found[2]
 
     def after(self, samples: float) -> float:
-        """What the clock shows so many samples from now [samples]."""
+        """Time of the clock so many samples from now [samples]."""
         if self.steady:
             return self.now + samples
         return self.begun + self._at(self.elapsed + samples)[0]
@@ -83,19 +83,19 @@ class TimeScaling:
             return instant - self.now
         return self.length - self.elapsed + instant - self.begun - self.way
 
-    def seconds(self, told: float, time: float) -> tuple[float, float, float]:
+    def seconds(self, shown: float, time: float) -> tuple[float, float, float]:
         """The clock in seconds, its rate [-] and the derivative of that [1/s] at a time.
 
         Args:
-            told: what clock and time show now [s].
+            shown: what clock and time show now [s].
             time: the instant [s].
         """
         if self.steady:
             return time, 1.0, 0.0
         t = self.sample_time
-        begin = told - self.elapsed * t
+        begin = shown - self.elapsed * t
         way, rate, bend = self._at((time - begin) / t)
-        return told + (self.begun - self.now) * t + way * t, rate, bend / t
+        return shown + (self.begun - self.now) * t + way * t, rate, bend / t
 
     def scaled(self, way: float, length: float) -> "TimeScaling":
         """The clock that goes a way in a length of time from now on [samples].
@@ -130,7 +130,7 @@ class TimeScaling:
         return followed((a, b, c, d, e, f), self.length, time)
 
 
-def follow(course: Quintic, length: float, begun: float, time: Array, told: Array) -> None:
+def follow(course: Quintic, length: float, begun: float, time: Array, out: Array) -> None:
     """The clock that follows a quintic, and after it goes at its own rate.
 
     Args:
@@ -138,11 +138,11 @@ def follow(course: Quintic, length: float, begun: float, time: Array, told: Arra
         length: time that this takes [samples].
         begun: what the clock showed when it began [samples].
         time: since then, shape (n,) [samples].
-        told: where the clock, its rate and the derivative of that by samples are written, shape (3, n).
+        out: where the clock, its rate and the derivative of that by samples are written, shape (3, n).
     """
     for k in range(time.shape[0]):
         way, rate, bend = followed(course, length, time[k])
-        told[0, k], told[1, k], told[2, k] = begun + way, rate, bend
+        out[0, k], out[1, k], out[2, k] = begun + way, rate, bend
 
 
 def followed(course: Quintic, length: float, time: float) -> tuple[float, float, float]:

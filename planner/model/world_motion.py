@@ -6,7 +6,7 @@ from surefoot.maths import algebra, linear
 from surefoot.planner.types import Array
 
 Ahead = tuple[Array, Array, Array, Array, Array]
-"""Of samples 0..N, in the plan frame.
+"""Parameters and motion at samples 0..N, in the plan frame.
 
 λ, shape (N + 1,) [1/s^2]; CoM height and its derivatives, shape (3, N + 1) [m, m/s, m/s^2]; what legs and lasting
 forces add to the ZMP, and the ZMP reference with nominal footsteps, shape (N + 1, 2) each [m]; its sensitivity to the
@@ -43,8 +43,8 @@ class WorldMotion:
 
         Args:
             com: CoM position in the world frame, shape (2 or more,) [m].
-            velocity: likewise [m/s].
-            acceleration: likewise [m/s^2].
+            velocity: of the CoM, same frame and shape [m/s].
+            acceleration: of the CoM, same frame and shape [m/s^2].
             frame: the plan frame.
         """
         (R, origin), state = frame, np.empty((2, 3))
@@ -58,7 +58,7 @@ class WorldMotion:
             state[axis, 2] = linear.fused_pair(acceleration[0], R[0, axis], acceleration[1], R[1, axis])
 
     def of(self, state: Array, jerk: Array, shifts: Array, ahead: Ahead, frame: Frame) -> tuple[Array, ...]:
-        """CoM position, velocity and acceleration, jerk, ZMP, its offset and its reference, as of a `WalkPlan`.
+        """CoM position, velocity and acceleration, jerk, ZMP, its offset and its reference, which a `WalkPlan` has.
 
         Args:
             state: CoM position, velocity, acceleration per axis, shape (2, 3).

@@ -1,4 +1,4 @@
-"""What the planner hands over at every tick, and the references that follow from it at any instant."""
+"""The plan that the planner hands over at every tick, and the references that follow from it at any instant."""
 
 from dataclasses import dataclass, field
 from typing import Protocol
@@ -75,7 +75,7 @@ class WalkPlan:
 
 
 class Planner(Protocol):
-    """What a closed loop asks of a planner; anything with this can take the place of `planner.planner.WalkingPlanner`.
+    """The planner as a closed loop sees it; anything with this can take the place of `planner.planner.WalkingPlanner`.
 
     It is asked once per `parameters.sample_time`, from time 0 on, and each plan has `parameters.horizon` samples;
     nothing else is read of its parameters.

@@ -21,14 +21,14 @@ PLACES: Mapping[str, tuple[int, int]] = {
     "zmp": (36, 2),
     "dcm": (38, 2),
 }
-"""Where quantities begin in the numbers of a sample, and how many numbers each has."""
+"""The first index of each quantity in the numbers of a sample, and how many numbers it has."""
 
 POINT = 40
 """Numbers of a sample, which are those of all its quantities: seven linear functions of time, then motions [-]."""
 
 
 def in_point(name: str) -> slice:
-    """Where a quantity is in the numbers of a sample."""
+    """The indices of a quantity in the numbers of a sample."""
     first, size = PLACES[name]
     return slice(first, first + size)
 

@@ -112,7 +112,7 @@ class PlanSampler:
         self._derive()
 
     def _polynomials(self, swing: SwingTrajectory, landed: bool) -> Array:
-        """Those of the swing foot in the time of the interval, shape (6, 6)."""
+        """Polynomials of the swing foot in the time of the interval, shape (6, 6)."""
         since = max(self._start, swing.touchdown_time) if landed else self._start
         coefficients = swing.coefficients(since)
         return coefficients if since == self._start else shifted(coefficients, self._start - since)

@@ -78,7 +78,7 @@ class Moment:
 
 
 def _distance(point: Array, to: Array, summands: list[Array]) -> float:
-    """How far a point may go in a direction within the Minkowski sum of polygons; 0 where it is not in it [m].
+    """Distance from a point in a direction to the edge of the Minkowski sum of polygons; 0 if it is not in it [m].
 
     The sum's edges are parallel to those of the polygons, and how far it goes in any direction is the sum of how far
     they do.
@@ -99,11 +99,11 @@ def _distance(point: Array, to: Array, summands: list[Array]) -> float:
 
 
 _ROUNDING = 1e-9
-"""What is less is none, since sums of shapes round by as much [m, -]."""
+"""Numbers below this count as zero, since sums of shapes are rounded by as much [m, -]."""
 
 
 def swing_box(here: Array, speed: Array, most: Array, time: float) -> tuple[Array, Array]:
-    """Where a foot can be at rest after a time: lower and upper corner, shape (2,) each [m].
+    """Box in which a foot can be at rest after a time: lower and upper corner, shape (2,) each [m].
 
     It gets farthest by full acceleration for (T - v / a) / 2 and full braking for (T + v / a) / 2.
 

@@ -1,10 +1,10 @@
-"""How far the DCM is inside what can still be captured: with every step as planned, and with steps moved.
+"""Margin of the DCM in what can still be captured: with every step as planned, and with steps moved.
 
 It is the N-step capturability of Koolen et al. (International Journal of Robotics Research 2012) for a body in the
-middle of a step, with feet of a size, what legs span and how hard they swing; each axis alone, so that all sets are
-boxes. On one foot the DCM goes away from the CoP p as ξ(t) = p + (ξ - p) e^{ωt}. With k = e^{-ωT} of the shortest cycle
-T, feet of half size a and steps that land near to far beside each other, who has just landed comes to rest over the
-m-th foot from now exactly from
+middle of a step. Feet have a size, legs a span and a swing acceleration. Each axis is taken alone, so that all sets are
+boxes. On one foot the DCM ξ goes away from the CoP p as ξ(t) = p + (ξ - p) e^{ωt}. The shortest cycle lasts T;
+k = e^{-ωT}. Feet have the half size a, and each step lands between near and far beside the foot before. A body that has
+just landed comes to rest over the m-th foot from now if its DCM lies in
 
     side k (1 - (-k)^m) / (1 + k) (near + far) / 2 ± (a + k (1 - k^m) / (1 - k) (far - near) / 2),
 
@@ -25,7 +25,7 @@ from surefoot.planner.swing.quintics import PEAK
 from surefoot.planner.types import Array
 
 EDGES = 4
-"""Of a box: forward, left, backward and right, each as a distance in its direction from the stance foot [m]."""
+"""Number of edges of a box: forward, left, backward and right, each as a distance from the stance foot [m]."""
 
 
 def _edges(low: Array, high: Array) -> Array:
@@ -34,7 +34,7 @@ def _edges(low: Array, high: Array) -> Array:
 
 
 class CaptureMargin:
-    """How far the DCM is inside what steps that are adjusted capture.
+    """The margin of the DCM in what steps that are adjusted capture.
 
     Args:
         legs: what they can do.
@@ -91,7 +91,7 @@ class CaptureMargin:
     def margins(
         self, com: Array, dcm: Array, omega: float, step: StepProblem, steps: int, fixed: bool = False
     ) -> Array:
-        """How far the DCM is inside what is captured within 1, ... steps landings, shape (steps,) [m].
+        """Margins of the DCM in what is captured within 1, ..., steps landings, shape (steps,) [m].
 
         The body rests over the last foot, after a single landing perhaps over its stance foot as well.
 

@@ -1,4 +1,4 @@
-"""What the ZMP can still do to the DCM: how far ahead each sample of a window counts, and what that keeps bounded.
+"""The influence of the ZMP on the DCM: the weight of each sample of a window, and what all of them keep bounded.
 
 The DCM obeys ξ' = (λ/ω) (ξ - p). Seen from now the ZMP of sample k counts by the weight w_k of `planner.model.dcm`.
 Σ w_k p_k is the DCM that stays bounded.
@@ -13,7 +13,7 @@ from surefoot.planner.references.window import Window
 from surefoot.planner.types import Array
 
 COLUMNS = 5
-"""Of the bounded motion: DCM on both axes [m], gain of the next step [-], and room of the CoP on both axes [m]."""
+"""Columns of the bounded motion: DCM on both axes [m], gain of the next step [-], room of the CoP on both axes [m]."""
 
 
 class Outlook:
@@ -44,7 +44,7 @@ class Outlook:
         law.fade(self.stiffness, self.omega, self.sample_time, self.decay)
 
     def margin(self, dcm: Array, window: Window) -> float:
-        """How far the DCM is inside what the CoP captures with the steps as planned: Σ w (p ± a) of all in sight.
+        """Margin of the DCM in what the CoP captures with the steps as planned: Σ w (p ± a) of all in sight.
 
         Args:
             dcm: now in the plan frame, shape (2,) [m].
@@ -76,7 +76,7 @@ class Outlook:
         """Set `bounded` to the bounded motion now, as the foot leaves the ground and as it lands.
 
         It is the backward recursion ξ_k d_k = Σ_{j ≥ k} (d_j - d_{j+1}) (p_j + p_{j+1}) / 2, which ends on the last
-        ZMP; the room of the CoP is what it has more until the foot leaves the ground than on the other one alone.
+        ZMP. The room of the CoP is what it has in double support beyond its room on the other foot alone.
 
         Args:
             lift: sample at which the foot leaves the ground.

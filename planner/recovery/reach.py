@@ -1,4 +1,4 @@
-"""What legs can do with one step at one time: where its foot may land, how far it is swung, what a way round lacks.
+"""The reach of legs in one step of one duration: landing places, way of the swing, and lack of a way round.
 
 The frame is the stance foot's: x ahead, y to the left. See `planner.swing.leg_reach` for the legs.
 """
@@ -45,14 +45,17 @@ class StepReach:
         legs = self._legs.turned(step.place.yaw)
         self.place, self.at, self.speed = step.nominal, step.swing[0], step.swing[1]
         self.side, self.near, self.clear = step.place.foot.side, legs.near, legs.clear
-        self.double, self.single, self.cycle, self.shortest = step.double, step.single, step.cycle, step.shortest
+        self.double = step.double
+        self.single = step.single
+        self.cycle = step.cycle
+        self.shortest = step.shortest
         self.last, self.adapted = step.last, step.adapted
         self.boxes = BOXES if step.crosses and self._crosses else 1
         extents = self.stride, self.hip_width, self.near, self.clear
         boxes.landing_boxes(self.low, self.high, extents, self._across, self.side, step.face, self.boxes)
 
     def is_empty(self, box: int) -> bool:
-        """Whether nothing is left of a box."""
+        """Return true if nothing is left of a box."""
         return bool(self.low[box, 0] > self.high[box, 0] or self.low[box, 1] > self.high[box, 1])
 
     def swing_time(self, single: float) -> float:
@@ -60,7 +63,7 @@ class StepReach:
         return max(single - self._lead, self._sample_time)
 
     def swung(self, axis: int, sign: float, single: float) -> float:
-        """How far along an axis, or against it, the foot can be swung in a single support [m].
+        """Distance along an axis, or against it, over which the foot can be swung in a single support [m].
 
         It may always be swung as hard as it nominally is.
 

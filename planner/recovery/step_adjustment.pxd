@@ -20,21 +20,21 @@ cdef class StepAdjustment:
     cdef const double[::1] _authority, _changes
     cdef double[::1] _doubles, _singles, _held, _more, _wanted, _low, _high, _hips, _place, _second
 
-    cpdef solve(self, const double[:] com, const double[:] dcm, window, step, double unsure=*)
+    cpdef solve(self, const double[:] com, const double[:] dcm, window, step, double uncertainty=*)
     @cython.locals(step=StepReach)
     cdef void _grow(self) noexcept
     @cython.locals(
         ahead=Outlook, step=StepReach, lift=Py_ssize_t, lands=Py_ssize_t, axis=Py_ssize_t, held=cython.bint,
         box=double, own=double
     )
-    cdef bint _is_held(self, double unsure) noexcept
+    cdef bint _is_held(self, double uncertainty) noexcept
     @cython.locals(
         step=StepReach, box=Py_ssize_t, d=Py_ssize_t, s=Py_ssize_t, doubles=Py_ssize_t, singles=Py_ssize_t,
         best=Py_ssize_t, planned=double, cost=double, least=double, double=double, single=double
     )
     cdef (double, double, Py_ssize_t) _cheapest(self, bint fine) noexcept
     @cython.locals(step=StepReach, most=double, least=double, singles=Py_ssize_t)
-    cdef (Py_ssize_t, Py_ssize_t) _times(self, bint fine) noexcept
+    cdef (Py_ssize_t, Py_ssize_t) _time_choices(self, bint fine) noexcept
     @cython.locals(k=Py_ssize_t, count=Py_ssize_t)
     cdef Py_ssize_t _around(self, double[::1] times, double time, double least, double most) noexcept
     @cython.locals(
@@ -46,7 +46,7 @@ cdef class StepAdjustment:
     @cython.locals(step=StepReach, lifted=double, start=double, there=double)
     cdef double _land(self, Py_ssize_t axis, double double, double spread, double grown) noexcept
     @cython.locals(
-        step=StepReach, axis=Py_ssize_t, low=double, high=double, left=double, least=double, greatest=double,
+        step=StepReach, axis=Py_ssize_t, low=double, high=double, unheld=double, least=double, greatest=double,
         most=double, values=double[:, ::1]
     )
     cdef _landing_box(self, Py_ssize_t box)

@@ -20,9 +20,10 @@ with the nominal p̄, T̄_d, T̄_s, the duration T of a step, and the slacks r, 
   the stance leg (`LegReach.shortfall`);
 - second: on each axis s = e^{ωT} g |p* - p| less what the CoP holds until then, where p* leaves nothing, or 0;
 - cross: σ is s, with its sideways part times cross_factor where that step would have to cross, whether it may or not;
-- times: T_d = T̄_d or that and a member of time_changes, and T_s likewise, each with each. What is left of a support is
-  not shortened below least_double or least_single, nor below what body and foot need to come to the footstep's height.
-  Of a longer support, changes count from its least time plus the longest cut. T_d ≤ T̄_d where the step is adapted.
+- times: T_d = T̄_d or that and a member of time_changes, and T_s in the same way, each with each. The rest of a support
+  is not shortened below least_double or least_single, nor below the time in which body and foot come to the footstep's
+  height. Changes of a longer support count from its least time plus the longest cut. T_d ≤ T̄_d where the step is
+  adapted.
 
 Solver: for given times p* follows in closed form, since the CoP does what it can; p is p* brought into the limits, the
 boxes and the legs' reach in turn. So times and boxes are enumerated, and the cheapest is taken.
@@ -78,7 +79,7 @@ class StepAdjustment:
         self._hips, self._place, self._second = np.zeros(2), np.zeros(2), np.zeros(2)
 
     def solve(
-        self, com: Array, dcm: Array, window: Window, step: StepProblem, unsure: float = 0.0
+        self, com: Array, dcm: Array, window: Window, step: StepProblem, uncertainty: float = 0.0
     ) -> StepBounds | None:
         """The solution; None where nothing has to be adjusted, or the step has no place to land.
 
@@ -87,20 +88,20 @@ class StepAdjustment:
             dcm: now in the plan frame, shape (2,) [m].
             window: references.
             step: as scheduled.
-            unsure: error of the DCM that is no error, since it is not known better [m].
+            uncertainty: error of the DCM that is no error, since it is not known better [m].
         """
         self._com, self._dcm, self._omega = com, dcm, window.omega[0]
         self._reach.see(step)
         self._outlook.see(window)
         self._grow()
-        fine = self._is_held(unsure)
+        fine = self._is_held(uncertainty)
         if fine and not self._reach.adapted:
             return None
-        left, cost, box = self._cheapest(fine)
+        time, cost, box = self._cheapest(fine)
         if cost == algebra.INFINITY:
             return None
         more = self._second[0] != 0.0 or self._second[1] != 0.0
-        return StepBounds(float(left), self._landing_box(box), bool(more), float(cost))
+        return StepBounds(float(time), self._landing_box(box), bool(more), float(cost))
 
     def _grow(self) -> None:
         """Set e^{ωT} of the times as planned, and of the step after them."""
@@ -111,7 +112,7 @@ class StepAdjustment:
         )
         self._cycle_growth = math.exp(self._omega * step.cycle)
 
-    def _is_held(self, unsure: float) -> bool:
+    def _is_held(self, uncertainty: float) -> bool:
         """Look at the DCM that keeps bounded what comes; whether the CoP alone holds the body to it.
 
         Sets what the CoP has of its box (`_held`), and by how much the DCM now may be farther off since it has more in
@@ -131,14 +132,17 @@ class StepAdjustment:
             self._more[axis] = ahead.bounded[NOW, 3 + axis]
             self._held[axis] = self._cop_share * own
             off = abs(self._dcm[axis] - ahead.bounded[NOW, axis])
-            held = held and off <= (1.0 - fade) * own + self._more[axis] + missed + unsure
+            held = held and off <= (1.0 - fade) * own + self._more[axis] + missed + uncertainty
         return held
 
     def _cheapest(self, fine: bool) -> tuple[float, float, int]:
         """Settle on the cheapest of all times and boxes: time left of the present phase [s], cost [-] and its box."""
         step = self._reach
-        doubles, singles = self._times(fine)
-        best_double, best_single, least, best = step.double, step.single, algebra.INFINITY, 0
+        doubles, singles = self._time_choices(fine)
+        best_double = step.double
+        best_single = step.single
+        least = algebra.INFINITY
+        best = 0
         for box in range(step.boxes):
             cost, double, single = algebra.INFINITY, step.double, step.single
             planned = cost
@@ -151,12 +155,15 @@ class StepAdjustment:
             if not cost < planned - self._least_saving:
                 cost, double, single = planned, step.double, step.single
             if cost < least:
-                least, best, best_double, best_single = cost, box, double, single
+                least = cost
+                best = box
+                best_double = double
+                best_single = single
         if least < algebra.INFINITY:
             least = self._cost(best, best_double, best_single)
         return best_double if step.double != 0.0 else best_single, least, best
 
-    def _times(self, fine: bool) -> tuple[int, int]:
+    def _time_choices(self, fine: bool) -> tuple[int, int]:
         """Set the times of double and single support to choose from, the present one last; how many there are."""
         step = self._reach
         if fine or not self._timing:
@@ -236,7 +243,10 @@ class StepAdjustment:
         On a foot the DCM goes away from the CoP p as ξ(t) = p + (ξ - p) e^{ωt}, in double support as
         `planner.model.pendulum.moving_cop` says. Here `spread` and `grown` are e^{ωT} of the times.
         """
-        step, omega, dcm, com = self._reach, self._omega, self._dcm[axis], self._com[axis]
+        step = self._reach
+        omega = self._omega
+        dcm = self._dcm[axis]
+        com = self._com[axis]
         present, lift_off, landed = (
             self._outlook.bounded[NOW, axis],
             self._outlook.bounded[LIFT_OFF, axis],
@@ -273,8 +283,8 @@ class StepAdjustment:
             most = math.sqrt(max(algebra.square(step.radius) - algebra.square(other), 0.0))
             low, high = self._low[axis], self._high[axis]
             if box == 0 or lowest <= wanted <= highest:
-                left = max(self._landing_share * held, held / self._cop_share - self._landing_spare)
-                low, high = max(low, wanted - left / self._gain), min(high, wanted + left / self._gain)
+                unheld = max(self._landing_share * held, held / self._cop_share - self._landing_spare)
+                low, high = max(low, wanted - unheld / self._gain), min(high, wanted + unheld / self._gain)
             least = min(max(lowest, self._hips[axis] - most), place)
             greatest = max(min(highest, self._hips[axis] + most), place)
             found[0, axis] = max(least, min(low, place))

@@ -11,7 +11,7 @@ from surefoot.planner.types import Array, Footstep
 
 @dataclass(frozen=True, slots=True)
 class StepProblem:
-    """What is known of the step that lands next, in the plan frame: its origin is the stance foot of that step.
+    """The step that lands next, in the plan frame: its origin is the stance foot of that step.
 
     Attributes:
         place: where it lands as the schedule has it, seen from its stance foot.
@@ -39,12 +39,12 @@ class StepProblem:
 
     @property
     def nominal(self) -> Array:
-        """Where it lands as the schedule has it, shape (2,) [m]."""
+        """Landing place by the schedule, shape (2,) [m]."""
         return self.place.position[:2]
 
 
 def landing_place(step: Step, stance: Step, ground: Ground, hips: float) -> tuple[Footstep, Array, float, bool]:
-    """What of a `StepProblem` is the same from plan to plan: place, face, its whole shortest swing, whether it crosses.
+    """The part of a `StepProblem` that stays from plan to plan: place, face, its whole shortest swing, crossing.
 
     The hips swing a foot with an acceleration, infinite for legs that nobody knows [m/s^2].
     """

@@ -35,19 +35,18 @@ CLIMB_SHARE, DESCENT_SHARE = 0.8, 1.0
 of a climb and at the end of a descent [-]."""
 
 BENT_KNEES = 0.08
-"""How much lower than stretched knees carry it bent ones carry the reference robot's CoM, as crouched gaits do [m]."""
+"""Height by which bent knees carry the reference robot's CoM lower than stretched ones, as crouched gaits do [m]."""
 
 
 _DOUBLE, _SINGLE, _PI = int(PhaseKind.DOUBLE), int(PhaseKind.SINGLE), float(np.pi)
 
 
 class Rise(Enum):
-    """Where the base level of the CoM changes.
+    """The time at which the base level of the CoM changes.
 
     DOUBLE, as in the paper: from the height of one support point to that of the next, while the ZMP moves.
-    SINGLE: the level of a double support is that of the lower of its two feet, so that both legs reach the ground; it
-    is changed in the single support before, on the new foot when going up and above the foot left behind when going
-    down.
+    SINGLE: the level of a double support is that of the lower of its two feet, so that both legs reach the ground. It
+    changes in the single support before: on the new foot when going up, above the foot left behind when going down.
     """
 
     DOUBLE = "double"
@@ -59,7 +58,7 @@ class HeightProfile(Protocol):
 
     @property
     def impulsive(self) -> bool:
-        """Whether the velocity jumps, which the second derivative then has as impulses of one sample."""
+        """True if the velocity jumps, which the second derivative then has as impulses of one sample."""
 
     def standing(self, gait: GaitParameters) -> float:
         """Height over the feet at which the robot stands [m]."""
@@ -78,8 +77,8 @@ class HeightProfile(Protocol):
 class SmoothHeight:
     """C² height: a bump of A sin³ in each support phase, and a quintic change of level.
 
-    The paper's A sin and its linear rise jump in velocity at every phase change, which asks for a ZMP that no foot
-    has; sin³ and the quintic reach the same heights with continuous z, z', z''.
+    The paper's A sin and its linear rise jump in velocity at every phase change, which asks for a ZMP that no foot has.
+    Here sin³ and the quintic reach the same heights with continuous z, z', z''.
 
     Attributes:
         rise: where the level changes.
@@ -200,7 +199,10 @@ def _fill(samples: PhaseSamples, apexes: Vector, standing: float, levels: Array,
         early: whether the level changes in single support, see `Rise`.
         height: where it is written.
     """
-    elapsed, length, fraction, rate = samples.elapsed, samples.length, samples.fraction, samples.fraction_rate
+    elapsed = samples.elapsed
+    length = samples.length
+    fraction = samples.fraction
+    rate = samples.fraction_rate
     kind, index, t = samples.kind, samples.index, samples.sample_time
     climb, descent = CLIMB_SHARE, DESCENT_SHARE
     for k in range(height.shape[1]):
@@ -293,7 +295,7 @@ class HeightPreview:
     stiffness: Array
 
     def part(self, count: int) -> "HeightPreview":
-        """That of the first so many samples."""
+        """The first so many samples of it."""
         return HeightPreview(self.height[:, :count], self.stiffness[:count])
 
 

@@ -22,10 +22,10 @@ _LOOKED_AT = 21
 class HeightTransition:
     """The height from where it was at a tick to its law some time later.
 
-    A law of phases has a rise in each of them, however short a push makes it: hurried through in 0.2 s it asks for
-    more than free fall, and the swing leg's momentum over what is left of the weight for any ZMP. When a step that is
-    adapted changes how the clock goes the body leaves its law, therefore, and comes to it smoothly at the end of the
-    phase, or as much later as it takes not to be accelerated by more than a bound, or more than it is already.
+    The law has a rise in each phase, however short a push makes the phase. In 0.2 s such a rise asks for more than free
+    fall. So the body leaves its law when a step that is adapted changes the rate of the clock. It comes back to the law
+    smoothly at the end of the phase. It comes back later if it would otherwise be accelerated by more than a bound, or
+    by more than it is already.
 
     Attributes:
         start: tick at which it begins.
@@ -43,7 +43,7 @@ class HeightTransition:
     def onto(
         cls, height: Array, state: Array, start: int, left: float, sample_time: float, lifting: float
     ) -> "HeightTransition":
-        """That from a state onto a law.
+        """Make the transition from a state onto a law.
 
         Args:
             height: z, z', z'' of the law at the samples from now on, shape (3, n) [m, m/s, m/s^2].

@@ -1,4 +1,4 @@
-"""What the body's own motion adds to the ZMP: the pendulum with legs that have mass.
+"""The ZMP that the body's own motion adds: the pendulum with legs that have mass.
 
 The paper's pendulum carries all mass in the CoM. A real leg weighs a sixth of the body, and swinging it turns angular
 momentum L over at up to hundreds of N·m, which moves the ZMP by decimetres. The moment balance about the ZMP,
@@ -58,7 +58,7 @@ class LegOffset:
         position: Array,
         guess: Array | None,
     ) -> Array:
-        """What the legs add to the ZMP, shape (n, 2) [m]; two passes, or one from a guess, leave a millimetre.
+        """ZMP that the legs add, shape (n, 2) [m]; two passes, or one from a guess, leave a millimetre.
 
         Args:
             moving: what `NominalFeet.move` moves the feet by.
@@ -67,7 +67,10 @@ class LegOffset:
             position: CoM now, shape (2,) [m].
             guess: about what it will be, shape (n, 2) [m].
         """
-        n, body, feet, stiffness = len(point), self._body, self._feet, self._softening * height.stiffness
+        n = len(point)
+        body = self._body
+        feet = self._feet
+        stiffness = self._softening * height.stiffness
         passes, offset = (2, np.zeros((n, 2))) if guess is None else (1, guess)
         if self._motion.count != n:
             self._motion = NominalMotion(self._sample_time, n)
@@ -87,7 +90,10 @@ class LegOffset:
         """The CoM at n samples and at the one before them."""
         t, motion, com = self._sample_time, self._motion, self._com
         for axis in range(2):
-            c, v, a, u = motion.c[0, axis], motion.v[0, axis], motion.a[0, axis], motion.u[0, axis]
+            c = motion.c[0, axis]
+            v = motion.v[0, axis]
+            a = motion.a[0, axis]
+            u = motion.u[0, axis]
             com[0, axis] = c - v * t + 0.5 * a * t * t - u * t * t * t / 6.0
         com[0, 2] = height[0, 0] - height[1, 0] * t + 0.5 * height[2, 0] * t * t
         for k in range(n):

@@ -1,4 +1,4 @@
-"""How both feet move over a window as steps are planned, on which the momentum of the legs depends."""
+"""The motion of both feet over a window as steps are planned, on which the momentum of the legs depends."""
 
 import math
 
@@ -18,7 +18,7 @@ _SUNK = 3e-4
 """Height by which a footstep may be off the end of its swing: twice what soles sink, of the reference robot [m]."""
 
 Moving = tuple[PhaseSamples, Schedule, tuple[Array, Array], tuple[SwingTrajectory, float] | None]
-"""What feet are to move by: see `NominalFeet.move`."""
+"""Arguments of the motion of feet: see `NominalFeet.move`."""
 
 
 class NominalFeet:
@@ -61,16 +61,19 @@ class NominalFeet:
         places[:, :2], places[:, 2], places[:, 3] = (position[:, :2] - origin) @ rotation, position[:, 2], schedule.yaws
         self._places, self._sample_time = places, samples.sample_time
         self._sunk = _SUNK * schedule.ground.parameters.size.length
-        first, swing, phases, steps = 0, None, samples.phases, schedule.steps
+        first = 0
+        swing = None
+        phases = samples.phases
+        steps = schedule.steps
         begin = steps[0].number
         while first < count:
             end, phase = self._end_of_phase(first, count), phases[self._which[first]]
             row = phase.leaves - 1 - begin
             swings = 1 - steps[row].place.foot
             if phase.kind is PhaseKind.SINGLE:
-                told, late = swing_of(phase, schedule, self._elapsed[first])
-                if swing is None or swing.of is not told:
-                    swing = UnitSwing(told)
+                planned, late = swing_of(phase, schedule, self._elapsed[first])
+                if swing is None or swing.of is not planned:
+                    swing = UnitSwing(planned)
                 self._swing(swing, late, first, end, row, swings)
             else:
                 self._rest(first, end, row, swings)
@@ -111,7 +114,10 @@ class NominalFeet:
     def _put(self, k: int, row: int, swings: int, progress: float, height: float) -> None:
         """One foot in its place, the other one on its way, so far over the place before [m]."""
         before, after = self._around(row)
-        P, soles, heading, stands = self._places, self._soles, self._heading, 1 - swings
+        P = self._places
+        soles = self._soles
+        heading = self._heading
+        stands = 1 - swings
         for axis in range(3):
             soles[stands, k, axis] = P[row, axis]
         for axis in range(2):
@@ -155,7 +161,7 @@ class UnitSwing:
         self._low: float = swing.target[2] - swing.search.motion(-TOUCHING)[0]
 
     def progress(self, t: float) -> float:
-        """How far it is at a time [s]: share of its way [-]."""
+        """Progress at a time [s]: share of its way [-]."""
         if t >= self._touches:
             return self._end
         return quintic.value(self._glide, algebra.clamp(t - self._start, 0.0, self._gliding))

@@ -1,4 +1,4 @@
-"""What the legs add to the ZMP, made once for some ticks."""
+"""The ZMP that the legs add, made once for some ticks."""
 
 from dataclasses import dataclass
 
@@ -12,7 +12,7 @@ from surefoot.planner.types import Array
 
 @dataclass(frozen=True)
 class OffsetTable:
-    """What the swing leg adds to the ZMP over a window and some samples more: planner state that outlives a tick.
+    """The ZMP that the swing leg adds over a window and some samples more: planner state that outlives a tick.
 
     It was made for the CoM of its first tick; the offset hardly depends on it (see `planner.references.leg_offset`). So
     a plan depends on the ticks before it not only by the jerk and the swing that go on, but by at most `ticks` - 1 of
@@ -35,7 +35,7 @@ class OffsetTable:
     ticks: int
 
     def holds(self, clock: TimeScaling, key: SupportKey, aim: Array | None, apart: float) -> bool:
-        """Whether it still serves: the same support, footholds and clock, aims so far apart, and few ticks later."""
+        """Return true if it still serves: same support, footholds and clock, aims hardly apart, and few ticks later."""
         ticks = clock.ticks
         if self.key != key or self.course != clock.course or not self.start < ticks < self.start + self.ticks:
             return False

@@ -1,4 +1,4 @@
-"""What is known of horizon and preview before the motion is planned."""
+"""The references over horizon and preview, before the motion is planned."""
 
 from dataclasses import dataclass
 
@@ -37,7 +37,7 @@ class Window:
 
 
 def lean(lasting: ExternalLoad, rotation: Array, height: HeightPreview) -> Array:
-    """What a lasting force adds to the ZMP, by which the body has to lean into it, in the plan frame.
+    """ZMP that a lasting force adds, by which the body has to lean into it, in the plan frame.
 
     The moment balance about the ZMP (see `planner.references.leg_offset`) with a force m f on the body and its moment
     m n about the CoM has, with h = c_z - p_z and λ = (g + z'') / h,

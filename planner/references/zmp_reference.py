@@ -63,7 +63,10 @@ def support_table(
         Columns x, y [m], gain of the next two footstep shifts [-], box half sizes x, y [m], height [m], and their
         differences to the next row, zero in the last one, shape (2, m, 7).
     """
-    positions, yaws, supports, stance = schedule.positions, schedule.yaws, schedule.supports, schedule.index(landed)
+    positions = schedule.positions
+    yaws = schedule.yaws
+    supports = schedule.supports
+    stance = schedule.index(landed)
     table = np.zeros((2, len(supports), 7))
     values = table[0]
     _place_supports(positions, yaws, supports, stance, values)
@@ -144,7 +147,7 @@ def zmp_reference(samples: PhaseSamples, table: Array) -> ZmpReference:
 
     Args:
         samples: the phases over the window.
-        table: support points in sight, as of `support_table`.
+        table: support points in sight, made by `support_table`.
     """
     n = len(samples.clock)
     reference = ZmpReference(np.empty((n, 2)), np.empty((n, 2)), np.empty((n, 2)), np.empty(n))
@@ -164,7 +167,7 @@ def _refer(samples: PhaseSamples, table: Array, point: Array, gain: Array, half_
 
 
 class SupportKey(NamedTuple):
-    """What a support follows from in a walk: of two ticks with the same key it is the same, to the last digit.
+    """The values that fix a support in a walk: of two ticks with the same key it is the same, to the last digit.
 
     Attributes:
         schedule: the steps in sight.
@@ -184,7 +187,7 @@ Sole = tuple[Array, Array]
 
 
 def sole_of(place: Footstep, half_size: Array, margin: float) -> Sole:
-    """That of a foot, arguments as of `present_support`."""
+    """The sole of a foot that carries the robot."""
     corners = points_of_sole(place, np.concatenate((CORNERS * half_size, CORNERS * (margin * half_size))))
     return corners[:4], corners[4:]
 
@@ -193,8 +196,8 @@ def hull_of(corners: Array, *others: Array) -> Array:
     """Convex hull of the corners of one sole or several, as `convex_hull` tells it."""
     if others:
         return convex_hull(np.concatenate((corners, *others)))
-    told = corners.tolist()
-    first = told.index(min(told))
+    listed = corners.tolist()
+    first = listed.index(min(listed))
     return np.concatenate((corners[first:], corners[:first]))
 
 
@@ -258,7 +261,7 @@ def _share_load(samples: PhaseSamples, on_left: Array, load: Array) -> None:
 
 
 def _increments(schedule: Schedule, landed: int, rotation: Array) -> Array:
-    """Those of a `Support`, by the plan frame's rotation to the world."""
+    """Increments of a `Support`, by the plan frame's rotation to the world."""
     increment, before = np.zeros((2, 2)), schedule.step(landed).place.position
     for n, step in enumerate(schedule.after(landed)[:2]):
         linear.fused_product((step.place.position - before)[None, :2], rotation, increment[n : n + 1])

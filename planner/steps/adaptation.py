@@ -1,4 +1,4 @@
-"""What pushes and feet that slide do to the schedule: steps inserted, later ones moved, a heel lifted."""
+"""Changes of the schedule by pushes and by feet that slide: steps inserted, later ones moved, a heel lifted."""
 
 import math
 from dataclasses import replace
@@ -26,9 +26,9 @@ _LIFTED = 0.01
 def with_step_in_place(schedule: Schedule, now: float, foot: Foot | None = None, at_once: bool = True) -> Schedule:
     """A step on the spot is inserted where the robot stands or would stand next, before anything else.
 
-    The weight goes from between the feet onto one of them. In the time that it usually takes it gets there only
-    from feet as near to each other as usual: at leisure it takes the longer the wider the robot stands, once the
-    weight has begun to shift. A longer rest before that would take the CoM farther than the rear leg reaches.
+    The weight goes from between the feet onto one of them. In its usual time it gets there only from feet that are as
+    near to each other as usual. Once the weight has begun to shift, it takes longer the wider the robot stands. A
+    longer rest before that would take the CoM farther than the rear leg reaches.
 
     Args:
         schedule: the steps in sight.
@@ -133,7 +133,7 @@ def with_foot_flat(schedule: Schedule, number: int) -> Schedule:
 
 
 def lands_short(schedule: Schedule, number: int, feet: FeetState, dcm: Dcm | None, legs: LegReach | None) -> bool:
-    """Whether the DCM is beyond the foot that lands after a step, on its own side, and the foot can still get there.
+    """Return true if the DCM is beyond the foot that lands after a step, on its own side, and the foot can get there.
 
     The other foot would have to cross it, and nothing is on it yet. The DCM is beyond it by half of its width, and no
     farther from the stance foot than legs stride for as long as a swing takes at least.
@@ -149,5 +149,5 @@ def lands_short(schedule: Schedule, number: int, feet: FeetState, dcm: Dcm | Non
 
 
 def lifted(swing: SwingTrajectory, feet: FeetState, time: float, length: float) -> bool:
-    """Whether a push has lifted the foot off its swing at a time [s]; `length` is the robot's size [-]."""
+    """Return true if a push has lifted the foot off its swing at a time [s]; `length` is the robot's size [-]."""
     return float(feet.position[swing.foot, 2] - swing.evaluate(time)[0, 2]) > _LIFTED * length

@@ -1,4 +1,4 @@
-"""How a walk begins: its schedule, laid out and in sight."""
+"""The beginning of a walk: its schedule, in sight from the start."""
 
 import math
 
@@ -20,12 +20,12 @@ def begun(gait: GaitParameters, feet: FeetState, ground: Ground, window: float =
     Raises:
         ParameterError: see `Schedule.extended`.
     """
-    schedule = Schedule.start(gait, feet, ground).laid_out()
+    schedule = Schedule.start(gait, feet, ground).with_nominal_steps()
     return in_sight(schedule, 0.0, window) if window else schedule
 
 
 def in_sight(schedule: Schedule, now: float, window: float) -> Schedule:
-    """The schedule with all that a plan of the phase at an instant may look at over a window; errors as of `extended`.
+    """The schedule with all that a plan of the phase at an instant may look at over a window.
 
     Args:
         schedule: the steps in sight so far.

@@ -1,4 +1,4 @@
-"""What an operator commands, turned into strides: a velocity over time, or explicit footsteps."""
+"""The commands of an operator, turned into strides: a velocity over time, or explicit footsteps."""
 
 import math
 from bisect import bisect_right
@@ -21,20 +21,20 @@ _SAME_TIME = 1e-6
 """Times are sums of durations and carry rounding [s]."""
 
 _HALVINGS = 40
-"""Of a range in which the fastest velocity is sought, after which rounding is greater [-]."""
+"""Halvings of a range in which the fastest velocity is sought, after which rounding is greater [-]."""
 
 STANDING = Twist()
 
 
 @dataclass(frozen=True, slots=True)
 class Command:
-    """What a walk is told, or does of what it has been told; what is None stays as it is, or is not.
+    """A command to a walk, or the part of it that the walk follows; what is None stays as it is, or is not.
 
     Attributes:
         twist: the velocity to follow from now on; zero stands.
         places: where to go now, one after another in the world frame, to stand at the last one.
         single_support: duration from now on [s].
-        double_support: likewise [s].
+        double_support: duration from now on [s].
         swing_height: clearance of the steps to come [m].
         time: when the walk hears of it [s].
         followed: of what a walk does, the velocity that is followed in place of `twist`, whose steps are in reach.
@@ -72,8 +72,8 @@ def velocity_bouts(commands: Sequence[Command], gait: GaitParameters) -> tuple[B
     """The bouts of a walk that follows velocities over time, each from its command to the next one.
 
     The velocity in force when a foot lifts off gives the stride of that step. If it is zero then, the step closes the
-    stance and the robot stands until it is to move; its weight shift begins then (not before `gait.initial_stand`),
-    and the first foot lifts off `WEIGHT_SHIFT` double supports later. A velocity that has gone by then moves nothing.
+    stance and the robot stands until it is to move. Its weight shift begins then (not before `gait.initial_stand`), and
+    the first foot lifts off `WEIGHT_SHIFT` double supports later. A velocity that has gone by then moves nothing.
     Before the first command the robot stands.
 
     Args:

@@ -12,7 +12,7 @@ from surefoot.planner.types import Array, FeetState, Foot, Footstep, Twist
 
 @dataclass(frozen=True, slots=True)
 class Path:
-    """Where the nominal path of a walk has come to.
+    """The end so far of the nominal path of a walk.
 
     Each stride advances it by (x, y) along the mean of its old and new heading and turns it; the foot
     lands beside the path's new point, half the stride's width to its side. Where the width changes, the path first
@@ -47,7 +47,7 @@ class Path:
 
 
 def start_footholds(gait: GaitParameters, feet: FeetState, terrain: Terrain) -> tuple[Path, tuple[Footstep, Footstep]]:
-    """Where the path begins, and the two start feet, the one that moves first in front.
+    """The beginning of the path, and the two start feet, the one that moves first in front.
 
     It starts midway between the feet with their mean heading and their width, or where the terrain says; its heading is
     unwrapped from the right foot's.
@@ -78,11 +78,11 @@ def plan_footsteps(gait: GaitParameters, feet: FeetState, terrain: Terrain) -> t
         unwrapped.
     """
     path, start = start_footholds(gait, feet, terrain)
-    laid = []
+    placed = []
     for number, stride in enumerate(gait.strides, 1):
         foot = gait.step_foot(number)
         path, place = path.advanced(stride, foot)
-        laid.append((foot, place, path.yaw))
-    level = np.array([place for _, place, _ in laid]).reshape(-1, 2)
-    grounds = zip(laid, terrain.heights(level), terrain.normals(level), strict=True)
+        placed.append((foot, place, path.yaw))
+    level = np.array([place for _, place, _ in placed]).reshape(-1, 2)
+    grounds = zip(placed, terrain.heights(level), terrain.normals(level), strict=True)
     return *start, *(Footstep(foot, np.append(xy, z), yaw, normal) for (foot, xy, yaw), z, normal in grounds)

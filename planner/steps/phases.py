@@ -43,7 +43,7 @@ class Phase:
 
     @property
     def end(self) -> float:
-        """When it is over."""
+        """End of the phase."""
         return self.start + self.samples
 
     @property
@@ -91,7 +91,7 @@ def phases_of(steps: Sequence[Step], stands: bool) -> tuple[Phase, ...]:
 
 
 def phases_since(begin: float, steps: Sequence[Step], stands: bool) -> tuple[Phase, ...]:
-    """Those of them that are not over at an instant of the clock [samples]."""
+    """The phases that are not over at an instant of the clock [samples]."""
     return tuple([phase for phase in phases_of(steps, stands) if phase.end > begin + CLOCK_ROUNDING])
 
 
@@ -119,7 +119,7 @@ class PhaseTable:
 
     @classmethod
     def of(cls, phases: tuple[Phase, ...]) -> "PhaseTable":
-        """That of some phases."""
+        """The table of some phases."""
         n = len(phases)
         (kind, support), (start, length, rest) = np.empty((2, n), dtype=np.intp), np.empty((3, n))
         contacts = np.empty((n, 2), dtype=np.uint8)
@@ -181,7 +181,11 @@ class PhaseSamples:
         rate: tuple[Array, Array] | None = None,
     ) -> None:
         n = len(clock)
-        self.phases, self.clock, self.sample_time, self.first, self.rate = table.phases, clock, sample_time, first, rate
+        self.phases = table.phases
+        self.clock = clock
+        self.sample_time = sample_time
+        self.first = first
+        self.rate = rate
         self.which, self.kind, self.index = np.empty(n, np.intp), np.empty(n, np.intp), np.empty(n, np.intp)
         self.elapsed, self.length = np.empty(n), np.empty(n)
         self.fraction, self.fraction_rate = np.empty(n), np.empty(n)
@@ -209,7 +213,7 @@ class PhaseSamples:
         kind: NDArray[np.intp],
         support: NDArray[np.intp],
     ) -> None:
-        """How far each sample is in its phase, and on the way of the ZMP reference."""
+        """Measure the place of each sample in its phase, and on the way of the ZMP reference."""
         elapsed, fraction, fraction_rate = self.elapsed, self.fraction, self.fraction_rate
         lengths, kinds, index = self.length, self.kind, self.index
         for k in range(clock.shape[0]):

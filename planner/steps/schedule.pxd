@@ -3,4 +3,4 @@ cdef class Schedule:
     cdef readonly bint stands
     cdef readonly object shift
     cdef readonly double begin
-    cdef readonly object laid, phases
+    cdef readonly object nominal_steps, phases

@@ -21,7 +21,7 @@ from surefoot.planner.steps.footsteps import start_footholds
 from surefoot.planner.steps.gait import GaitParameters, in_samples
 from surefoot.planner.steps.phases import Phase, PhaseSamples, PhaseTable, phases_since
 from surefoot.planner.steps.source import GaitSource, StepSource
-from surefoot.planner.steps.step import Step, Stop, durations, laid_step, lay, start_step
+from surefoot.planner.steps.step import Step, Stop, durations, known_step, make_step, start_step
 from surefoot.planner.swing.course import Ground
 from surefoot.planner.types import Array, FeetState, Foot, PhaseKind, Twist
 
@@ -35,7 +35,7 @@ _LAID_OUT = 120.0
 """Time of a walk on bare ground whose steps are laid before it begins; a minute of them takes some milliseconds [s]."""
 
 _START = attrgetter("start")
-"""When a phase begins."""
+"""The start of a phase."""
 
 
 @dataclass(frozen=True)
@@ -52,7 +52,7 @@ class Schedule:
         stands: whether the robot stands after the last one, as far as is known for ever.
         shift: where steps that come into sight lie from their nominal places, shape (2,) [m].
         begin: phases that were over by then are forgotten [samples].
-        laid: steps of the walk as they are nominally laid, of which those that come into sight are taken.
+        nominal_steps: steps of the walk as they are nominally laid, of which those that come into sight are taken.
         phases: the phases in sight in order, without gaps; they follow from steps, `stands` and `begin`.
     """
 
@@ -63,7 +63,7 @@ class Schedule:
     stands: bool
     shift: Array = field(compare=False)
     begin: float
-    laid: tuple[Step, ...] = field(compare=False)
+    nominal_steps: tuple[Step, ...] = field(compare=False)
     phases: tuple[Phase, ...] = field(compare=False)
 
     @classmethod
@@ -109,16 +109,16 @@ class Schedule:
 
     @property
     def positions(self) -> Array:
-        """Where the steps land, sole centres in the world frame, shape (n, 3) [m]."""
+        """Places where the steps land, sole centres in the world frame, shape (n, 3) [m]."""
         return np.array([step.place.position for step in self.steps])
 
     @property
     def yaws(self) -> Array:
-        """Their headings, unwrapped, shape (n,) [rad]."""
+        """Headings of the steps, unwrapped, shape (n,) [rad]."""
         return np.array([step.place.yaw for step in self.steps])
 
     def at_supports(self, values: Array) -> Array:
-        """What values of the steps, shape (n, ...), are at the support points: means of two, shape (m, ...)."""
+        """Turn values of the steps, shape (n, ...), into those at the support points: means of two, shape (m, ...)."""
         one, other = self.supports.T
         return np.asarray(0.5 * (values[one] + values[other]))
 
@@ -144,7 +144,7 @@ class Schedule:
         return self.phases[len(self.phases) - 1]
 
     def index(self, number: int) -> int:
-        """Where a step is in `steps`."""
+        """Index of a step in `steps`."""
         return number - self.steps[0].number
 
     def step(self, number: int) -> Step:
@@ -170,16 +170,16 @@ class Schedule:
         return self.phases[max(bisect_right(self.phases, clock + CLOCK_ROUNDING, key=_START) - 1, 0) :]
 
     def stops(self, clock: float) -> bool:
-        """Whether the robot stands at an instant, or will with the next step that lands."""
+        """Return true if the robot stands at an instant, or will with the next step that lands."""
         return any(phase.kind is PhaseKind.STAND for phase in self.following(clock)[:_STOP_AHEAD])
 
     def samples(self, clock: Array, rate: tuple[Array, Array] | None = None) -> PhaseSamples:
-        """The phases where the clock shows some instants; arguments as of `PhaseSamples`."""
+        """The phases where the clock shows some instants [samples], at a rate of the clock; see `PhaseSamples`."""
         table, sample_time = PhaseTable.of(self.phases), self.ground.parameters.sample_time
         return PhaseSamples(table, clock, sample_time, self.first_support, rate)
 
     def usual_samples(self, phase: Phase) -> float:
-        """How long a phase would last that had not begun [samples]."""
+        """Usual duration of a phase that had not begun [samples]."""
         single, double = self.durations
         if phase.kind is PhaseKind.SINGLE:
             return single
@@ -188,7 +188,7 @@ class Schedule:
         return Stop.usual(0.0, double).shift if phase.rest else double
 
     def climbs_next(self, clock: float) -> bool:
-        """Whether a foot swings, on faces that footsteps were chosen for, and the step after it climbs."""
+        """Return true if a foot swings, on faces that footsteps were chosen for, and the step after it climbs."""
         present = self.phase(clock)
         following = self.after(present.step)[: present.stance is not None]
         return any(self.ground.terrain.footholds.edged(step.climb) for step in following)
@@ -206,20 +206,20 @@ class Schedule:
 
     @property
     def _end(self) -> Twist:
-        """Where the path comes to that the footsteps in sight go along."""
+        """End of the path along which the footsteps in sight go."""
         path = self.last.path
         x, y = path.middle + self.shift
         return Twist(float(x), float(y), path.yaw)
 
     # From a schedule to the next.
 
-    def laid_out(self) -> "Schedule":
+    def with_nominal_steps(self) -> "Schedule":
         """The schedule that knows the steps of its source beforehand: to lay one over edges takes milliseconds."""
         longer, bare, t = self, not self.ground.terrain.has_edges, self.ground.parameters.sample_time
         with suppress(ParameterError):  # a step that cannot be laid is refused once it comes into sight
             while longer.last.lift_off < (_LAID_OUT / t if bare else math.inf) and (more := longer._asked(0.0)):
                 longer = more
-        return replace(self, laid=longer.steps)
+        return replace(self, nominal_steps=longer.steps)
 
     def extended(self, until: float, now: float = 0.0) -> "Schedule":
         """Steps are asked for until all is known up to an instant, and three steps more.
@@ -254,8 +254,8 @@ class Schedule:
     def followed(self, stride: Twist, stop: Stop | None, inserted: bool = False) -> "Schedule":
         """The schedule with one more step."""
         one, other = self.steps[-2:]
-        step = None if inserted else laid_step(self.laid, (one, other), stride, stop, self.durations)
-        step = step or lay(stride, (one, other), self.gait, self.ground, stop, inserted)
+        step = None if inserted else known_step(self.nominal_steps, (one, other), stride, stop, self.durations)
+        step = step or make_step(stride, (one, other), self.gait, self.ground, stop, inserted)
         place = step.beside(self.shift, self.ground.terrain)
         return self.with_steps((*self.steps, step.landing(place.position, place.normal)), stands=False)
 
@@ -263,14 +263,16 @@ class Schedule:
         """The schedule of other steps; its end in a stand, and what is forgotten, stay unless they are given."""
         stands, begin = self.stands if stands is None else stands, self.begin if begin is None else begin
         phases = phases_since(begin, steps, stands)
-        return Schedule(self.gait, self.ground, self.source, steps, stands, self.shift, begin, self.laid, phases)
+        return Schedule(
+            self.gait, self.ground, self.source, steps, stands, self.shift, begin, self.nominal_steps, phases
+        )
 
     def until(self, number: int, stands: bool) -> "Schedule":
         """The schedule without the steps after one, with which the robot then stands or not."""
         return self.with_steps(self.steps[: self.index(number) + 1], stands)
 
     def forgotten(self, clock: float) -> "Schedule":
-        """What lies behind an instant is let go of, but for the phase of the sample before it."""
+        """Forget what lies behind an instant, but for the phase of the sample before it."""
         begin = clock - 1.0
         first = next(phase for phase in self.phases if phase.end > begin + CLOCK_ROUNDING)
         if first is self.phases[0]:

@@ -1,4 +1,4 @@
-"""Where the steps of a walk come from: one after another, when the schedule asks for the next."""
+"""The source of a walk's steps: it makes one after another, when the schedule asks for the next."""
 
 import math
 from typing import Protocol
@@ -50,13 +50,13 @@ _SOFTLY = 0.4
 """Most by which a stride is longer than the one before it, as a share of the reach [-]."""
 
 _SHARE = 0.6
-"""Likewise its turn, as a share of the greatest; and what of both a walk to a place makes use of [-]."""
+"""Most by which it turns more, as a share of the greatest; and what of both a walk to a place makes use of [-]."""
 
 _THERE = 0.002
 """Distance from a place at which a walk to it is over, of the reference robot [m], or in heading [rad]."""
 
 AWAY = 0.008
-"""Distance from it at which a robot that stands there goes on, likewise [m, rad]."""
+"""Distance from it at which a robot that stands there goes on, of the reference robot [m], or in heading [rad]."""
 
 _ASTRAY = 1.0
 """Bearing of a place from which on the robot first turns towards it on the spot [rad]."""
@@ -66,18 +66,18 @@ _FAR = 3.0
 
 
 class CommandSource:
-    """Steps that follow a velocity, or go to places one after another; either may be told anew at any time.
+    """Steps that follow a velocity, or go to places one after another; either may be commanded anew at any time.
 
-    What cannot be done is bent to the nearest that can: a velocity to the fastest in its direction whose steps are
-    within reach, a stride to one that is no more than a little longer than the one before it, nor leads the other way.
+    A command out of reach is bent to the nearest one in reach. A velocity becomes the fastest in its direction whose
+    steps are within reach. A stride is only a little longer than the one before it, and leads no other way.
 
     Args:
         gait: gives the step width, the stride of a walk to a place, and the rest before the first step.
         region: where feet may land.
         twist: the velocity to follow where there are no places to go to; an attribute.
-        places: where to go, in order; likewise.
+        places: where to go, in order; an attribute.
         size: of the robot.
-        march: whether it steps in place where the velocity is zero; likewise.
+        march: whether it steps in place where the velocity is zero; an attribute.
     """
 
     def __init__(

@@ -104,12 +104,12 @@ class Step:
 
     @property
     def touchdown(self) -> float:
-        """When its foot lands, on the clock [samples]."""
+        """Time at which its foot lands, on the clock [samples]."""
         return self.lift_off + self.single_support
 
     @property
     def end(self) -> float:
-        """When the double support after it is over, on the clock [samples]."""
+        """End of the double support after it, on the clock [samples]."""
         return self.touchdown + self.double_support
 
     def landing(self, position: Array, normal: Array) -> "Step":
@@ -162,7 +162,7 @@ def durations(gait: GaitParameters, sample_time: float) -> tuple[float, float]:
 
 
 def lift_off_after(before: Step, stop: Stop | None) -> float:
-    """When a foot leaves the ground after a step and a stop, on the clock [samples]."""
+    """Time at which a foot leaves the ground after a step and a stop, on the clock [samples]."""
     return before.end if stop is None else before.end + stop.stand + stop.shift
 
 
@@ -188,7 +188,7 @@ def start_step(number: int, place: Footstep, path: Path, gait: GaitParameters, g
     )
 
 
-def lay(
+def make_step(
     stride: Twist, before: tuple[Step, Step], gait: GaitParameters, ground: Ground, stop: Stop | None, inserted: bool
 ) -> Step:
     """The step after two others, where it nominally lands.
@@ -244,39 +244,47 @@ def lay(
     return step
 
 
-def laid_step(
-    laid: tuple[Step, ...], before: tuple[Step, Step], stride: Twist, stop: Stop | None, lasting: tuple[float, float]
+def known_step(
+    nominal_steps: tuple[Step, ...],
+    before: tuple[Step, Step],
+    stride: Twist,
+    stop: Stop | None,
+    lasting: tuple[float, float],
 ) -> Step | None:
     """The step after two others as it was laid before the walk; None where it would be laid otherwise now.
 
     A walk is laid out once, since a swing over edges takes milliseconds to find.
 
     Args:
-        laid: steps in order, without gaps.
+        nominal_steps: steps in order, without gaps.
         before: the last step of its foot, and that of the other one.
         stride: what it does to the path.
         stop: standing before it.
         lasting: single and double support [samples].
     """
     one, other = before
-    at = other.number - laid[0].number if laid else 0
-    if not 0 < at < len(laid) - 1:
+    at = other.number - nominal_steps[0].number if nominal_steps else 0
+    if not 0 < at < len(nominal_steps) - 1:
         return None
-    first, second, step = laid[at - 1], laid[at], laid[at + 1]
+    first, second, step = nominal_steps[at - 1], nominal_steps[at], nominal_steps[at + 1]
     same = one.nominal is first.nominal and other.nominal is second.nominal and other.path is second.path
-    told = other.ordinal, other.support, other.end, other.double_support, stride, stop, *lasting
-    second_told = second.ordinal, second.support, second.end, second.double_support
-    then = *second_told, step.stride, step.stop, step.single_support, step.double_support
-    return step if same and told == then else None
+    asked = other.ordinal, other.support, other.end, other.double_support, stride, stop, *lasting
+    laid_first = second.ordinal, second.support, second.end, second.double_support
+    then = *laid_first, step.stride, step.stop, step.single_support, step.double_support
+    return step if same and asked == then else None
 
 
 def room_left(step: Step, stance: Footstep, parallel: float) -> Array:
-    """By which a step may be moved on its face from where it now is to land, in the heading of its stance foot.
+    """Distances by which a step may be moved on its face from its landing place now, in the heading of its stance foot.
 
-    Told as `turned_room` is.
+    Least and greatest way, shape (2, 2) [m]; see `turned_room`.
     """
     yaw, (x, y, _), (u, v, _) = step.nominal.yaw, step.place.position.tolist(), step.nominal.position.tolist()
-    c, s, x, y, ((a, b), (d, e)) = math.cos(yaw), math.sin(yaw), x - u, y - v, step.room.tolist()
+    c = math.cos(yaw)
+    s = math.sin(yaw)
+    x = x - u
+    y = y - v
+    ((a, b), (d, e)) = step.room.tolist()
     ahead, left = x * c + y * s, y * c - x * s
     return turned_room(np.array(((a - ahead, b - left), (d - ahead, e - left))), yaw - stance.yaw, parallel)
 
@@ -284,7 +292,7 @@ def room_left(step: Step, stance: Footstep, parallel: float) -> Array:
 def turned_room(room: Array, angle: float, parallel: float) -> Array:
     """The part of a room around a footstep that is a box in another frame, where the footstep has a heading [rad].
 
-    Rooms are told as least and greatest way, shape (2, 2) [m]; up to the angle `parallel` both are the same [rad].
+    Rooms are given as least and greatest way, shape (2, 2) [m]; up to the angle `parallel` both are the same [rad].
     """
     if abs(angle) < parallel or not all(map(math.isfinite, room.ravel().tolist())):
         return room

@@ -1,4 +1,4 @@
-"""Where legs let a foot land: the boxes around its stance foot. See `planner.swing.leg_reach` for the legs."""
+"""The boxes around a stance foot in which legs let a foot land. See `planner.swing.leg_reach` for the legs."""
 
 from surefoot.planner.types import Array
 

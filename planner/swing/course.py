@@ -1,4 +1,4 @@
-"""How a swing foot gets over edges: when it glides forward and when it is highest, so that the whole sole is clear."""
+"""The course of a swing foot over edges: the times of its glide and of its apex, so that the whole sole is clear."""
 
 from dataclasses import dataclass, replace
 from itertools import product
@@ -32,7 +32,7 @@ _APEXES = (0.3, 0.35, 0.4, 0.45, 0.5, 0.55, 0.6, 0.65, 0.7)
 
 _FINER = np.ldexp(1.0 / 80, [-4, -3, -2, -1])
 _WAY = np.sort(np.concatenate((np.linspace(0.0, 1.0, 81), _FINER, 1.0 - _FINER)))
-"""Where the ground is looked at; close to both ends closer, where a foot stands right before a riser [-]."""
+"""Shares of the way at which the ground is looked at; denser near both ends, where a riser may be close [-]."""
 
 _INSTANTS = 200
 """Instants of a swing at which its way is compared with the ground: steps of half a centimetre [-]."""
@@ -43,7 +43,7 @@ _LEVEL = 1e-3
 
 @dataclass(frozen=True, slots=True, eq=False)
 class Ground:
-    """What steps are laid on, and by whom.
+    """The ground that steps are placed on, and the soles that are placed on it.
 
     Attributes:
         terrain: the ground as the planner believes it to be.
@@ -112,7 +112,7 @@ def _ground(start: Array, end: Array, terrain: Terrain, half_size: Array, length
 
 
 def _on_face(points: Array, heights: Array, pose: Array, level: float) -> NDArray[np.bool_]:
-    """Whether all ground under a sole, points (n, k, 2) of heights (n, k), is the plane of the sole's pose, (n,)."""
+    """Return true if all ground under a sole, points (n, k, 2) of heights (n, k), is the plane of its pose, (n,)."""
     normal = sole_rotation(*pose[3:].tolist())[:, 2]
     above = heights - pose[2] + (points - pose[:2]) @ (normal[:2] / normal[2])
     return np.asarray(np.max(np.abs(above), axis=1) < level)

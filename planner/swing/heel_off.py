@@ -34,7 +34,7 @@ _LEAST_STEP = 1.5
 
 
 class RollSpan(NamedTuple):
-    """When a foot rolls about its toe edge, and how far.
+    """The time and the angle of a foot's roll about its toe edge.
 
     Attributes:
         start: when it begins to [samples].
@@ -57,11 +57,11 @@ class FootRoll:
     Attributes:
         foot: which.
         start: begin, by the clock of the gait [s].
-        end: end, likewise [s].
+        end: end, by the clock of the gait [s].
         angle: A, the greatest pitch [rad].
         toe: toe edge from the sole's centre [m].
         scaling: how that clock goes meanwhile; None where it goes as the time does.
-        told: what clock and time show at the instant of the scaling [s].
+        shown: what clock and time show at the instant of the scaling [s].
     """
 
     foot: Foot
@@ -70,15 +70,15 @@ class FootRoll:
     angle: float
     toe: float
     scaling: TimeScaling | None = None
-    told: float = 0.0
+    shown: float = 0.0
 
     def rolling(self, time: float) -> bool:
-        """Whether the foot is not level."""
+        """Return true if the foot is not level."""
         return self.start < self._clock(time)[0] < self.end
 
     def _clock(self, time: float) -> tuple[float, float, float]:
         """The clock of the gait [s], its rate [-] and the derivative of that [1/s]."""
-        return (time, 1.0, 0.0) if self.scaling is None else self.scaling.seconds(self.told, time)
+        return (time, 1.0, 0.0) if self.scaling is None else self.scaling.seconds(self.shown, time)
 
     def evaluate(self, time: float) -> tuple[float, float, float]:
         """Pitch, its rate and its acceleration [rad, rad/s, rad/s^2]."""
@@ -98,7 +98,7 @@ class FootRoll:
         return self.start >= begin and self.hardest(begin, end) > most
 
     def centre(self, time: float, level: Array, rates: Array) -> tuple[Array, Array]:
-        """Where the sole's centre is and how it moves, with the foot turned about its toe edge.
+        """Place and velocity of the sole's centre, with the foot turned about its toe edge.
 
         Args:
             time: [s].
@@ -135,13 +135,13 @@ _PER_WAY, _SHORT, _MOST = 3.0, 1.1, 0.5
 
 
 def rolls(leaving: Footstep, stance: Footstep, half_length: float) -> bool:
-    """Whether the foot of a step is so far behind the other one, half a sole's length given [m], that it rolls."""
+    """Return true if a foot, half a sole's length given [m], leaves so far behind the other one that it rolls."""
     ahead = (stance.position - leaving.position)[:2] @ frame_rotation(stance.yaw)
     return bool(ahead[0] > _LEAST_STEP * half_length)
 
 
 def roll_span(ramp: float, lift_off: float, single: float, angle: float) -> RollSpan:
-    """When a foot rolls.
+    """The times of a foot's roll.
 
     Args:
         ramp: time that the weight takes to leave it, which ends as it leaves the ground [samples].

@@ -1,4 +1,4 @@
-"""What legs can do to catch a body: where a foot may land beside its stance foot, how hard hips swing it there."""
+"""The reach of legs that catch a body: landing places beside the stance foot, and how hard hips swing a foot there."""
 
 import math
 from dataclasses import dataclass, field, replace
@@ -15,7 +15,7 @@ from surefoot.planner.types import Array, Footstep
 
 @dataclass(frozen=True)
 class LegReach:
-    """Where legs let a foot land that catches the body, and how hard they swing it there.
+    """The landing places of a foot that catches the body, and the acceleration with which legs swing it there.
 
     The frame is the stance foot's: x ahead, y to the left. Around it lie boxes that keep the soles apart; a circle
     around the hip above it is what the leg spans. Places are those of the soles' centres; so `clear` is the length of a
@@ -26,7 +26,7 @@ class LegReach:
         hip_width: distance between the hips [m].
         near: least distance beside its stance foot at which a foot clears it, centre to centre [m].
         across: how far beyond its stance foot a foot may land that is clear of it; None where legs must not cross [m].
-        clear: distance ahead of or behind the stance foot from which on it is, likewise [m].
+        clear: distance ahead of or behind the stance foot from which on it is, centre to centre [m].
         acceleration: of a swinging sole that the hips' torques allow, forward and sideways [m/s^2].
         sole: length and width of the soles; those of points need no more room where they are turned [m].
         height: of the hips over the soles as the robot stands [m].
@@ -54,7 +54,7 @@ class LegReach:
         return STRIDE * self.radius
 
     def adapting(self, parameters: PlannerParameters) -> "LegReach | None":
-        """What of it a planner makes use of by its step adaptation; None where it makes none."""
+        """The part of it that a planner uses by its step adaptation; None if it uses none."""
         if not parameters.step_adaptation.places:
             return None
         across = self.across if parameters.step_adaptation.crossing else None
@@ -106,7 +106,7 @@ class LegReach:
         return self.around(place, hip, self.allowed(side, ANYWHERE, False)[0], 2.0 * self.radius)
 
     def corner(self, way: Array, side: float) -> Array | None:
-        """Where a foot that comes from beyond its stance foot, or goes there, passes the corner that is in its way.
+        """The corner in the way of a foot that comes from beyond its stance foot, or goes there; None if there is none.
 
         Until it is clear ahead of the stance foot or behind it, it stays beside: it does not cross before, and is back
         before it passes.
@@ -125,7 +125,7 @@ class LegReach:
         return np.array([math.copysign(self.clear, crossed[0]), side * self.near])
 
     def lowering(self, stride: float) -> float:
-        """How much lower than in the gait the CoM is to be for both legs to span a stride, with some of them left [m].
+        """Height that the CoM has to lose for both legs to span a stride, with some of their length left [m].
 
         Args:
             stride: distance between the feet [m].

@@ -1,4 +1,4 @@
-"""What a quintic between two states asks for: its acceleration, its way, and a way round."""
+"""The demands of a quintic between two states: its acceleration, its way, and a way round."""
 
 import math
 
@@ -13,11 +13,11 @@ PEAK = 5.77
 """Greatest acceleration of a quintic from rest to rest, over way / T²: 10 / √3 [-]."""
 
 BRAKING, GAINING = 1.9, 3.9
-"""What a speed takes off that at the end of a quintic to rest, and at its begin, over speed / T: its extremes [-]."""
+"""Effect of a speed at an end of a quintic on the acceleration there, over speed / T: its extremes [-]."""
 
 
 def farthest(acceleration: float, speed: float, time: float) -> float:
-    """How far a quintic gets that comes to rest after a time, without more than an acceleration [m].
+    """Farthest way of a quintic that comes to rest after a time, without more than an acceleration [m].
 
     Args:
         acceleration: of the hips, say [m/s^2].

@@ -1,4 +1,4 @@
-"""Where a footstep may land whatever the legs: the region of commanded steps, and the paper's reachable area."""
+"""The region of footsteps whatever the legs: that of commanded steps, and the paper's reachable area."""
 
 import math
 from dataclasses import dataclass
@@ -54,7 +54,7 @@ class StepRegion:
         return max(self.width[0], soles_apart(self.sole, turn) + self.gap)
 
     def admits(self, stride: Twist) -> bool:
-        """Whether both feet may make a stride."""
+        """Return true if both feet may make a stride."""
         return all(self.why_not(stride.landing(foot)) is None for foot in Foot)
 
     def fitted(self, stride: Twist) -> Twist:
@@ -72,7 +72,7 @@ class StepRegion:
         return stride._replace(width=max(min(stride.width, most), least))
 
     def why_not(self, place: Footstep) -> tuple[str, str] | None:
-        """What is wrong with a landing, in a clause that follows "the foot", and what would be right; None for none."""
+        """The fault of a landing, in a clause that follows "the foot", and what would be right; None if it is right."""
         near, far, ahead = self.nearest(place.yaw), self.width[1], float(place.position[0])
         if abs(place.yaw) > self.turn + LANDING_ROUNDING:
             return (f"turns by {place.yaw:.3g} rad against its stance foot", f"{self.turn:g} rad is the most")
@@ -91,7 +91,7 @@ class StepRegion:
 
 
 def reach_box(parameters: PlannerParameters, side: float) -> tuple[Array, Array]:
-    """Where a footstep may land from its stance foot: lower and upper corner in the plan frame, shape (2,) [m].
+    """Box in which a footstep may land from its stance foot: its corners in the plan frame, shape (2,) each [m].
 
     It is the paper's reachable area, in which its step law saturates a step.
 
@@ -132,7 +132,7 @@ They are counted from the nominal increments: displacements from the foothold be
 
 
 def shifts_within(boxes: Array, increment: Array, free: tuple[bool, bool]) -> Shifts:
-    """Those of footsteps that land in boxes.
+    """Shifts of footsteps that land in boxes.
 
     Args:
         boxes: lower and upper corners, from the foothold before each, shape (step, corner, axis) = (2, 2, 2) [m].
@@ -148,7 +148,7 @@ def shifts_within(boxes: Array, increment: Array, free: tuple[bool, bool]) -> Sh
 
 
 def unshifted(free: tuple[bool, bool]) -> Shifts:
-    """Those of footsteps that stay where they are."""
+    """Shifts of footsteps that stay where they are."""
     bounds = np.array([[0.0, 0.0] if moves else [_UNUSED, _UNUSED] for moves in free])
     return -bounds, bounds
 
@@ -161,9 +161,15 @@ def reachable_shifts(
     swing: Array | None,
     time_left: float,
 ) -> Shifts:
-    """Those within the paper's reachable area, the first step also within what its foot can be swung to in time.
+    """Shifts within the paper's reachable area, of the first step also within its foot's way in the time left.
 
-    Arguments are as of `planner.laws.law.StepContext`; `side` is that of the next step.
+    Args:
+        parameters: of the planner.
+        increment: nominal displacements of the next two steps, shape (2, 2) [m].
+        side: +1 where the next step is a left one, else -1 [-].
+        free: true for each of the two that may be shifted.
+        swing: position of the swing foot from the stance foot, shape (2,) [m]; None when no foot swings.
+        time_left: time until the first of them lands [s].
     """
     lower, upper = shifts_within(np.array([reach_box(parameters, s) for s in (side, -side)]), increment, free)
     if swing is None or not free[0]:

@@ -33,9 +33,9 @@ _MOST_LEAD = 0.25
 class SwingTrajectory:
     """Motion of a swing foot; columns are x, y, z [m], yaw, pitch, roll [rad] in the world frame.
 
-    All but z are one quintic from the state at the last change of target to rest at the target, so that an unchanged
-    target is continued identically; before and after this glide they rest, so that the sole leaves and meets tilted
-    ground flat on it. z is one quintic up to the apex and one down to the touchdown height, joined with continuous
+    All but z are one quintic from the state at the last change of target to rest at the target. So an unchanged target
+    is continued identically. Before and after this glide they rest, so that the sole leaves and meets tilted ground
+    flat on it. z is one quintic up to the apex and one down to the touchdown height, joined with continuous
     acceleration. After the touchdown time all but z hold and z goes on downwards in search of the ground.
 
     Attributes:
@@ -78,14 +78,14 @@ class SwingTrajectory:
 
     @property
     def footstep(self) -> Array:
-        """Where the foot is to land, its target without what it is aimed below that, shape (3,) [m]."""
+        """Landing place of the foot: its target without what it is aimed below that, shape (3,) [m]."""
         place = self.target[:3].copy()
         place[2] += self.aim
         return place
 
     @property
     def bent(self) -> bool:
-        """Whether the way bends round a corner."""
+        """True if the way bends round a corner."""
         return self.bend_time < math.inf
 
     def coefficients(self, time: float) -> Array:
@@ -99,10 +99,10 @@ class SwingTrajectory:
         if time >= self.glide_end - TOUCHING:
             result[0] = self.target
         elif time >= self.start_time - TOUCHING:
-            after, told = time >= self.bend_time - TOUCHING, np.empty((6, len(_GLIDING)))
+            after, glide = time >= self.bend_time - TOUCHING, np.empty((6, len(_GLIDING)))
             level, begin = (self.onward, self.bend_time) if after else (self.level, self.start_time)
-            linear.fused_product(shift(time - begin), level, told)
-            result[:, :2], result[:, 3:] = told[:, :2], told[:, 2:]  # faster than by a list of columns
+            linear.fused_product(shift(time - begin), level, glide)
+            result[:, :2], result[:, 3:] = glide[:, :2], glide[:, 2:]  # faster than by a list of columns
         else:
             result[0, :2], result[0, 3:] = self.level[0, :2], self.level[0, 2:]
         if time >= self.apex_time - TOUCHING:
@@ -145,7 +145,7 @@ class SwingTrajectory:
         return bends
 
     def places(self, *times: float) -> list[tuple[float, float]]:
-        """Where a swing that does not bend is at instants, x and y in plain numbers, which are fast [m]."""
+        """Places of a swing that does not bend at instants, x and y in plain numbers, which are fast [m]."""
         (a, u, *_), (b, v, *_), (c, w, *_), (d, x, *_), (e, y, *_), (f, z, *_) = self.level.tolist()
         found, lasting = [], self.glide_end - self.start_time
         for time in times:
@@ -236,7 +236,7 @@ class SwingTrajectory:
         return moved._with_height(time, state[:, 2:3], max(float(state[0, 2]), self.footstep[2] + self.clearance))
 
     def _with_height(self, time: float, state: Array, apex: float) -> "SwingTrajectory":
-        """Height from a state at `time` on, shape (3, 1), as of `up_and_down`."""
+        """Height from a state at `time` on, shape (3, 1), over an apex [m]; see `up_and_down`."""
         end, times = (self.target.item(2), self.search.touchdown_speed), (time, self.apex_time, self.touchdown_time)
         rise, fall = up_and_down(tuple(state[:, 0].tolist()), apex, end, times, self.lifting, TOUCHING)
         if rise is None:
@@ -250,7 +250,7 @@ _BENDING = (_EXPONENTS * (_EXPONENTS - 1.0))[2:]
 
 @dataclass(frozen=True)
 class SwingCourse:
-    """How a swing divides its time, as shares of it.
+    """The division of a swing's time, in shares of it.
 
     Attributes:
         apex: when the sole is highest [-].
@@ -271,7 +271,7 @@ def start_swing(
     support: tuple[float, float],
     course: SwingCourse,
     parameters: PlannerParameters,
-    unsure: tuple[float, float] = (0.0, 0.0),
+    doubt: tuple[float, float] = (0.0, 0.0),
     lifting: float = math.inf,
 ) -> SwingTrajectory:
     """Swing from rest, which ends some time before the single support does.
@@ -282,12 +282,12 @@ def start_swing(
         support: when its single support begins [s], and how long that lasts [samples].
         course: of the swing; its instants are on a grid of samples.
         parameters: of the planner.
-        unsure: standard deviation of its height over the stance foot, and how high that is believed over its footstep;
+        doubt: standard deviation of its height over the stance foot, and how high that is believed over its footstep;
             it stands, so that the ground is there. Of the truth, whose deviation is zero, neither counts [m].
         lifting: vertical acceleration that it is not to exceed where it is replanned [m/s^2].
     """
     (pose, footstep), (start, samples) = ends, support
-    t, (search, aim), begin = parameters.sample_time, parameters.search.unsure(*unsure), pose.tolist()
+    t, (search, aim), begin = parameters.sample_time, parameters.search.for_deviation(*doubt), pose.tolist()
     target = np.array(footstep)
     target[2] -= aim
     touchdown = start + samples * t - min(parameters.touchdown_lead, _MOST_LEAD * samples * t)

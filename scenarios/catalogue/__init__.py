@@ -37,8 +37,8 @@ OWN: Mapping[str, Traversable] = _inside(files(__name__))
 """Ours that a robot is to do well."""
 
 CONTROLS: Mapping[str, Traversable] = _inside(files(__name__) / "controls")
-"""Ours in which the reference robot comes to known harm, or walks with sensors and motors that err by a known amount: a
-world that is kinder, or a judge that sees less, does not meet their criteria."""
+"""Scenarios of ours in which the reference robot comes to known harm, or walks with known errors of sensors and motors.
+A kinder world, or a judge that sees less, does not meet their criteria."""
 
 OURS: Mapping[str, Traversable] = {**OWN, **CONTROLS}
 """All of ours; their names always mean them."""
@@ -53,12 +53,12 @@ def names() -> tuple[str, ...]:
 
 
 def refusals() -> tuple[str, ...]:
-    """What is not to be found of other packages, and why, one sentence each."""
+    """Reasons why scenarios of other packages are not found, one sentence each."""
     return _others()[1]
 
 
 def package(name: str) -> str:
-    """Which package brings a scenario that there is."""
+    """Package that brings a scenario that there is."""
     return OWN_PACKAGE if name in OURS else _others()[0][name].package
 
 
@@ -87,7 +87,7 @@ def summary(name: str) -> str:
 
 
 def unknown(name: str, what: str) -> ScenarioError:
-    """What to say of a name that no scenario has, with the packages whose scenarios could not be looked at."""
+    """The error for a name that no scenario has, with the packages whose scenarios could not be looked at."""
     return ScenarioError([f"{name}: {what}; {nearest(name, names())}", *refusals()])
 
 

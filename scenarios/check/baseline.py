@@ -25,12 +25,12 @@ from surefoot.sim.options import Option, world_options
 ENDING = ".baseline.yaml"
 
 MOST_BYTES, MOST_VALUES = 2_000_000, 200_000
-"""Of a baseline; each step has a row of the trace."""
+"""Ending of a baseline; each step has a row of the trace."""
 
 SAME_OPTION = 1e-5
 """Share by which an option of the world may differ, which is written with six digits [-]."""
 
-_GAPS_TOLD = 5
+_MOST_GAPS = 5
 
 _LABELS = ["stage", "foot"]
 """First columns of the table."""
@@ -61,14 +61,14 @@ class Move:
 
     @property
     def far(self) -> bool:
-        """Whether it is better by so much that it counts as moved."""
+        """True if it is better by so much that it counts as moved."""
         if self.before is None or self.now is None or self.direction != "better":
             return False
         return abs(self.now - self.before) > FAR * self.allowed
 
     @property
     def welcome(self) -> bool:
-        """Whether the run is better, and not by far."""
+        """True if the run is better, and not by far."""
         return self.direction == "better" and not self.far
 
 
@@ -94,7 +94,7 @@ class Baseline:
     def of(
         cls, scenario: str, settings: str, metrics: Mapping[str, Any], log: Log, criteria: Iterable[str]
     ) -> "Baseline":
-        """What is kept of a run; of metrics of other packages only those that a criterion names.
+        """Make the baseline of a run; of metrics of other packages it keeps only those that a criterion names.
 
         Args:
             scenario: its name.
@@ -112,19 +112,19 @@ class Baseline:
         return cls(scenario, settings, _world(log), kept, Trace.of(log))
 
     def gaps(self, now: "Baseline", criteria: Mapping[str, Bound]) -> list[str]:
-        """What there is of a run that this says nothing about, so that it could be anything; a sentence, or none."""
+        """Parts of a run that this says nothing about, so that they could be anything; a sentence, or none."""
         counted = _counted(criteria)
         missing = [name for name in now.metrics if name not in self.metrics and name in counted]
         missing += [f"the trace's {column}" for column in now.trace.values if column not in self.trace.values]
         missing += [f"the world's {option}" for option in now.world if option not in self.world]
-        more = [f"{len(missing) - _GAPS_TOLD} more"] if len(missing) > _GAPS_TOLD else []
-        gaps = [f"the baseline says nothing of {', '.join((*missing[:_GAPS_TOLD], *more))}"] if missing else []
+        more = [f"{len(missing) - _MOST_GAPS} more"] if len(missing) > _MOST_GAPS else []
+        gaps = [f"the baseline says nothing of {', '.join((*missing[:_MOST_GAPS], *more))}"] if missing else []
         unknown = [name for name in self.metrics if name in counted and known(name) is None]
         right = "install the package that has this metric"
         return [*gaps, *(f"{name} of the baseline is not known here; {right}" for name in unknown)]
 
     def other_world(self, now: "Baseline") -> list[str]:
-        """Which options of the world are not as here, a sentence each."""
+        """Options of the world that are not as here, a sentence each."""
         other = {name: was for name, was in self.world.items() if not _alike(was, now.world.get(name))}
         shown = {name: _flow(now.world[name]) if name in now.world else "none" for name in other}
         return [f"the world's {name} is {shown[name]}, {_flow(was)} in the baseline" for name, was in other.items()]
@@ -142,7 +142,7 @@ class Baseline:
                     yield Move(label, old, new, allowed, metric.unit, _direction(criteria.get(name), old, new))
 
     def others(self, scenario: str, settings: str) -> list[str]:
-        """In what a scenario, its settings in YAML, is another one than the one of this baseline, a sentence each."""
+        """Differences of a scenario, its settings in YAML, from the one of this baseline, a sentence each."""
         named = [f"the baseline is of '{self.scenario}'"] if scenario != self.scenario else []
         before, now = (_flat(parse(text, "settings").value or {}) for text in (self.settings, settings))
         return named + [
@@ -300,14 +300,14 @@ def _flat(settings: Mapping[str, Any], prefix: str = "") -> dict[str, Any]:
 
 
 def _are_finite(value: Any) -> bool:
-    """Whether every number in a value is finite."""
+    """Return true if every number in a value is finite."""
     if isinstance(value, dict | list):
         return all(map(_are_finite, value.values() if isinstance(value, dict) else value))
     return not isinstance(value, float) or math.isfinite(value)
 
 
 def _alike(before: Any, now: Any) -> bool:
-    """Whether an option is the same, but for the digits that are not written."""
+    """Return true if an option is the same, but for the digits that are not written."""
     if isinstance(before, list) and isinstance(now, list):
         return len(before) == len(now) and all(map(_alike, before, now))
     if isinstance(before, int | float) and isinstance(now, int | float):
@@ -322,7 +322,7 @@ def _near(before: MetricValue, now: MetricValue, allowed: float) -> bool:
 
 
 def _direction(bound: Bound | None, before: MetricValue, now: MetricValue) -> Trend:
-    """By the criterion: a bound above asks for less, one below for more; a value that is gone is worse."""
+    """Direction of a change: a bound above asks for less, one below for more; a value that is gone is worse."""
     if now is None:
         return "worse"
     if before is None or bound is None or (bound.min is not None) == (bound.max is not None):

@@ -10,7 +10,7 @@ from surefoot.scenarios.file.criteria import Bound
 from surefoot.scenarios.judge.verdict import Verdict, missed
 
 MARGIN = 0.01
-"""By which a bound is missed, as a share of the value [-]."""
+"""Share of the value by which a bound is missed [-]."""
 
 _LEAST = 1e-9
 """The same for a value of zero, in its unit."""

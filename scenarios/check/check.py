@@ -46,8 +46,8 @@ CheckStatus = Literal[
 
 PASSING: tuple[CheckStatus, ...] = ("same", "better", "written")
 
-UNTOLD: tuple[CheckStatus, ...] = ("could not run", "could not write", "unreadable baseline")
-"""Where the run says nothing for or against the walk."""
+INCONCLUSIVE: tuple[CheckStatus, ...] = ("could not run", "could not write", "unreadable baseline")
+"""Statuses in which the run says nothing for or against the walk."""
 
 
 @dataclass(frozen=True, slots=True)
@@ -60,14 +60,14 @@ class Case:
 
     @property
     def settings(self) -> str:
-        """What shapes the run and is not a default, which a baseline is good for."""
+        """Settings that shape the run and are not defaults, for which a baseline is good."""
         chosen = self.scenario.model_dump(mode="json", exclude_defaults=True, exclude={"name", "criteria"})
         return yaml.safe_dump(chosen, sort_keys=False)
 
 
 @dataclass(frozen=True, slots=True)
 class Checked:
-    """What became of a case.
+    """The result of a case.
 
     Attributes:
         case: that was run.
@@ -91,7 +91,7 @@ class Checked:
 
     @property
     def passed(self) -> bool:
-        """Whether the run met its criteria and is no worse than its baseline, or is its baseline now."""
+        """True if the run met its criteria and is no worse than its baseline, or is its baseline now."""
         return self.status in PASSING
 
 
@@ -131,7 +131,7 @@ def _unfolded(reference: str) -> list[str]:
 
 
 def strays(case: Case) -> tuple[Path, ...]:
-    """What is where the baseline of a case would be, and is that of no scenario file beside it.
+    """Files where the baseline of a case would be that belong to no scenario file beside them.
 
     What is called like one counts, also with another ending or in a folder, and what lies in place of the folder.
     """
@@ -145,13 +145,13 @@ def strays(case: Case) -> tuple[Path, ...]:
 
 
 def _is_scenario(path: Path) -> bool:
-    """Whether a path in a folder is named as a scenario, in great or small letters."""
+    """Return true if a path in a folder is named as a scenario, in great or small letters."""
     name = path.name.lower()
     return name.endswith(".yaml") and not name.endswith(ENDING)
 
 
 def _name(file: Path) -> str:
-    """Of a scenario; of its file where it cannot be read."""
+    """Name of a scenario, or of its file where it cannot be read."""
     try:
         return load(str(file)).name
     except ScenarioError:
@@ -172,7 +172,7 @@ def run_case(case: Case, out: Path) -> Checked:
 
 
 def _held_against_baseline(case: Case, verdict: Verdict, now: Baseline) -> Checked:
-    """What a run is by its verdict and by its baseline, in this order."""
+    """The result of a run by its verdict and by its baseline, in this order."""
     try:
         before = read_baseline(case.baseline) if os.path.lexists(case.baseline) else None
     except ScenarioError as refusal:
@@ -184,7 +184,7 @@ def _held_against_baseline(case: Case, verdict: Verdict, now: Baseline) -> Check
 
 
 def compared(case: Case, before: Baseline, now: Baseline) -> Checked:
-    """What a run is by its baseline alone."""
+    """The result of a run by its baseline alone."""
     if others := before.others(case.scenario.name, case.settings):
         return Checked(case, "other scenario", tuple(others))
     gaps, world = before.gaps(now, case.scenario.criteria), before.other_world(now)
@@ -199,7 +199,7 @@ def compared(case: Case, before: Baseline, now: Baseline) -> Checked:
 
 
 def _first_and_most(partings: Sequence[Parting]) -> tuple[Parting, ...]:
-    """Of partings in order, the first, and the one that is farthest off if that is another."""
+    """The first of some partings in order, and the one that is farthest off if that is another."""
     if not partings:
         return ()
     most = max(partings, key=lambda one: one.excess)
@@ -219,7 +219,7 @@ def check(
         chosen: to run.
         out: directory of their logs.
         jobs: runs at once.
-        on_done: is told each as it is done.
+        on_done: called with each as it is done.
         update: whether to write the baselines anew of the runs that met their criteria and are not the same.
 
     Returns:
@@ -254,4 +254,4 @@ def updated(checked: Checked) -> Checked:
 def exit_code(checked: Sequence[Checked]) -> int:
     """0 when all is as it should be, 2 where something could not be run, read or written, 1 otherwise."""
     statuses = {one.status for one in checked if not one.passed}
-    return 2 if statuses & set(UNTOLD) else int(bool(statuses))
+    return 2 if statuses & set(INCONCLUSIVE) else int(bool(statuses))

@@ -14,7 +14,7 @@ app = typer.Typer()
 
 @dataclass(frozen=True, slots=True)
 class CheckOptions:
-    """What `surefoot check` is told."""
+    """The arguments of `surefoot check`."""
 
     scenarios: Annotated[
         list[str] | None, typer.Argument(help="Catalogue names, files or folders; all of the catalogue by default.")
@@ -34,7 +34,7 @@ class CheckOptions:
 
 @app.command()
 @with_options(CheckOptions)
-def check(told: CheckOptions) -> None:
+def check(options: CheckOptions) -> None:
     """Hold scenarios against their baselines."""
     with importing():
         from surefoot.scenarios.check import check as checking
@@ -42,18 +42,18 @@ def check(told: CheckOptions) -> None:
         from surefoot.scenarios.output import refuse_existing
         from surefoot.scenarios.run.processes import cores
 
-    for report_file in (told.junit, told.markdown):
+    for report_file in (options.junit, options.markdown):
         if report_file is not None:
-            refuse_existing(report_file, told.force)
-    chosen = checking.cases(told.scenarios or (), told.baselines, overrides(told.set_, policy=told.policy))
+            refuse_existing(report_file, options.force)
+    chosen = checking.cases(options.scenarios or (), options.baselines, overrides(options.set_, policy=options.policy))
     try:
-        found = checking.check(chosen, told.out, told.jobs or cores(), report.print_checked, told.update)
+        found = checking.check(chosen, options.out, options.jobs or cores(), report.print_checked, options.update)
     except KeyboardInterrupt:
         typer.echo("interrupted", err=True)
         raise typer.Exit(INTERRUPTED) from None
-    if told.junit is not None:
-        report.write(told.junit, report.junit(found), told.force)
-    if told.markdown is not None:
-        report.write(told.markdown, report.markdown(found).encode(), told.force)
+    if options.junit is not None:
+        report.write(options.junit, report.junit(found), options.force)
+    if options.markdown is not None:
+        report.write(options.markdown, report.markdown(found).encode(), options.force)
     typer.echo(report.summary(found))
     raise typer.Exit(checking.exit_code(found))

@@ -21,7 +21,7 @@ ENDINGS = (".scenario.yaml", ".scenario.yml")
 
 
 def is_scenario(path: Path) -> bool:
-    """Whether a path is named as a scenario that is a test."""
+    """Return true if a path is named as a scenario that is a test."""
     return path.name.lower().endswith(ENDINGS)
 
 
@@ -41,10 +41,10 @@ def pytest_collect_directory(path: Path) -> "Generator[None, pytest.Collector | 
 
 
 def _strange(folder: Path) -> list[Path]:
-    """What is named as a scenario in a folder and is no regular file."""
+    """Paths in a folder that are named as scenarios and are no regular files."""
     try:
         return sorted(path for path in folder.iterdir() if is_scenario(path) and not path.is_file())
-    except OSError:  # told by pytest
+    except OSError:  # reported by pytest
         return []
 
 
@@ -56,7 +56,7 @@ class StrayTest(pytest.Item):
     """Something that is named as a scenario and is none."""
 
     def runtest(self) -> None:
-        """Say so.
+        """Fail with the message.
 
         Raises:
             MissedError: always.
@@ -65,11 +65,11 @@ class StrayTest(pytest.Item):
         raise MissedError(f"{self.path}: is named as a scenario and is {what}; make it a file, or rename or remove it")
 
     def repr_failure(self, excinfo: pytest.ExceptionInfo[BaseException], style: Any = None) -> str:
-        """What it is, without a traceback."""
+        """The failure without a traceback."""
         return str(excinfo.value)
 
     def reportinfo(self) -> tuple[Path, int, str]:
-        """Where it is."""
+        """The place of the item."""
         return self.path, 0, f"scenario {self.name}"
 
 
@@ -113,7 +113,7 @@ class ScenarioTest(pytest.Item):
             shutil.rmtree(checked.log.parent)
 
     def repr_failure(self, excinfo: pytest.ExceptionInfo[BaseException], style: Any = None) -> str:
-        """What was missed, without a traceback, unless it is a defect."""
+        """The missed criteria, without a traceback, unless it is a defect."""
         from surefoot.scenarios.errors import ScenarioError
 
         if isinstance(excinfo.value, MissedError | ScenarioError):
@@ -121,5 +121,5 @@ class ScenarioTest(pytest.Item):
         return str(super().repr_failure(excinfo, style))
 
     def reportinfo(self) -> tuple[Path, int, str]:
-        """Where it is."""
+        """The place of the item."""
         return self.path, 0, f"scenario {self.name}"

@@ -1,4 +1,4 @@
-"""What a check found, for a person, for a CI page and for a CI server."""
+"""The findings of a check, for a person, for a CI page and for a CI server."""
 
 import math
 from collections.abc import Sequence
@@ -23,7 +23,7 @@ _REMEDIES: dict[CheckStatus, str] = {
     "without baseline": "no baseline at {}; --update writes it",
     "written": "written: {}",
 }
-"""What is to be said of a baseline, by the status of its run."""
+"""Remedies for a baseline, by the status of its run."""
 
 _ERRORS: tuple[CheckStatus, ...] = ("could not run", "could not write")
 
@@ -43,7 +43,7 @@ def move_text(move: Move) -> str:
 
 
 def lines_of(checked: Checked) -> list[str]:
-    """What is to be known of one run, worst first: why it failed, in what it parts, what moved, where to look."""
+    """Lines on one run, worst first: why it failed, in what it parts, what moved, where to look."""
     order = {"worse": 0, "other": 1, "better": 2}
     moves = [move_text(move) for move in sorted(checked.moves, key=lambda move: order[move.direction])]
     partings = zip(("first", "most"), checked.partings, strict=False)

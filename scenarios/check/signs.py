@@ -1,4 +1,4 @@
-"""What a run is recognised by: its stages, and a handful of physical quantities in each; where it parts from another.
+"""The signs of a run: a handful of physical quantities in each of its stages; and the place where two runs part.
 
 A stage goes from one lift-off to the next. The first tick is one of its own: all runs of a scenario begin it in the
 same state, so that what one does differently there is its controller's doing alone.
@@ -28,7 +28,7 @@ ALIKE = 0.5
 """Share of the planned changes, squared, that may be left of them when the measured ones are taken off [-]."""
 
 LEAST_CHANGE = 0.01
-"""Change of the planned forces from tick to tick, RMS, below which no lag can be told [N]."""
+"""Change of the planned forces from tick to tick, RMS, below which no lag can be measured [N]."""
 
 
 @dataclass(frozen=True, slots=True)
@@ -75,7 +75,7 @@ Measure = Callable[[RunView, Sequence[Stage]], Array]
 
 @dataclass(frozen=True, slots=True)
 class Sign:
-    """Something that runs are told apart by, a number for each stage, or a place.
+    """Something that distinguishes runs, a number for each stage, or a place.
 
     Attributes:
         columns: names; three are the x, y and z of a place in the world.
@@ -112,7 +112,7 @@ def _times(run: RunView, parts: Sequence[Stage]) -> Array:
 
 
 def _landings(run: RunView, parts: Sequence[Stage]) -> Array:
-    """Where the soles truly were when their swings were over; none where none has swung."""
+    """Places where the soles truly were when their swings were over; none where none has swung."""
     rows = [np.full(3, np.nan) if one.foot < 0 else run.sole(one.foot)[one.landed, :3] for one in parts]
     return np.array(rows).reshape(-1, 3)
 
@@ -172,7 +172,7 @@ def _slip(run: RunView, parts: Sequence[Stage], foot: int) -> Array:
 def _lag(run: RunView, parts: Sequence[Stage]) -> Array:
     """Time by which the measured normal forces follow the planned ones: where their changes differ least.
 
-    Told while the robot shifts its weight before the first step; touchdowns shake the forces more than a lag does.
+    Measured while the robot shifts its weight before the first step; touchdowns shake the forces more than a lag does.
     """
     planned, felt = (
         np.diff(np.column_stack([run.field(topic, f"wrench_{side}")[:, 2] for side in FOOT_NAMES]), axis=0)
@@ -251,14 +251,16 @@ SIGNS: tuple[Sign, ...] = (
     *map(_pressed, FOOT_NAMES),
     Sign(("com_x", "com_y", "com_z"), 4, (2e-3, 0.0), "mm", "balance", "CoM at the end of {label}", _com),
 )
-"""What is kept of a run; of those that part in the same stage, the first is nearest to the cause. Torques come late:
-after the first tick they follow from how the robot moves."""
+"""Signs of a run; of those that part in the same stage, the first is nearest to the cause.
+
+Torques come late: after the first tick they follow from how the robot moves.
+"""
 
 COLUMNS = tuple(column for sign in SIGNS for column in sign.columns)
 
 FAR, _LOST = 10.0, 2.0
 """Tolerances by which a run may be better than its baseline: one that is farther off says that something else than the
-walk has changed, its judge for instance; and how far off a value counts that cannot be told any more [-]."""
+walk has changed, its judge for instance; and how far off a value counts that cannot be measured any more [-]."""
 
 _SIDES = (("ahead of", "behind"), ("to the left of", "to the right of"), ("above", "below"))
 
@@ -298,8 +300,8 @@ _READS: Reads = {
 """Fields of which the signs are made, read in one pass."""
 
 
-def _told(sign: Sign, walker: str) -> bool:
-    """Whether runs of a kind of walker tell a sign."""
+def _applies(sign: Sign, walker: str) -> bool:
+    """Return true if runs of a kind of walker have a sign."""
     return not (sign.body and walker == "pendulum") and not (sign.planned and walker == "seat")
 
 
@@ -324,7 +326,7 @@ class Trace:
         parts = stages(run)
         values: dict[str, Array] = {}
         for sign in SIGNS if parts else ():
-            if _told(sign, run.constants.walker):
+            if _applies(sign, run.constants.walker):
                 values |= dict(zip(sign.columns, sign.measure(run, parts).T, strict=True))
         return cls(tuple(one.label for one in parts), tuple((*FOOT_NAMES, "both")[one.foot] for one in parts), values)
 
@@ -343,24 +345,24 @@ class Trace:
         if (self.labels[stage], self.feet[stage]) != (now.labels[stage], now.feet[stage]):
             which = (f"{one.labels[stage]} with the foot {one.feet[stage]}" for one in (now, self))
             return [Parting(" is in the baseline ".join(which), stage, math.inf, "feet", *window)]
-        told = ((sign, self._apart(now, sign, stage)) for sign in SIGNS)
-        return [Parting(text, stage, far, sign.figure, *window) for sign, (far, text) in told if not far <= 1.0]
+        distances = ((sign, self._apart(now, sign, stage)) for sign in SIGNS)
+        return [Parting(text, stage, far, sign.figure, *window) for sign, (far, text) in distances if not far <= 1.0]
 
     @property
     def _begins(self) -> list[float]:
         return self.values["time"].tolist() if "time" in self.values else [0.0] * len(self.labels)
 
     def _apart(self, now: "Trace", sign: Sign, stage: int) -> tuple[float, str]:
-        """How far a sign is off over what it may be, and that in words."""
+        """Distance of a sign from its value before, over the allowed one, and that in words."""
         before, after = (self._at(sign, stage), now._at(sign, stage))
-        told = np.isfinite(before), np.isfinite(after)
-        if not np.any(told) or not self.values.keys() >= set(sign.columns):
+        known = np.isfinite(before), np.isfinite(after)
+        if not np.any(known) or not self.values.keys() >= set(sign.columns):
             return 0.0, ""
         label, foot = self.labels[stage], self.feet[stage]
         where = {"first tick": "at the first tick", "stand": "before the first step"}.get(label, f"in {label}")
         what = sign.words.format(stage=where, label=label, foot=foot)
-        if not np.all(told):
-            since = "cannot be told any more" if told[0].all() else "could not be told in the baseline"
+        if not np.all(known):
+            since = "cannot be told any more" if known[0].all() else "could not be told in the baseline"
             return _LOST, f"{what} {since}"
         yaw = self.values["sole_yaw"][stage] if len(before) == 3 and "sole_yaw" in self.values else 0.0
         if sign.peak:
@@ -375,7 +377,7 @@ class Trace:
         return float(np.linalg.norm(off)) / allowed, f"{what}: {text}"
 
     def _over_peak(self, now: "Trace", sign: Sign, stage: int, peak: float) -> Array:
-        """How far a value is over the greatest of all stages; where that one is, how far the run is below, if far."""
+        """Distance of a value above the greatest of all stages; in that one's stage, the run's lack, if it is far."""
         (column,), tolerance = sign.columns, sign.tolerance[0] + sign.tolerance[1] * abs(peak)
         below = peak - float(np.nanmax(now.values[column]))
         if self.values[column][stage] == peak and below > FAR * tolerance:
@@ -387,7 +389,7 @@ class Trace:
 
 
 def _place_text(off: Array, yaw: float, sign: Sign) -> str:
-    """How far one place is from another, along the direction in which it is farthest in the heading there."""
+    """Distance of one place from another, in words, along the direction of the greatest part in the heading there."""
     along = (*(off[:2] @ frame_rotation(yaw)), off[2])
     axis = int(np.argmax(np.abs(along)))
     return f"{sign.scale * abs(along[axis]):.1f} {sign.unit} {_SIDES[axis][int(along[axis] < 0.0)]} the baseline"

@@ -16,7 +16,7 @@ from surefoot.scenarios.file.source import decoded
 from surefoot.scenarios.output import reason
 
 FILES: Registry[Callable[[], Mapping[str, Path]]] = Registry("surefoot.files", None, {})
-"""By the kind of the files."""
+"""Functions by the kind of the files."""
 
 
 class Brought(NamedTuple):
@@ -62,7 +62,7 @@ def first_line(path: Path) -> str:
 
 
 def _taken(answer: Any) -> Mapping[str, Path]:
-    """What a function of another package gives, if it is what it should be.
+    """The answer of a function of another package, if it is what it should be.
 
     Raises:
         MisfitError: it is not.

@@ -23,7 +23,7 @@ if TYPE_CHECKING:
     from typer._click.core import Command, Context
 
 MEANT = (typer.TyperException, typer.Exit, typer.Abort, ScenarioError, LinkError, LogError)
-"""By these a command of another package may end, as one of Surefoot's own does."""
+"""Errors by which a command of another package may end, as one of Surefoot's own does."""
 
 
 class CommandTable(Mapping[str, "Command"]):

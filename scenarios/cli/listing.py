@@ -1,4 +1,4 @@
-"""What a scenario can name, and which package brings it; nothing of it is imported to be listed."""
+"""The things that a scenario can name, and the package of each; nothing of them is imported to be listed."""
 
 from collections.abc import Iterator, Mapping
 from dataclasses import dataclass
@@ -24,7 +24,7 @@ _REGISTRIES: Mapping[str, Registry[Any]] = {
     "task": TASKS,
     "metric": METRICS,
 }
-"""By kind: all there are."""
+"""Registries by kind: all there are."""
 
 
 @dataclass(frozen=True, slots=True)
@@ -46,7 +46,7 @@ class Entry:
 
     @property
     def own(self) -> bool:
-        """Whether it comes with Surefoot."""
+        """True if it comes with Surefoot."""
         return self.package == OWN_PACKAGE
 
 
@@ -68,12 +68,12 @@ def entries(metrics: bool = True) -> Iterator[Entry]:
 
 
 def _said(registry: Declared[Any]) -> Mapping[str, str]:
-    """What is said of each of a registry's own; of metrics, whose modules take long to import, as it is written out."""
-    return texts.told("metrics") if registry is METRICS else registry.said
+    """Texts on each of a registry's own; those of metrics, whose modules take long to import, are read from a file."""
+    return texts.entries("metrics") if registry is METRICS else registry.said
 
 
 def refusals() -> tuple[str, ...]:
-    """What of other packages is not listed, and why, one sentence each."""
+    """Reasons why things of other packages are not listed, one sentence each."""
     clashes = (str(clash) for registry in _REGISTRIES.values() for clash in registry.clashes().values())
     return (*catalogue.refusals(), *brought()[1], *clashes)
 

@@ -103,7 +103,7 @@ def schema() -> None:
 
 @dataclass(frozen=True, slots=True)
 class RunOptions:
-    """What `surefoot run` is told."""
+    """The arguments of `surefoot run`."""
 
     scenario: Annotated[
         str, typer.Argument(help="Catalogue name, scenario file, or a log to run again.", autocompletion=scenarios_from)
@@ -120,7 +120,7 @@ class RunOptions:
 
 @app.command()
 @with_options(RunOptions)
-def run(told: RunOptions) -> None:
+def run(options: RunOptions) -> None:
     """Run a scenario, write its log and judge it."""
     with importing():
         from surefoot.native import modules
@@ -129,18 +129,18 @@ def run(told: RunOptions) -> None:
         from surefoot.scenarios.show.console import ProgressLine, print_result
         from surefoot.scenarios.show.replay.beside import LiveView, check
 
-    asked = overrides(told.set_, told.seed, told.policy)
-    loaded = load(told.scenario, asked)
-    if told.video or told.view:
-        check(loaded.fidelity, video=told.video, view=told.view, replace=told.force)
+    asked = overrides(options.set_, options.seed, options.policy)
+    loaded = load(options.scenario, asked)
+    if options.video or options.view:
+        check(loaded.fidelity, video=options.video, view=options.view, replace=options.force)
     progress = ProgressLine(loaded.name)
     with LiveView(progress) as live:
         try:
             with progress:
-                result = run_scenario(loaded, told.out, live if told.view else progress, on_begin=live.begin)
+                result = run_scenario(loaded, options.out, live if options.view else progress, on_begin=live.begin)
         except SetupError as refusal:
-            raise locate(told.scenario, asked, refusal) from None
-        if told.as_json:
+            raise locate(options.scenario, asked, refusal) from None
+        if options.as_json:
             typer.echo(json.dumps({**result.verdict.to_json(), "log": str(result.log)}, allow_nan=False))
         else:
             print_result(loaded.name, result.verdict, result.log)
@@ -149,10 +149,10 @@ def run(told: RunOptions) -> None:
         if result.interrupted:
             typer.echo(f"interrupted; the log up to here is whole: {result.log}", err=True)
             raise typer.Exit(INTERRUPTED)
-        if told.video:
+        if options.video:
             from surefoot.scenarios.show.replay.video import write_video
 
-            write_video(result.log, told.video, replace=told.force)
+            write_video(result.log, options.video, replace=options.force)
         live.wait()
     raise typer.Exit(0 if result.verdict.passed else MISSED)
 
@@ -182,7 +182,7 @@ def program(arguments: Sequence[str] | None = None) -> None:
 
 
 def _meant(end: SystemExit) -> bool:
-    """Whether the command line itself ends the program, and no part of others that leaves."""
+    """Return true if the command line itself ends the program, and no part of others that leaves."""
     *_, (frame, _) = traceback.walk_tb(end.__traceback__)
     return str(frame.f_globals.get("__name__")).partition(".")[0] in ("surefoot", "typer", "click")
 

@@ -40,7 +40,7 @@ def starter(name: str) -> str:
 
 def _explained(lines: Sequence[str]) -> Iterator[str]:
     """Lines of a scenario, with a comment after each key of whose meaning something is known."""
-    said = texts.told("meanings")
+    said = texts.entries("meanings")
     path: list[tuple[int, str]] = []
     for line in lines:
         key = _KEY.fullmatch(line.rstrip())
@@ -62,7 +62,7 @@ def meanings() -> dict[str, str]:
 
 
 def _content(text: str) -> Any:
-    """What a YAML text says; None where it cannot be read."""
+    """Read a YAML text; None where it cannot be read."""
     try:
         return yaml.safe_load(text)
     except yaml.YAMLError:

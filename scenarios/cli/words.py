@@ -17,7 +17,7 @@ if TYPE_CHECKING:
 
 @contextmanager
 def _one_sentence() -> Iterator[None]:
-    """Say what is wrong with the words of a command as of any other bad input: what, where, and what would be right."""
+    """Report bad words of a command as any other bad input: what, where, and what would be right."""
     try:
         yield
     except NoArgsIsHelpError:
@@ -77,6 +77,6 @@ def _on_demand(parameters: list[Any]) -> list[Any]:
     """The same parameters, none of which imports pydantic before a value needs it."""
     for parameter in parameters:
         if isinstance(parameter, _TyperParameter) and parameter._runtime_param is None:
-            told = parameter.type_descriptor
-            parameter._runtime_param = _OnDemand(told.parameter_info, told.annotation)
+            described = parameter.type_descriptor
+            parameter._runtime_param = _OnDemand(described.parameter_info, described.annotation)
     return parameters

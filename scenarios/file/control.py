@@ -13,7 +13,7 @@ _Gains = Annotated[tuple[_Gain, _Gain], BeforeValidator(as_tuple)]
 
 
 class PlantSettings(Group):
-    """What moves the robot: its own simulation, or another simulator or a machine that a package brings."""
+    """The plant that moves the robot: Surefoot's own simulation, or another simulator or a machine of a package."""
 
     name: Annotated[str, OneOf("plant", "name")] | None = key(
         None, "what is measured and moved, null: mujoco, the simulated world"
@@ -22,7 +22,7 @@ class PlantSettings(Group):
 
 
 class SeatSettings(Group):
-    """What has the seat of planner and whole-body controller: a policy, or a controller that a package brings."""
+    """The controller in the seat of planner and whole-body controller: a policy, or one that a package brings."""
 
     policy: str | None = key(
         None, "file of a policy's contract, or its folder, or what its trainer has exported, null: none"
@@ -36,7 +36,7 @@ class SeatSettings(Group):
 
 
 class ControlSettings(Group):
-    """What the joints are given; `surefoot.Controller` takes the same keys."""
+    """The commands to the joints; `surefoot.Controller` takes the same keys."""
 
     output: Literal["torque", "position"] | None = key(
         None, "torques, or targets with gains that the drives follow by themselves, null: torque"
@@ -47,7 +47,9 @@ class ControlSettings(Group):
     stiffness: Annotated[_Gain, Unit("1/rad")] | None = key(
         None, "torque of a target per angle over the largest torque of its joint, null: 1"
     )
-    damping: Annotated[_Gain, Unit("s/rad")] | None = key(None, "likewise per speed, null: 0.01")
+    damping: Annotated[_Gain, Unit("s/rad")] | None = key(
+        None, "torque of a target per speed over the largest torque, null: 0.01"
+    )
     gains: dict[str, _Gains] | None = key(
         None,
         "stiffness and damping of joints by regular expressions of their names, over the two keys above, null: none "
@@ -65,6 +67,6 @@ class ControlSettings(Group):
         None, "half range by which the targets of these joints change every 0.02 s, drawn from the seed, null: 0"
     )
     driven_told: bool | None = key(
-        None, "the controller is told the targets of these joints, false: it sees them move, null: true"
+        None, "the controller is given the targets of these joints, false: it sees them move, null: true"
     )
     give_way: bool | None = key(None, "joints give way once a fall is sure, false: they are driven on, null: true")

@@ -15,7 +15,7 @@ if TYPE_CHECKING:
 
 
 def parse_dumped(text: str, name: str) -> Source:
-    """What `parse` gives, with its arguments and errors; where libyaml finds a fault, `parse` looks for it."""
+    """Parse as `parse` does, with its arguments and errors; where libyaml finds a fault, `parse` looks for it."""
     if yaml.__with_libyaml__ and text.isascii() and "\t" not in text:  # of which the two think differently
         source = Source(name)
         try:

@@ -1,4 +1,4 @@
-"""What groups of scenario keys are made of, and keys that are made from parameters' fields."""
+"""Groups of scenario keys, and keys that are made from parameters' fields."""
 
 import re
 from collections.abc import Iterator
@@ -86,7 +86,7 @@ def _key(entry: "DataclassField[Any]", value: Any) -> Any:
 
 
 def _planner_key(entry: "DataclassField[Any]", value: Any) -> Any:
-    """One of the planner's, which is told in the docstring of its dataclass and is positive."""
+    """One of the planner's, whose meaning is in the docstring of its dataclass and is positive."""
     doc, unit = _RECOVERY[entry.name]
     if isinstance(value, tuple):
         return _annotation(value) | None, key(None, f"{doc}, null: the planner's own [{unit}]")

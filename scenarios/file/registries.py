@@ -17,7 +17,7 @@ TERRAIN_KINDS: Declared[Any] = Declared(
         "slope": "A slope along the start heading; by default its edge is half a step ahead of the start",
     },
 )
-"""Of ``terrain.kind``; what builds the ground, `surefoot.scenarios.setup.terrain` brings."""
+"""Names of ``terrain.kind``; `surefoot.scenarios.setup.terrain` brings the builders of the ground."""
 
 SOURCES: Declared[Any] = Declared(
     "surefoot.estimators",
@@ -26,20 +26,20 @@ SOURCES: Declared[Any] = Declared(
         "ekf": "An invariant Kalman filter of IMU, encoders and feet",
     },
 )
-"""Of ``sensing.source``; what estimates the state, `surefoot.scenarios.run.sensing` brings."""
+"""Names of ``sensing.source``; `surefoot.scenarios.run.sensing` brings the estimators of the state."""
 
 PLANT_NAMES: Declared[Any] = Declared(
     "surefoot.plants",
     {"mujoco": "The simulated world of MuJoCo, with the true robot on the true ground"},
 )
-"""Of ``plant.name``; what moves the robot, `surefoot.scenarios.run.plant` brings."""
+"""Names of ``plant.name``; `surefoot.scenarios.run.plant` brings the plants, which move the robot."""
 
 CONTROLLERS: Declared[Any] = Declared(
     "surefoot.controllers",
     {"policy": "A network that a contract tells what it observes and what its outputs mean"},
     "surefoot.scenarios.policy.controller",
 )
-"""Of ``controller.name``; what takes the seat of planner and whole-body controller."""
+"""Names of ``controller.name``, which takes the seat of planner and whole-body controller."""
 
 DEFAULTS = {
     "terrain": "flat",
@@ -60,4 +60,4 @@ REGISTRIES: dict[Key, Registry[Any]] = {
     ("plant", "name"): PLANT_NAMES,
     ("controller", "name"): CONTROLLERS,
 }
-"""By the key that names a part, or several."""
+"""Registries by the key that names a part, or several."""

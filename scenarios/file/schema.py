@@ -49,7 +49,7 @@ Live = Annotated[bool, Field(description="given by hand while a run went on, so 
 
 
 class RobotSettings(Group):
-    """What of the robot may be changed."""
+    """The changes of the robot."""
 
     foot_length: FootSize | None = key(None, "sole length, null: the robot's own")
     foot_width: FootSize | None = key(None, "sole width, null: the robot's own")
@@ -121,12 +121,12 @@ class PlaceSettings(Group):
 
 
 class CommandSettings(Group):
-    """What the walk is told while it goes on; the planner does not know of it before."""
+    """The commands to the walk while it goes on; the planner does not know of them before."""
 
     time: Instant = Field(description="when")
     v_x: Velocity | None = key(None, "forward velocity from then on, null: 0, or as it was if no velocity is given")
-    v_y: Velocity | None = key(None, "velocity to the left, likewise")
-    yaw_rate: YawRate | None = key(None, "rate of the heading, likewise")
+    v_y: Velocity | None = key(None, "velocity to the left, null: 0, or as it was if no velocity is given")
+    yaw_rate: YawRate | None = key(None, "rate of the heading, null: 0, or as it was if no velocity is given")
     march: bool | None = key(None, "steps in place where that velocity is zero, null: it stands")
     place: PlaceSettings | None = key(None, "where to go, in the world frame, in place of a velocity")
     single_support: Support | None = key(None, "duration from then on, null: as it was")
@@ -210,7 +210,7 @@ class PlannerSettings(Group):
 
 
 class Start(Group):
-    """Where the robot starts; noises are half ranges drawn from the seed."""
+    """The place and posture of the robot at the start; noises are half ranges drawn from the seed."""
 
     x: Place = key(0.0, "world position forward")
     y: Place = key(0.0, "world position left")
@@ -307,7 +307,7 @@ class Rates(Group):
 
 
 class LogSettings(Group):
-    """How much of a run its log holds."""
+    """The part of a run that its log holds."""
 
     keep: Annotated[float, Field(ge=1, le=LONGEST_RUN), SECOND] | None = key(
         None, "a flight recorder: at least the last so much of the run, and at most twice that, null: all of it"
@@ -351,7 +351,7 @@ class Scenario(Group):
     log: LogSettings | None = key(None, "how much of the run its log holds, null: all of it")
     pendulum: PendulumSettings = key(PendulumSettings.model_construct(), "the plant of fidelity pendulum")
     pushes: Many[PushSettings] = key((), "disturbances")
-    commands: Many[CommandSettings] = key((), "what the walk is told while it goes on")
+    commands: Many[CommandSettings] = key((), "commands to the walk while it goes on")
     faults: Many[Fault] = key((), "injected faults")
     rates: Rates = key(Rates.model_construct(), "the clock")
     criteria: dict[str, Bound] = Field(default_factory=standing_walk, description="bounds on metrics")

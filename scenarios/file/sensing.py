@@ -1,6 +1,6 @@
 """The keys of sensors and motors: what is measured of the robot, and what its joints make of commanded torques.
 
-Null is what ``sensing.preset`` has, or an ideal motor; what each term means is told once, in
+Null is what ``sensing.preset`` has, or an ideal motor; what each term means is written once, in
 `surefoot.sim.sensor_errors` and `surefoot.sim.drives`.
 """
 
@@ -30,7 +30,7 @@ OF_SENSORS = "ekf"
 
 
 class Sensing(Group):
-    """What planner and controller know of the robot; noises, offsets and biases are standard deviations."""
+    """The knowledge of the robot for planner and controller; noises, offsets, biases are standard deviations."""
 
     source: Annotated[str, OneOf("sensing", "source")] = key(
         DEFAULTS["sensing"],
@@ -106,7 +106,7 @@ class Sensing(Group):
     @model_validator(mode="before")
     @classmethod
     def _sensors_are_read(cls, keys: Any) -> Any:
-        """Whose sensors are named walks from them, unless its source says otherwise."""
+        """Take the estimate of the sensors as the source if sensors are named, unless the source is given."""
         if isinstance(keys, dict) and keys.get("preset") is not None and "source" not in keys:
             return {**keys, "source": OF_SENSORS}
         return keys
@@ -116,20 +116,20 @@ OF_THE_PLANNER = ("source", "options", "zmp_noise", "com_noise", "force_estimate
 """Keys of `sensing` that are of no sensor."""
 
 SENSOR_KEYS = tuple(name for name in Sensing.model_fields if name not in OF_THE_PLANNER)
-"""Those that say what the sensors of an estimator add to the truth."""
+"""Keys of what the sensors of an estimator add to the truth."""
 
 
 SENSOR_SIZES = tuple(
     name for name in SENSOR_KEYS if name not in ("preset", "wrench", "encoder_velocity", "encoder_bits")
 )
-"""Those that are a size."""
+"""Keys that are a size."""
 
 MOTOR_SIZES = ("damping", "friction_loss", "delay", "noise")
 """Keys of `motors` that are one."""
 
 
 class MotorSettings(Group):
-    """What the motors add that planner and controller do not know of."""
+    """The errors of the motors that planner and controller do not know of."""
 
     damping: Annotated[_Positive, Unit("N·m·s/rad")] | None = key(None, "viscous friction of every joint, null: none")
     friction_loss: Annotated[_Positive, Unit("N·m")] | None = key(None, "dry friction of every joint, null: none")

@@ -62,7 +62,7 @@ class Source:
         )
 
     def describe(self, problem: Problem, together: bool = False) -> str:
-        """Say what is wrong and where.
+        """Describe a fault and its place.
 
         Args:
             problem: what is wrong.

@@ -37,7 +37,7 @@ _BOUNDS = {"greater_than": ("gt", "more than"), "greater_than_equal": ("ge", "at
 
 
 def problems_of(error: ValidationError, data: Any, root: type[BaseModel] = Scenario) -> list[Problem]:
-    """Say each validation error once, at the deepest path that exists in the data."""
+    """Translate each validation error once, at the deepest path that exists in the data."""
     found: dict[Key, Problem] = {}
     for detail in error.errors(include_url=False):
         problem = _problem(detail, data, root)

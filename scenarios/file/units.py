@@ -20,7 +20,7 @@ _SPELLINGS: Mapping[str, tuple[str, Mapping[str, Decimal]]] = {
     "m/s": ("speed", {"m/s": Decimal(1), "cm/s": Decimal("0.01"), "km/h": 1 / Decimal("3.6")}),
     "rad/s": ("turning speed", {"rad/s": Decimal(1), f"{_DEGREE}/s": Decimal(1)}),
 }
-"""What an SI unit measures, and the factor of each unit that may be written; degrees are turned into radians."""
+"""Quantities of the SI units, and the factor of each unit that may be written; degrees are turned into radians."""
 
 _KINDS = {spelling: kind for kind, spellings in _SPELLINGS.values() for spelling in spellings}
 _NUMBER = r"[-+]?(?:[0-9]{1,30}(?:\.[0-9]{0,30})?|\.[0-9]{1,30})(?:[eE][-+]?[0-9]{1,3})?"
@@ -74,7 +74,7 @@ def _si(value: Decimal, spelling: str) -> float | int:
 
 
 def is_number(value: Any) -> bool:
-    """Whether a value is a number, be it NaN or infinite, and no truth value."""
+    """Return true if a value is a number, be it NaN or infinite, and no truth value."""
     return isinstance(value, int | float) and not isinstance(value, bool)
 
 
@@ -86,7 +86,7 @@ METRE, SECOND, RADIAN = map(Unit, ("m", "s", "rad"))
 
 
 def meant(value: float, si: str, most: float) -> str:
-    """What a number in SI, beyond the most of a key, was probably meant to be, as a sentence's end; or empty."""
+    """The probable meaning of a number in SI beyond the most of a key, as a sentence's end; or empty."""
     for spelling in {"m": ("cm", "mm"), "s": ("ms",), "rad": (_DEGREE,), "rad/s": (f"{_DEGREE}/s",)}.get(si, ()):
         factor = _SPELLINGS[si][1][spelling]
         if (

@@ -1,4 +1,4 @@
-"""Whether a log says one thing, and whether what its scenario asks for came to act: commands, places, ground."""
+"""Checks that a log agrees with itself, and that what its scenario asks for acted: commands, places, ground."""
 
 import math
 from collections.abc import Iterator, Mapping, Sequence
@@ -17,24 +17,24 @@ from surefoot.scenarios.judge.walking import fall_time, runs_of
 from surefoot.scenarios.record.provenance import END_RECORD
 
 AT_PLACE = 0.02
-"""Distance from the place where the robot was told to go within which it is there, if no criterion says it [m]."""
+"""Distance from the place where the robot was commanded to go within which it is there, if no criterion says it [m]."""
 
 AT_HEADING = 0.02
-"""Likewise the difference from the heading that it was told to have there, a little more than a degree [rad]."""
+"""Difference from the heading that it was commanded to have there, a little more than a degree [rad]."""
 
 _BEGIN = 0.5
-"""How far from where it should begin the first tick of a log may be, whose first states a line may lose [s]."""
+"""Greatest delay of the first tick of a log, whose first states a line may lose [s]."""
 
 _SAME_TIME = 1e-6
 """Times of commands are sums and carry rounding [s]."""
 
 
 def not_there(metrics: Mapping[str, object], criteria: Mapping[str, Bound], length: float) -> Iterator[str]:
-    """Say what of its way a robot of a length [-] has not gone, unless a criterion says how far from it it may be."""
+    """Report the way that a robot of a length [-] has not gone, unless a criterion says how far from it it may be."""
     for name, near, unit in (("place_error", AT_PLACE * length, "m"), ("heading_error", AT_HEADING, "rad")):
         error = metrics.get(name)
         if isinstance(error, float) and name not in criteria and error > near:
-            what = f"the robot is {error:.3g} {unit} from where it was told to go last"
+            what = f"the robot is {error:.3g} {unit} from where it was commanded to go last"
             yield f"{what}; it must be within {near:g} {unit}"
     missed = metrics.get("waypoints_missed")
     if missed and "waypoints_missed" not in criteria:
@@ -60,10 +60,10 @@ class _Gait:
         return float(self.plans[later[0]]) if len(later) else math.inf
 
     def stepping(self, begin: float, end: float) -> bool:
-        """Whether a foot is swung or the weight shifted between two times."""
+        """Return true if a foot is swung or the weight shifted between two times."""
         return bool(self.phase[(self.time >= begin - _SAME_TIME) & (self.time < end - _SAME_TIME)].any())
 
-    def laid(self, time: float) -> int:
+    def begun_by(self, time: float) -> int:
         """Steps whose swing is fixed at a time: those begun, and the one to which the weight is being shifted."""
         begun = sum(self.time[first] <= time for first, _ in self.swings)
         here = int(np.searchsorted(self.time, time - _SAME_TIME))
@@ -73,7 +73,7 @@ class _Gait:
 
 
 def idle_commands(run: RunView, commands: Sequence[CommandSettings]) -> Iterator[str]:
-    """Say which of the promised commands of a scenario came to nothing, of those that came in what the log has.
+    """Report the promised commands of a scenario that came to nothing, of those that came in what the log has.
 
     Where to walk, and how long supports last, acts on a robot that steps before another command supersedes it; a swing
     height on the next step that is not yet begun. One that asks to stand, or for what holds anyway, asks for no change.
@@ -91,7 +91,7 @@ def idle_commands(run: RunView, commands: Sequence[CommandSettings]) -> Iterator
 
 
 def _unheard(run: RunView, commands: Sequence[CommandSettings]) -> Iterator[str]:
-    """Say which promised commands a controller without a planner has not heard in what the log has."""
+    """Report the promised commands that a controller without a planner has not heard in what the log has."""
     heard, near = run.log["/command"].time if run.has("/command") else np.zeros(0), 1.5 / run.constants.control_rate
     for index, command in enumerate(commands):
         seen = run.kept is None or command.time > run.kept.begin
@@ -109,7 +109,7 @@ def _idle(name: str, command: CommandSettings, later: Sequence[CommandSettings],
         if until <= begin:
             yield f"{name}.{entry} never acted: another command superseded it before a plan was made"
         elif entry == "swing_height":
-            if gait.laid(min(until, gait.time[-1])) == gait.laid(begin):
+            if gait.begun_by(min(until, gait.time[-1])) == gait.begun_by(begin):
                 yield f"{name}.{entry} never acted: the robot began no step by it"
         elif not gait.stepping(begin, until):
             yield f"{name}.{entry} never acted: the robot stood for as long as it held"
@@ -125,20 +125,20 @@ def _asked(command: CommandSettings) -> Iterator[str]:
 
 
 READS: Reads = {"/command": ("velocity", "yaw_rate", "followed_velocity", "followed_yaw_rate")}
-"""Of commands, what `bent_commands` compares."""
+"""Fields of commands that `bent_commands` compares."""
 
 _AS_ASKED = 1e-3
 """Share of a velocity by which the one that is followed may be another for rounding [-]."""
 
 
 def bent_commands(run: RunView) -> Iterator[str]:
-    """Say how many of the velocities that a walk was told were out of reach, and what it did in place of the first."""
+    """Report the velocities commanded to a walk that were out of reach, and what it did in place of the first."""
     if not run.has("/command"):
         return
-    told = run.log["/command"]
+    commands = run.log["/command"]
     try:
         asked, followed = (
-            np.column_stack([told.field(f"{kind}velocity"), told.field(f"{kind}yaw_rate")])
+            np.column_stack([commands.field(f"{kind}velocity"), commands.field(f"{kind}yaw_rate")])
             for kind in ("", "followed_")
         )
     except LogError:  # of a version that did not tell
@@ -149,7 +149,7 @@ def bent_commands(run: RunView) -> Iterator[str]:
         return
     first, given = rows[0], int(np.isfinite(asked).all(axis=1).sum())
     what = f"commanded velocities out of reach, bent to what is not: {len(rows)} of {given}, the first at"
-    yield f"{what} {told.time[first]:.6g} s from {_velocity(asked[first])} to {_velocity(followed[first])}"
+    yield f"{what} {commands.time[first]:.6g} s from {_velocity(asked[first])} to {_velocity(followed[first])}"
 
 
 def _velocity(values: Array) -> str:
@@ -158,7 +158,7 @@ def _velocity(values: Array) -> str:
 
 
 def unmet_ground(run: RunView) -> Iterator[str]:
-    """Say which ground that is not as believed no foot came upon, so that it was no test."""
+    """Report ground, not as believed, that no foot came upon, so that it was no test."""
     unforeseen = run.constants.unforeseen
     if not unforeseen or not run.has("/truth", "/contact"):
         return
@@ -183,7 +183,7 @@ def _stances(run: RunView, start: int) -> Array:
 
 
 def contradictions(run: RunView) -> tuple[str, ...]:
-    """Say where the record of a run's end, the clock and the data of a whole log do not go together."""
+    """Report contradictions between the record of a run's end, the clock and the data of a whole log."""
     if not run.has("/truth"):
         return ("the log shows no motion: /truth has no messages",)
     with np.errstate(invalid="ignore", divide="ignore", over="ignore"):

@@ -32,10 +32,10 @@ def zmp_edge(run: RunView) -> Array:
 
 @reduction(*_SUPPORTED)
 def zmp_depth(run: RunView) -> Array:
-    """The same of feet shrunk to 90 %, shape (n,) [m].
+    """Depth of the measured ZMP inside the polygon of feet shrunk to 90 %, shape (n,) [m].
 
-    A hull of shrunk feet is the hull of the feet with each edge moved in by a tenth of the foot's half extent along
-    the edge's normal; exact for parallel feet, and on the safe side for others.
+    A hull of shrunk feet is the hull of the feet with each edge moved in by a tenth of the foot's half extent along the
+    edge's normal. That is exact for parallel feet, and on the safe side for others.
     """
     return _to_edge(run, 1 - MARGIN)
 
@@ -55,7 +55,7 @@ def _to_edge(run: RunView, cut: float) -> Array:
 
 
 def zmp_inside(run: RunView) -> Mask:
-    """Whether the ZMP is inside the planned support polygon of feet shrunk to 90 %, shape (n,); not so in flight."""
+    """Mark ticks with the ZMP inside the planned support polygon of feet shrunk to 90 %, shape (n,); none in flight."""
     return np.asarray(run.reduced(zmp_depth) >= -1e-9)
 
 
@@ -116,7 +116,7 @@ def zmp_error_max(run: RunView) -> list[float] | None:
 
 @reduction("/plan")
 def predicted(run: RunView) -> Array:
-    """What each plan predicts for 0.2 s later, shape (plans, 6): CoM, its velocity x y, ω; NaN beyond its horizon."""
+    """Prediction of each plan for 0.2 s later, shape (plans, 6): CoM, its velocity x y, ω; NaN beyond its horizon."""
     plan, sample = run.log["/plan"], round(PREDICTION * run.constants.similarity.time / run.constants.sample_time)
     com, velocity, omega = (plan.field(name) for name in ("com", "com_velocity", "omega"))
     if sample >= com.shape[1]:
@@ -170,9 +170,9 @@ def step_timing(run: RunView) -> float | None:
 
 
 def _least(values: Array) -> float | None:
-    """The least of those that a planner has told; None where it tells none."""
-    told = values[np.isfinite(values)]
-    return float(told.min()) if len(told) else None
+    """The least of those that a planner has reported; None where it reports none."""
+    known = values[np.isfinite(values)]
+    return float(known.min()) if len(known) else None
 
 
 def _most(values: Array) -> float | None:

@@ -1,4 +1,4 @@
-"""What of a run is not as planner and controller believe it, by the keys of its scenario, and by how much.
+"""The departures of a run from what planner and controller believe, by the keys of its scenario.
 
 A departure is as large as 1 when walks bear it, and no more than that was tried or survived: README.md tells so of
 masses and CoM, docs/serve.md of late commands. Of gains it is a factor, and of sensors what an estimate makes of them.
@@ -26,10 +26,10 @@ MASS = 0.25
 """Share by which a mass may be off [-]."""
 
 COM_HEIGHT, TORSO_COM = 0.1, 0.05
-"""By how much the CoM may be believed too high, and that of the torso anywhere [m]."""
+"""Heights by which the CoM may be believed too high, and that of the torso anywhere [m]."""
 
 DELAY, HELD = 0.01, 0.02
-"""How late commands may come, and how long one may be held [s]."""
+"""Longest delay of commands, and longest time for which one may be held [s]."""
 
 FACTOR = 8.0
 """Factor of a gain; the drives of the G1 tour are damped seven times as much as usual [-]."""
@@ -61,7 +61,7 @@ class Departure:
 
 @dataclass(frozen=True, slots=True)
 class Beliefs:
-    """What is not as believed.
+    """The departures from what is believed.
 
     Attributes:
         friction: coefficient of every surface, and the one that the controller counts on [-].
@@ -77,13 +77,13 @@ class Beliefs:
 
     @property
     def less_friction(self) -> bool:
-        """Whether some ground has less friction than the controller counts on."""
+        """True if some ground has less friction than the controller counts on."""
         true, believed = self.friction
         return min((true, *self.slippery.values())) < believed - SAME_FRICTION
 
 
 def beliefs(run: RunView) -> Beliefs:
-    """What is not as believed in a run.
+    """Find the departures from what is believed in a run.
 
     Raises:
         LogError: its log holds no scenario that can be read.

@@ -1,4 +1,4 @@
-"""What a body is to a judge: what its joints are for, and what a fall is."""
+"""A body as a judge sees it: the roles of its joints, and the definition of a fall."""
 
 import math
 import re
@@ -39,7 +39,7 @@ def side_of(name: str) -> str:
 
 
 def feet_lean(roles: Roles) -> bool:
-    """Whether no joint rolls the feet, which then stand on side edges (see `surefoot.wbc.body.leaning`)."""
+    """Return true if no joint rolls the feet, which then stand on side edges (see `surefoot.wbc.body.leaning`)."""
     return len(roles.get("left_leg", ())) == WITHOUT_ROLL
 
 
@@ -60,13 +60,13 @@ fallen [m]."""
 
 
 def lies(height: Any, nominal: float, tilt: Any, touching: Any) -> Any:
-    """Whether a body has fallen: it is low, its torso lies, or more than its feet touches the ground.
+    """Return true if a body has fallen: it is low, its torso lies, or more than its feet touches the ground.
 
     Args:
         height: CoM above the lower sole, a number or shape (n,) [m].
         nominal: height of the CoM above the soles in the gait [m].
-        tilt: angle of the torso from the vertical, likewise [rad].
-        touching: not zero where something but a foot touches the ground, likewise.
+        tilt: angle of the torso from the vertical, a number or shape (n,) [rad].
+        touching: not zero where something but a foot touches the ground, a number or shape (n,) [N or -].
 
     Returns:
         a truth value, or shape (n,).
@@ -75,11 +75,11 @@ def lies(height: Any, nominal: float, tilt: Any, touching: Any) -> Any:
 
 
 def lost(dcm: NDArray[np.float64], zmp: NDArray[np.float64], length: float = 1.0) -> Any:
-    """Whether a pendulum has fallen: its DCM is out of reach of any foot.
+    """Return true if a pendulum has fallen: its DCM is out of reach of any foot.
 
     Args:
         dcm: shape (2,) or (n, 2) [m].
-        zmp: likewise.
+        zmp: shape (2,) or (n, 2) [m].
         length: size of the robot (see `surefoot.similarity`) [-].
 
     Returns:

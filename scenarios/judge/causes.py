@@ -1,4 +1,4 @@
-"""Why a robot fell: what acted on it before it lost its balance, and what is not as planner and controller believe it.
+"""Causes of a fall: actions before balance was lost, and departures from what planner and controller believe.
 
 A cause acted in the half second before balance was lost, or before steps had to catch the body. Such events stand in
 the order of time. What is wrong all the time comes after them, the largest departure first. Friction as believed and
@@ -23,7 +23,7 @@ LEAST_PUSH = 0.05
 """Impulse of a push that may fell a robot, an eighth of what one survives in mid-swing [N·s/kg]."""
 
 LEAST_STEP = 0.005
-"""How much higher or lower than believed ground may be that fells nobody [m]."""
+"""Difference of ground from believed height that fells nobody [m]."""
 
 _FAULTS = {
     "torque_loss": "the motors give no torque",
@@ -34,7 +34,7 @@ _FAULTS = {
 
 
 def causes(run: RunView, lost: Loss) -> tuple[Finding, ...]:
-    """What made a robot lose its balance, events in the order of time first; empty where all was as believed.
+    """Find the causes of a loss of balance, events in the order of time first; empty where all was as believed.
 
     Raises:
         LogError: its log holds no scenario that can be read.
@@ -65,12 +65,12 @@ def _pushed(run: RunView, lost: Loss) -> Iterator[Finding]:
 
 
 def _before(lost: Loss, time: float) -> str:
-    """When balance was lost after something began [s]."""
+    """The delay of the loss of balance after something began, in words."""
     return f"balance is lost {max(lost.time - time, 0.0):.2f} s after it began"
 
 
 def _way(run: RunView, tick: int, impulse: Array) -> str:
-    """Where a push points, seen from the robot."""
+    """Direction of a push, seen from the robot, in words."""
     yaw = np.angle(np.exp(1j * run.sole_yaw[tick]).sum())
     ahead, left = (impulse[:2] @ np.array([[np.cos(yaw), -np.sin(yaw)], [np.sin(yaw), np.cos(yaw)]])).tolist()
     words = [("forward" if ahead > 0.0 else "backward", abs(ahead)), ("left" if left > 0.0 else "right", abs(left))]
@@ -121,7 +121,7 @@ def _friction_under(run: RunView, foot: int, tick: int) -> float:
 
 
 def _stands_on(run: RunView, foot: int, tick: int, number: int) -> bool:
-    """Whether a box of the ground carries a sole."""
+    """Return true if a box of the ground carries a sole."""
     place = np.append(run.sole(foot)[tick, :2], run.sole_yaw[tick, foot])[None]
     half = 0.5 * np.array([run.constants.foot_length, run.constants.foot_width])
     return feet.terrain_of(run).carries(place, half, number)
@@ -146,7 +146,7 @@ def _stepped(run: RunView, lost: Loss) -> Iterator[Finding]:
 
 
 def _height(run: RunView, key: str) -> float:
-    """By how much the ground that a key has put there is higher or lower than believed, for the reference robot [m]."""
+    """Height over the believed one of the ground that a key has put there, for the reference robot [m]."""
     scenario = scenario_of(run.log)
     errors, length = scenario.errors, run.constants.similarity.length
     if key.startswith("errors.ground."):
@@ -159,7 +159,7 @@ def _height(run: RunView, key: str) -> float:
 
 
 def _lasting(run: RunView, lost: Loss) -> Iterator[Finding]:
-    """What is wrong all the time by more than walks bear, the largest first."""
+    """Faults that last for all the run and are more than walks bear, the largest first."""
     known = beliefs(run)
     found = [(one.size, one.kind, one.what) for one in known.departures]
     if known.sensors:
@@ -176,12 +176,12 @@ def _misled(run: RunView, lost: Loss) -> float:
     if run.has(SENSED):
         errors = [run.field(SENSED, "com_error")[before]]  # where the robot is in the world no sensor tells
     else:
-        told = run.log["/planner_state"] if run.has("/planner_state") else None
+        planner = run.log["/planner_state"] if run.has("/planner_state") else None
         errors = [(run.field("/estimate", "com") - run.field("/truth", "com"))[before]] if run.has("/estimate") else []
-        if told is not None:
-            rows, near = run.rows_at("/truth", told.time_ns)
-            given = near & (rows < run.ticks) & (told.time <= lost.time)
-            error = told.field("com")[given] - run.field("/truth", "com")[rows[given]]
+        if planner is not None:
+            rows, near = run.rows_at("/truth", planner.time_ns)
+            given = near & (rows < run.ticks) & (planner.time <= lost.time)
+            error = planner.field("com")[given] - run.field("/truth", "com")[rows[given]]
             errors.append(error * (1.0, 1.0, 0.0))  # the planner has a height of its own
     worst = max((float(np.nanmax(np.linalg.norm(error, axis=1), initial=0.0)) for error in errors), default=0.0)
     return worst / (DRIFT * run.constants.similarity.length)

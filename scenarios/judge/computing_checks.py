@@ -15,7 +15,7 @@ LEAST_MEAN = 0.5
 OVERRUNS = 0.01
 """Share of ticks that may take longer than their period [-]."""
 PARTS = ("state", "wbc_build", "wbc_solve", "planner", "physics", "log")
-"""Of a tick, whose times are told."""
+"""Parts of a tick whose times are logged."""
 
 
 def estimator_drift(run: RunView) -> Finding:
@@ -34,7 +34,7 @@ def estimator_drift(run: RunView) -> Finding:
 
 
 def _not_as_believed(run: RunView) -> str:
-    """What may mislead an estimate: masses, or sensors that are poorer than their preset; empty where neither is."""
+    """Departures that may mislead an estimate: masses, or sensors that are poorer than their preset; or empty."""
     from surefoot.scenarios.judge.beliefs import beliefs
 
     known = beliefs(run)

@@ -24,11 +24,13 @@ CONTROL_TOPICS = ("/measurement", "/truth", "/estimate", "/contact", "/reference
 """Topics with a message in every control tick."""
 
 SENSED = "/estimation"
-"""Likewise of runs whose estimator senses."""
+"""Topic with a message in every control tick of runs whose estimator senses."""
 
 GAIT = "/gait"
-"""Likewise of runs of a seat: the gait as feet feel it. Of other runs the fields ``phase`` and ``stance`` of
-``/reference``, the gait as planned, are found under this name."""
+"""Topic with a message in every control tick of runs of a seat: the gait as feet feel it.
+
+Of other runs the fields ``phase`` and ``stance`` of ``/reference``, the gait as planned, are found under this name.
+"""
 
 PLANNED = ("/reference", "/plan", "/planner_state", "/footsteps", "/wbc", "/estimate")
 """Topics of planner and whole-body controller, which a run has not with another controller in their seat."""
@@ -77,7 +79,7 @@ class Window:
         path: of the log.
         size: of the log [bytes].
         metadata: of the log.
-        attachments: likewise.
+        attachments: of the log.
     """
 
     def __init__(self, log: "Log", channels: Mapping[str, Channel]) -> None:
@@ -102,7 +104,7 @@ Reduce = Callable[[Source], Mapping[Any, NDArray[Any]]]
 
 
 class Digest(Window):
-    """What was kept of a log; stands for it where metrics are computed.
+    """The kept part of a log; stands for it where metrics are computed.
 
     Attributes:
         constants: of the run.
@@ -116,7 +118,7 @@ class Digest(Window):
         kept, self.reduced = Columns(), Columns()
         for number, channels in enumerate(in_step(log.windows(topics))):
             if number and not any(map(len, channels.values())):
-                continue  # nothing was put off: of nothing, the first part has told all kinds of fields
+                continue  # nothing was put off: of nothing, the first part has shown all kinds of fields
             keep(kept, channels, held)
             for key, values in reduce(Window(log, channels)).items():
                 self.reduced.add(key, np.array(values))  # of which a view would keep all that it is of
@@ -124,7 +126,7 @@ class Digest(Window):
 
 
 LAG_NS = 100_000_000
-"""What is put off at most [ns]."""
+"""Longest delay of data [ns]."""
 
 
 def in_step(windows: Iterable[dict[str, "ChannelData"]]) -> Iterator[dict[str, "ChannelData"]]:
@@ -186,7 +188,7 @@ class RunView:
         self.constants = known or RunConstants.from_metadata(log.metadata, str(log.path))
 
     def has(self, *topics: str) -> bool:
-        """Whether all of these topics have messages."""
+        """Return true if all of these topics have messages."""
         return all(map(self._has, topics))
 
     def _has(self, topic: str) -> bool:
@@ -204,20 +206,20 @@ class RunView:
         return self.log[self._found(topic)].field(name)[: self.ticks]
 
     def reduced(self, reduce: "Callable[[RunView], Array]") -> Array:
-        """What a function makes of each tick or message: out of the digest if it holds that."""
+        """Values that a function makes of each tick or message: out of the digest if it holds them."""
         if isinstance(self.log, Digest) and reduce in self.log.reduced:
             return self.log.reduced[reduce]
         return reduce(self)
 
     def once(self, function: "Callable[[RunView], T]") -> T:
-        """What a function makes of the run, for whoever asks: of small things that many metrics need."""
+        """Value that a function makes of the run, for whoever asks: of small things that many metrics need."""
         if function not in self._made:
             self._made[function] = function(self)
         return cast("T", self._made[function])
 
     @cached_property
     def kept(self) -> Kept | None:
-        """What of the run a flight recorder has kept; None where the log has all of it."""
+        """The part of the run that a flight recorder has kept; None where the log has all of it."""
         return Kept.from_metadata(self.log.metadata, str(self.log.path))
 
     @cached_property

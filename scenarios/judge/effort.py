@@ -34,7 +34,7 @@ def knee_torque_squared(run: RunView) -> Array:
 
 @reduction("/measurement")
 def joint_overrun(run: RunView) -> Array:
-    """How far a joint is beyond its limits at most at each tick, negative inside [rad], and which; shape (n, 2)."""
+    """Greatest overrun of a joint's limits at each tick, negative inside [rad], and the joint; shape (n, 2)."""
     position = run.field("/measurement", "joint_position")
     below = np.array(run.constants.position_lower) - position
     return _largest(np.maximum(below, position - np.array(run.constants.position_upper)))

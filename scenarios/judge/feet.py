@@ -20,7 +20,7 @@ _CLEARANCE_TICKS = 5
 
 
 def landed(run: RunView) -> Array:
-    """Where each footstep's sole truly was when it was booked, x y z yaw, shape (k, 4) [m, rad].
+    """True place of each footstep's sole when it was booked, x y z yaw, shape (k, 4) [m, rad].
 
     Not ``/footstep.actual``, which is where the controller believed it. Of a leaning sole, the line on which it stands.
     """
@@ -97,14 +97,14 @@ LOADED = 0.02
 """Share of the weight from which a foot carries load, what a controller feels as ground [-]."""
 
 DROPOUT = 0.05
-"""How long a foot that has touched down may lose its load again before it counts as back in the air [s]."""
+"""Time for which a foot that has touched down may lose its load before it counts as back in the air [s]."""
 
 ON_GROUND = 0.005
 """Height over the ground up to which a corner of a loaded sole is on it [m]."""
 
 
 def loaded(run: RunView) -> Mask:
-    """Whether each foot carries load, by the measured force, shape (n, 2)."""
+    """Mark the ticks at which each foot carries load, by the measured force, shape (n, 2)."""
     return np.asarray(run.field("/contact", "normal_force") > LOADED * run.constants.mass * GRAVITY)
 
 
@@ -124,9 +124,9 @@ class Stance:
 def stances(run: RunView, until: int | None = None) -> list[Stance]:
     """Every stance that carried load, up to a tick.
 
-    A foot that touches down before its time, in the second half of its swing, stands from then on; a load that it loses
-    for longer than a dropout, and not as a contact that the controller holds, was a graze of the swing. Where nothing
-    is planned, a stance is a load without a longer dropout in it.
+    A foot that touches down before its time, in the second half of its swing, stands from then on. If it then loses its
+    load for longer than a dropout, and the controller does not hold the contact, that was a graze of the swing. Where
+    nothing is planned, a stance is a load without a longer dropout in it.
     """
     load = loaded(run)[:until]
     gap, found = DROPOUT * run.constants.similarity.time * run.constants.control_rate, []
@@ -156,7 +156,7 @@ def _spells(load: Mask, gap: float) -> list[Rows]:
 
 @dataclass(frozen=True, slots=True)
 class Slip:
-    """How far the farthest corner of a sole (0 left, 1 right) is from where it came to the ground, in one stance.
+    """Way of the farthest corner of a sole (0 left, 1 right) from where it came to the ground, in one stance.
 
     Attributes:
         foot: 0 left, 1 right.
@@ -254,7 +254,7 @@ def contact_force_peak(run: RunView) -> float:
 
 @metric(unit="s", needs=(*_STANCE_READS, "/reference"), reads=_STANCE_READS, body=True, least=0.0)
 def unplanned_flight_time(run: RunView) -> float:
-    """How long, after the first load, no foot carried load though one was planned in contact [s]."""
+    """Time, after the first load, in which no foot carried load though one was planned in contact [s]."""
     standing, planned = loaded(run).any(axis=1), (run.field("/contact", "planned") != 0).any(axis=1)
     flying = np.logical_or.accumulate(standing) & ~standing & planned
     return float(np.count_nonzero(flying) / run.constants.control_rate)
@@ -268,7 +268,7 @@ def unplanned_flight_time(run: RunView) -> float:
     least=0.0,
 )
 def self_contact_time(run: RunView) -> float:
-    """How long the robot touched itself, before a fall [s]."""
+    """Time in which the robot touched itself, before a fall [s]."""
     fallen = fall_time(run)
     touching = run.field("/truth", "self_contact") != 0
     if fallen is not None:

@@ -1,4 +1,4 @@
-"""What a health check finds in a log."""
+"""The findings of a health check in a log."""
 
 from dataclasses import dataclass
 from typing import Any, Literal
@@ -36,7 +36,7 @@ class Finding:
 
     @property
     def cause(self) -> str:
-        """What was found, and why."""
+        """The finding and its likely cause."""
         return ": ".join(filter(None, (self.found, self.likely)))
 
     def to_json(self) -> dict[str, Any]:
@@ -52,14 +52,14 @@ class Finding:
 
 
 def judged(check: str, time: float | None, value: float | None, found: str = "", likely: str = "") -> Finding:
-    """A warning where there is a time of the first evidence; else all is well, and nothing is told."""
+    """A warning where there is a time of the first evidence; else all is well, and nothing is reported."""
     if time is None:
         return Finding(check, "ok", None, value)
     return Finding(check, "warning", time, value, found, likely)
 
 
 def shared(check: str, warn: bool, value: float | None, found: str = "", likely: str = "") -> Finding:
-    """What a check finds in a run as a whole, at no time of its own."""
+    """Make the finding of a check in a run as a whole, at no time of its own."""
     return Finding(check, "warning", None, value, found, likely) if warn else Finding(check, "ok", None, value)
 
 

@@ -85,7 +85,7 @@ def findings(digest: Digest) -> tuple[Finding, ...]:
 
 
 def _fallen(run: RunView) -> "tuple[Loss | None, tuple[Finding, ...]]":
-    """When a robot lost its balance, and why; None of one that did not fall."""
+    """The loss of a robot's balance, and its causes; None of one that did not fall."""
     if not run.has("/truth"):
         return None, ()
     from surefoot.scenarios.judge.causes import causes
@@ -113,7 +113,7 @@ def _related(finding: Finding, why: tuple[Finding, ...], lost: "Loss") -> Findin
 
 
 def _found(check: Callable[[RunView], Finding], run: RunView) -> Finding:
-    """What a check finds, also in values that no run has."""
+    """The finding of a check, also in values that no run has."""
     try:
         return check(run)
     except (LogError, ValueError, IndexError, TypeError) as error:

@@ -1,4 +1,4 @@
-"""What a log says about itself: verdict, health, topics and rates."""
+"""The inspection of a log: verdict, health, topics and rates."""
 
 import math
 from collections.abc import Iterable
@@ -19,7 +19,7 @@ from surefoot.scenarios.log.reader import RECOVERED
 
 @dataclass(frozen=True, slots=True)
 class TopicRate:
-    """How many messages there are of a topic, and how many over the time of the log [Hz]."""
+    """The number of messages of a topic, and their rate over the time of the log [Hz]."""
 
     topic: str
     messages: int
@@ -28,7 +28,7 @@ class TopicRate:
 
 @dataclass(frozen=True, slots=True)
 class Inspection:
-    """What was found in a log.
+    """The findings in a log.
 
     Attributes:
         log: its path.
@@ -59,7 +59,7 @@ class Inspection:
 
 
 def inspect(log: Log, strict: bool = False) -> Inspection:
-    """Inspect a log, also a truncated one; ``strict`` as of `judge`.
+    """Inspect a log, also a truncated one; ``strict`` fails a log that cannot be proven to be whole.
 
     Raises:
         LogError: it does not describe a run.
@@ -83,7 +83,7 @@ def inspect(log: Log, strict: bool = False) -> Inspection:
 
 
 def _file_findings(log: Log, end: float) -> list[Finding]:
-    """What is wrong with the file itself."""
+    """Faults of the file itself."""
     causes = [*log.losses(), *(f"not proven to be whole: {absent}" for absent in log.unproven())]
     if RECOVERED in log.metadata:
         causes.insert(0, "recovered from a truncated or damaged log")
@@ -133,7 +133,9 @@ class _Spread:
             self._least, self._greatest = min(self._least, sound.min()), max(self._greatest, sound.max())
 
     def to_json(self) -> dict[str, Any]:
-        """What is told of them."""
-        told = (float(self._least), self._sum / self._sound, float(self._greatest)) if self._sound else (None,) * 3
+        """The findings as an object for JSON."""
+        statistics = (
+            (float(self._least), self._sum / self._sound, float(self._greatest)) if self._sound else (None,) * 3
+        )
         counts = {"messages": self._messages, "not_finite": self._values - self._sound}
-        return {**counts, **dict(zip(("min", "mean", "max"), told, strict=True))}
+        return {**counts, **dict(zip(("min", "mean", "max"), statistics, strict=True))}

@@ -30,7 +30,7 @@ def states_missed(run: RunView) -> int | None:
 
 @metric(reads={"/link": ("commands_limited",)}, least=0.0)
 def commands_limited(run: RunView) -> int | None:
-    """Control ticks at which a plant in another process did less than it was told."""
+    """Control ticks at which a plant in another process did less than it was commanded."""
     limited = run.log["/link"].field("commands_limited")
     return int(limited[-1]) if len(limited) else None
 

@@ -1,4 +1,4 @@
-"""When a robot that fell had lost its balance: before that things acted on it, after it all is an effect."""
+"""The loss of balance of a robot that fell: before it things acted on the robot, after it all is an effect."""
 
 from dataclasses import dataclass
 
@@ -15,10 +15,10 @@ HIGH, UPRIGHT = 0.9, 0.35
 """Share of the nominal CoM height above which a body stands [-], and tilt of the torso below which it does [rad]."""
 
 BEFORE = 0.5
-"""How long before the loss of balance, or before steps had to catch the body, what acts may be its cause [s]."""
+"""Time before the loss of balance, or before steps had to catch the body, in which a cause may act [s]."""
 
 LONGEST = 2.0
-"""How long steps may have tried to catch the body: what acted before that was survived [s]."""
+"""Longest time of steps that try to catch the body: what acted before that was survived [s]."""
 
 
 @dataclass(frozen=True, slots=True)
@@ -34,7 +34,7 @@ class Loss:
     since: float
 
     def overlaps(self, begin: float, end: float) -> bool:
-        """Whether something that acts from one time to another [s] acts before the loss and may be its cause."""
+        """Return true if something that acts from one time to another [s] acts before the loss and may be its cause."""
         return begin <= self.time and end >= self.since
 
 

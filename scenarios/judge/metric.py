@@ -1,4 +1,4 @@
-"""What a metric is: a pure function of a run, with all that is known about it in one decorator.
+"""A metric: a pure function of a run, with all that is known about it in one decorator.
 
 `surefoot.scenarios.judge.metrics` collects them, with those of other packages.
 """
@@ -32,17 +32,17 @@ RESERVED = (
 
 MM, DEG = (1e3, "mm"), (180.0 / math.pi, "deg")
 OF_THE_TIME, OF_HALF_THE_FOOT = (1e2, "% of the time"), (1e2, "% of half the foot")
-"""How lengths, angles and shares are shown: factor and unit."""
+"""Units of lengths, angles and shares as they are shown: factor and name."""
 
 SHARE = 0.05
 """Share of its value by which a metric may differ between runs that count as the same, unless it says otherwise [-]."""
 
 LITTLE = {"m": 2e-4, "rad": 2e-3, "s": 0.011, "m/s": 2e-3, "": 2e-3}
-"""How much it may differ beside that, by its unit: less than what anyone would call a change of the walk."""
+"""Difference beside that, by its unit: less than what anyone would call a change of the walk."""
 
 
 ByName = tuple[Callable[[str, str], Any], tuple[str, str]]
-"""How pickle makes a thing again that a module has under the name of its function."""
+"""Function and arguments by which pickle makes a thing again that a module has under its function's name."""
 
 
 def _named(module: str, name: str) -> Any:
@@ -109,7 +109,7 @@ class Metric(Generic[T]):
         body: whether it is of joints, sensors and real feet, which a pendulum has not got.
         repeatable: whether two runs of the same scenario give the same value; times on the wall's clock do not.
         least: value that it never goes below by its nature, so that no bound there checks anything; None for none.
-        most: value that it never exceeds, likewise.
+        most: value that it never exceeds by its nature, so that no bound there checks anything; None for none.
         tolerance: by how much two runs may differ that count as the same, in its unit and as a share of its value;
             None for what its unit and kind say.
         at_end: whether it follows from the end of the run alone, of which a flight recorder keeps more.
@@ -144,7 +144,7 @@ class Metric(Generic[T]):
 
     @property
     def meaning(self) -> str:
-        """What it is, in a sentence: the first line of its function's documentation."""
+        """Meaning in a sentence: the first line of its function's documentation."""
         return doc_of(self.function).strip().split("\n", 1)[0]
 
     @property
@@ -160,29 +160,29 @@ class Metric(Generic[T]):
 
     @property
     def optional(self) -> bool:
-        """Whether its value may be None, as its function's annotation says; without one it may."""
+        """True if its value may be None, as its function's annotation says; without one it may."""
         return NoneType in self._kinds
 
     @property
     def _kinds(self) -> tuple[Any, ...]:
-        """What its function gives; what cannot be told counts as None."""
+        """Kinds that its function returns; what cannot be known counts as None."""
         return _given(self.function)
 
     def applies(self, walker: str) -> bool:
-        """Whether runs of a kind of walker have it: full, pendulum, or seat, where nothing is planned."""
+        """Return true if runs of a kind of walker have it: full, pendulum, or seat, where nothing is planned."""
         if walker == "seat":
             return not self.planned
         return walker != "pendulum" or not self.body
 
     def allowed(self, value: float | None) -> float:
-        """How far from this value another run may be that counts as the same; counts may not differ, unless it says."""
+        """Distance from this value at which another run counts as the same; counts may not differ, unless it says."""
         if self.tolerance is None and not isinstance(value, float):
             return 0.0
         little, share = self.tolerance or (LITTLE.get(self.unit, 0.0), SHARE)
         return little + share * abs(value or 0.0)
 
     def fits(self, value: Any) -> bool:
-        """Whether a value is of the kind that was promised, so that no part of it escapes a criterion."""
+        """Return true if a value is of the kind that was promised, so that no part of it escapes a criterion."""
         if value is None:
             return True
         if self.parts:
@@ -193,7 +193,7 @@ class Metric(Generic[T]):
 
 
 def _is_number(value: Any) -> bool:
-    """Whether it is one that can be compared, scaled and written, or None; no float is as great as some integers."""
+    """Return true for None, and for what can be compared, scaled and written; some integers exceed all floats."""
     whole = isinstance(value, int)
     return value is None or isinstance(value, float) or (whole and value.bit_length() <= sys.float_info.max_exp - 1)
 

@@ -15,15 +15,15 @@ FORCE_TOLERANCE = 0.05
 SLIP = 0.005
 """Slip of a stance foot that deserves a look [m]."""
 LATE = 0.03
-"""How much longer than planned a single support may last, a planner tick and a half [s]."""
+"""Time beyond the plan that a single support may last, a planner tick and a half [s]."""
 OUTSIDE = 0.01
 """Share of ticks that the ZMP may be outside the shrunk support polygon [-]."""
 PAST_STOP = 0.001
-"""How far a soft simulated stop may give way before it is told [rad]."""
+"""Give of a soft simulated stop that is not reported [rad]."""
 
 
 def forces_match_weight(run: RunView) -> Finding:
-    """Whether the normal forces of the feet make the CoM's vertical momentum, over every half second before a fall."""
+    """The forces of the feet make the CoM's vertical momentum, over every half second before a fall."""
     ticks, rate, mass = standing(run), run.constants.control_rate, run.constants.mass
     width = round(FORCE_WINDOW * run.constants.similarity.time * rate)
     if ticks <= width:
@@ -44,7 +44,7 @@ def forces_match_weight(run: RunView) -> Finding:
 
 
 def foot_slip(run: RunView) -> Finding:
-    """How far a sole moves on the ground [m]."""
+    """Greatest motion of a sole on the ground [m]."""
     slips = feet.stance_slips(run, standing(run))
     if not slips:
         return judged("foot_slip", None, None)
@@ -74,7 +74,7 @@ _FEET = ("left", "right")
 
 
 def late_touchdowns(run: RunView) -> Finding:
-    """How much longer than planned a single support lasts [s]."""
+    """Greatest time beyond the plan that a single support lasts [s]."""
     planned, swings = run.field("/reference", "phase_duration"), walking.swings_ended(run)
     late = np.array([(end - start) / run.constants.control_rate - float(planned[start]) for start, end in swings])
     if not len(late):
@@ -142,7 +142,7 @@ def joint_speeds(run: RunView) -> Finding:
 
 
 def _joint(run: RunView, largest: Reduction, most: float) -> tuple[float | None, str, float, str]:
-    """When before a fall a value is first over its bound, at which joint, and the greatest value, at which joint."""
+    """Time before a fall at which a value is first over its bound, its joint, the greatest value, and its joint."""
     values, numbers = run.reduced(largest)[: max(standing(run), 1)].T
     values, names = np.nan_to_num(values, nan=-np.inf), run.constants.joint_names
     begin, worst = (int(np.argmax(found)) for found in (values > most, values))

@@ -1,4 +1,4 @@
-"""Which metrics there are; those of this package, whose functions need numpy, are imported when one is asked for."""
+"""The names of all metrics; those of this package, whose functions need numpy, are imported when one is asked for."""
 
 from typing import TYPE_CHECKING, Any
 

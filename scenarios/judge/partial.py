@@ -1,4 +1,4 @@
-"""What of a verdict cannot be said of a log of which a flight recorder has kept the last part."""
+"""The parts of a verdict that the last part of a run, kept by a flight recorder, cannot give."""
 
 from collections.abc import Iterator, Mapping
 
@@ -13,13 +13,13 @@ _SAID = 6
 
 
 def kept_note(kept: Kept) -> str:
-    """Say what a log has of its run."""
+    """Note on what a log has of its run."""
     since = f"the log keeps the run from {kept.begin:.3f} s on (log.keep {kept.keep:g} s)"
     return f"{since}; {kept.dropped} messages before are dropped"
 
 
 def is_measured(name: str) -> bool:
-    """Whether the last part of a run tells a metric, of which the name may be a part after a dot."""
+    """Return true if the last part of a run gives a metric, of which the name may be a part after a dot."""
     metric = known(name)
     return metric is not None and metric.at_end
 
@@ -27,7 +27,7 @@ def is_measured(name: str) -> bool:
 def unmeasured(
     run: RunView, kept: Kept, criteria: Mapping[str, Bound], scenario: Scenario, agenda: Agenda
 ) -> Iterator[str]:
-    """Say which of what a verdict asks for was to be seen in the part that is dropped."""
+    """Report what a verdict asks for that was to be seen in the part that is dropped."""
     parts = [name for name in criteria if not is_measured(name)]
     if parts:
         more = f" and {len(parts) - _SAID} more" if len(parts) > _SAID else ""

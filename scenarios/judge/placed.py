@@ -1,4 +1,4 @@
-"""Where things of the estimate's world are in the true one, so that its drift is no error of a walk."""
+"""Places of things of the estimate's world in the true one, so that its drift is no error of a walk."""
 
 import numpy as np
 

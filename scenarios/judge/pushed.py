@@ -1,4 +1,4 @@
-"""Whether the pushes that a plant was asked for acted: their impulse as asked against that which the log shows."""
+"""A check of the pushes that a plant was asked for: their impulse as asked against that which the log shows."""
 
 from collections.abc import Iterator, Sequence
 from dataclasses import dataclass
@@ -15,13 +15,13 @@ READS: Reads = {"/measurement": ("external_force",), "/truth": ("external_force"
 """The force that acted; ``/truth`` has that of the pendulum."""
 
 SHARE = 0.01
-"""Of its impulse that a push may be off by [-]: a plant of whole steps of 1 ms misses one of 0.1 s by that."""
+"""Share of its impulse by which a push may be off [-]: a plant with steps of 1 ms misses one of 0.1 s by that."""
 
 ROUNDING = 1e-8
 """Time by which its begin and its end are rounded on the clock of the physics [s]."""
 
 LATE = 0.1
-"""How much later than asked it may act over a line between two processes [s]: by then the joints are damped."""
+"""Longest delay of a push over a line between two processes [s]: by then the joints are damped."""
 
 _EVER = 2.0**62
 """A time after every run, and the one before all of them, if negative [ns]."""
@@ -32,7 +32,7 @@ _NOTHING = 1e-9
 
 @dataclass(frozen=True, slots=True)
 class _Acted:
-    """What acted in the ticks of a log, of which each message tells one.
+    """The forces that acted in the ticks of a log, with a message each.
 
     Attributes:
         stamps: of the messages, shape (n,) [ns].
@@ -50,7 +50,7 @@ class _Acted:
 
     @classmethod
     def of(cls, run: RunView) -> "_Acted | None":
-        """Of a run in full physics the ticks that end at a message, of a pendulum those that begin at one."""
+        """The ticks of a run: in full physics they end at a message, of a pendulum they begin at one."""
         topic, period = "/measurement" if run.has("/measurement") else "/truth", 1.0 / run.constants.control_rate
         try:
             stamps, force = run.log[topic].time_ns, run.log[topic].field("external_force")
@@ -75,11 +75,11 @@ class _Acted:
         return slice(int(first), int(last))
 
     def begin(self, rows: slice) -> Array:
-        """When ticks begin, shape (k,) [s]."""
+        """Begin of ticks, shape (k,) [s]."""
         return np.asarray(1e-9 * self.stamps[rows] - self.before)
 
     def episodes(self, pushes: Sequence[AskedPush]) -> Iterator["_Episode"]:
-        """The pushes, in order of time, by what can be told apart: with a tick before and some time after."""
+        """The pushes, in order of time, by what can be distinguished: with a tick before and some time after."""
         while pushes:
             until, count = -np.inf, 0
             for push in pushes:
@@ -112,13 +112,13 @@ class _Episode:
         self._on: Mask = self._size > _NOTHING * most
 
     def _covered(self, push: AskedPush) -> Array:
-        """For how long it was to act in each tick, shape (n,) [s]."""
+        """Time for which it was to act in each tick, shape (n,) [s]."""
         begin, period = self._begin, self._all.period
         lasts = np.minimum(begin + period, push.time + push.duration) - np.maximum(begin, push.time)
         return np.where(lasts > _NOTHING * period, lasts, 0.0)
 
     def unacted(self) -> Iterator[str]:
-        """Say what of it did not act."""
+        """Report the part of it that did not act."""
         yield from self._unseen()
         if self._on.any():
             yield from self._off()
@@ -131,16 +131,16 @@ class _Episode:
             if push.live or self._on[covered].any() or push.time >= acted.end + acted.period:
                 continue  # of one that was to begin after the end the agenda tells
             if covered.any():
-                yield f"{_named([push])} cannot be told to have acted: the sum of forces was to be zero all the while"
+                yield f"{_named([push])} cannot be shown to have acted: the sum of forces was to be zero all the while"
             else:
-                yield f"{_named([push])} cannot be told to have acted: the log has no tick of that time"
+                yield f"{_named([push])} cannot be shown to have acted: the log has no tick of that time"
 
     def _off(self) -> Iterator[str]:
-        """Say it where the impulse is not what was asked for."""
+        """Report it where the impulse is not what was asked for."""
         pushes, on = self._pushes, self._on
         asked, acted = self._asked, self._acted
         if np.isnan(acted).any():
-            yield f"{_named(pushes)} cannot be told to have acted: the plant does not measure the external force"
+            yield f"{_named(pushes)} cannot be shown to have acted: the plant does not measure the external force"
             return
         # Each tick counts along what was asked of it then, so that pushes that turn do not make up for one another.
         nearest = np.maximum.accumulate(np.where(on, np.arange(len(on)), int(np.argmax(on))))
@@ -151,14 +151,14 @@ class _Episode:
         if abs(part - whole) <= allowed and aside <= allowed:
             return
         if len(self._begin) > 1 and np.diff(self._begin).max() > 1.5 * self._all.period:
-            yield f"{_named(pushes)} cannot be told to have acted: ticks of that time are not in the log"
+            yield f"{_named(pushes)} cannot be shown to have acted: ticks of that time are not in the log"
             return
         beside = f", and {aside:.3g} N·s in another direction" if abs(part - whole) <= allowed else ""
         yield f"{part:.3g} of {whole:.3g} N·s acted of {_named(pushes)}{beside}"
 
 
 def unacted_pushes(run: RunView) -> Iterator[str]:
-    """Say which of the pushes that the plant was asked for did not act as they were asked for.
+    """Report pushes that did not act as the plant was asked for them.
 
     Only what the log shows is compared: the ticks that have a message. A promised push of which none of them shows
     anything is no test.
@@ -171,7 +171,7 @@ def unacted_pushes(run: RunView) -> Iterator[str]:
         return
     acted = _Acted.of(run)
     if acted is None:
-        yield f"{_named(pushes)} cannot be told to have acted: the log has no external force"
+        yield f"{_named(pushes)} cannot be shown to have acted: the log has no external force"
         return
     with np.errstate(invalid="ignore", over="ignore", divide="ignore"):
         for episode in acted.episodes(pushes):

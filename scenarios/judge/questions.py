@@ -106,13 +106,13 @@ def _condition(text: str) -> Condition:
 def stretches(
     log: Log, question: str, start: float | None = None, end: float | None = None, topics: Sequence[str] = ()
 ) -> tuple[list[Stretch], tuple[str, ...]]:
-    """Where a question holds, in memory that does not grow with the log.
+    """Find where a question holds, in memory that does not grow with the log.
 
     Args:
         log: that is asked.
         question: conditions that are joined by `and`.
         start: of the time that is asked for, that of the log if None [s].
-        end: of the time that is asked for, likewise [s].
+        end: of the time that is asked for, that of the log if None [s].
         topics: whose columns are meant where none is written; () for all.
 
     Returns:
@@ -189,7 +189,7 @@ _MOST_NAMED = 40
 
 
 def _meant(name: str, names: set[str]) -> str:
-    """What a name may have meant: the parts of a field, or the nearest name."""
+    """The probable meaning of a name: the parts of a field, or the nearest name."""
     parts = sorted(one for one in names if one.startswith((f"{name}_", f"{name}.")))
     if parts:
         return f"its elements are {', '.join(parts[:_MOST_NAMED])}"
@@ -198,7 +198,7 @@ def _meant(name: str, names: set[str]) -> str:
 
 
 def _holding(parts: _Parts, condition: Condition) -> Iterator[Stretch]:
-    """Where one condition holds."""
+    """Find where one condition holds."""
     compared, falling = _COMPARED[condition.sign], condition.sign in ("<", "<=")
     worse = min if falling else max
     first = worst = at = last = None
@@ -225,7 +225,7 @@ def _holding(parts: _Parts, condition: Condition) -> Iterator[Stretch]:
 
 
 def _both(some: Sequence[Stretch], others: Sequence[Stretch]) -> Iterator[Stretch]:
-    """What two lists of stretches in order of time have in common."""
+    """The common parts of two lists of stretches in order of time."""
     one = other = 0
     while one < len(some) and other < len(others):
         start, end = max(some[one].start, others[other].start), min(some[one].end, others[other].end)

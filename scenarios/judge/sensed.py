@@ -14,10 +14,10 @@ from surefoot.scenarios.judge.digest import Array, RunView
 from surefoot.scenarios.judge.metric import DEG, MM, OF_THE_TIME, SHARE, metric
 
 SETTLED = 0.5
-"""Time after which an estimate is judged: what it starts with is told by the encoders alone [s]."""
+"""Time after which an estimate is judged: it starts with what the encoders alone measure [s]."""
 
 DEG_PER_MINUTE = (60.0 * math.degrees(1.0), "deg/min")
-"""How a slow turn is shown."""
+"""Unit in which a slow turn is shown."""
 
 _TOPIC = "/estimation"
 _PARTS = ("com", "com_velocity", "tilt", "sole_height")
@@ -44,7 +44,7 @@ def tilt_estimation_error_rms(run: RunView) -> float | None:
 
 @metric(shown=(1e2, "% of the way"), reads={_TOPIC: ("place_error",), "/truth": ("com",)}, body=True, least=0.0)
 def estimation_drift(run: RunView) -> float | None:
-    """How far the stance foot is estimated from where it is in the end, over the way of the CoM [-]."""
+    """Error of the stance foot's estimated place in the end, over the way of the CoM [-]."""
     com = run.field("/truth", "com")[:, :2]
     way = float(np.linalg.norm(np.diff(com, axis=0), axis=1).sum())
     # Of a robot that stands or steps on the spot a share of its way says nothing.
@@ -59,7 +59,7 @@ LEAST_WAY = 0.5
 
 @metric(unit="rad", shown=DEG, reads={_TOPIC: ("yaw_error",)}, body=True, least=0.0)
 def estimation_yaw(run: RunView) -> float | None:
-    """By how much the estimated heading of the base is off in the end [rad]."""
+    """Error of the base's estimated heading in the end [rad]."""
     return abs(float(run.field(_TOPIC, "yaw_error")[-1]))
 
 
@@ -67,7 +67,7 @@ def estimation_yaw(run: RunView) -> float | None:
     unit="rad/s", shown=DEG_PER_MINUTE, reads={_TOPIC: ("yaw_error",)}, body=True, least=0.0, tolerance=(2e-5, SHARE)
 )
 def estimation_yaw_rate(run: RunView) -> float | None:
-    """How fast the estimated heading of the base goes off, mean over the run after the estimate has settled [rad/s]."""
+    """Drift of the base's estimated heading, mean over the run after the estimate has settled [rad/s]."""
     off, time = _settled(run, "yaw_error"), run.time[run.time >= SETTLED * run.constants.similarity.time]
     if len(time) < 2 or not time[-1] > time[0]:
         return None
@@ -91,7 +91,7 @@ def estimation_nees(run: RunView) -> dict[str, float] | None:
 
 
 def squares(run: RunView, name: str) -> Array:
-    """Mean square of a part's errors over their deviations at each tick once settled, NaN where either is not told."""
+    """Mean square of a part's errors over their deviations at each tick once settled, NaN where either is not known."""
     error, deviation = _settled(run, f"{name}_error"), _settled(run, f"{name}_deviation")
     sound = np.isfinite(error).all(axis=1) & (deviation > 0.0).all(axis=1)
     found = np.full(len(error), np.nan)

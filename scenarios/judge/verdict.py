@@ -10,7 +10,7 @@ from pathlib import Path
 from typing import Any
 
 from surefoot.scenarios import palette
-from surefoot.scenarios.errors import nearest, told_once
+from surefoot.scenarios.errors import hinted_once, nearest
 from surefoot.scenarios.file.criteria import Bound
 from surefoot.scenarios.file.schema import Scenario
 from surefoot.scenarios.judge.acted import bent_commands, contradictions, idle_commands, not_there, unmet_ground
@@ -94,7 +94,7 @@ def asked(criteria: Mapping[str, Bound], walker: str) -> dict[str, Bound]:
 
 
 def applies(name: str, bound: Bound, walker: str) -> bool:
-    """Whether a kind of walker has the metric of a criterion, and that which it is compared with, as far as known."""
+    """Return true if a kind of walker has the metric of a criterion, and that which it is compared with, if known."""
     others = (bound.equals,) if isinstance(bound.equals, str) else ()
     metrics = (known(one) for one in (name, *others))
     return all(metric is None or metric.applies(walker) for metric in metrics)
@@ -116,7 +116,7 @@ def _degraded(metrics: Mapping[str, Any], added: int) -> Iterator[str]:
 
 
 _FEW = 20
-"""Reasons of one kind that are told."""
+"""Reasons of one kind that are shown."""
 
 
 def _few(reasons: Iterable[str]) -> Iterator[str]:
@@ -127,7 +127,7 @@ def _few(reasons: Iterable[str]) -> Iterator[str]:
 
 
 def _more(count: int) -> Iterator[str]:
-    """That there are more reasons of a kind than were told, if there are."""
+    """A note that there are more reasons of a kind than those given, if there are."""
     if count > 0:
         yield f"and {count} more like these"
 
@@ -138,7 +138,7 @@ _ACCEPTED_ENDS = ("completed", "fall")
 
 @dataclass(frozen=True, slots=True)
 class Verdict:
-    """Whether a run met its criteria.
+    """The verdict on a run by its criteria.
 
     Attributes:
         passed: all criteria met, and the run came to its end.
@@ -233,9 +233,9 @@ def judge(log: Log, gathered: Digest | None = None, strict: bool = False) -> Ver
         *(() if run.kept is None else unmeasured(run, run.kept, criteria, scenario, agenda)),
     )
     undone = (*idle, *not_there(measured.values, criteria, size.length))
-    told = {name: bound for name, bound in criteria.items() if seen or is_measured(name)}
-    lacking = _lacking(run, [name for name in told if _lookup(measured.values, name) is None])
-    reasons = (*untrue, *lacking, *_few(map(str, told_once(absent))), *undone, *missed(measured.values, told))
+    asked_here = {name: bound for name, bound in criteria.items() if seen or is_measured(name)}
+    lacking = _lacking(run, [name for name in asked_here if _lookup(measured.values, name) is None])
+    reasons = (*untrue, *lacking, *_few(map(str, hinted_once(absent))), *undone, *missed(measured.values, asked_here))
     skipped = [*(name for name in scenario.criteria if name not in criteria), *scenario.left_out]
     idle_keys = [note for note in agenda.notes if note not in agenda.standing or not run.has("/command")]
     unasked = (f"criterion {name} is not asked: {_WALKERS[scenario.walker]} has no such metric" for name in skipped)
@@ -246,7 +246,7 @@ def judge(log: Log, gathered: Digest | None = None, strict: bool = False) -> Ver
 
 
 def _lacking(run: RunView, names: Sequence[str]) -> list[str]:
-    """Say which topics the log has not got, for want of which metrics of some names have no value."""
+    """Report the topics that the log lacks, without which metrics of some names have no value."""
     found: list[str] = []
     for name in names:
         metric, own = known(name), OWN.get(name.partition(".")[0])
@@ -263,12 +263,12 @@ def _lacking(run: RunView, names: Sequence[str]) -> list[str]:
 
 
 def missed(metrics: Mapping[str, Any], criteria: Mapping[str, Bound]) -> list[str]:
-    """Say which criteria are not met; of those on metrics that are not known here no more than a few."""
+    """Report criteria that are not met; of those on metrics that are not known here no more than a few."""
     unknown = [name for name in criteria if name.partition(".")[0] not in metrics]
-    untold = set(unknown[_FEW:])
-    told = (pair for pair in criteria.items() if pair[0] not in untold)
-    reasons = [reason for name, bound in told for reason in _missed(name, bound, metrics)]
-    return [*reasons, *_more(len(untold))]
+    beyond = set(unknown[_FEW:])
+    named = (pair for pair in criteria.items() if pair[0] not in beyond)
+    reasons = [reason for name, bound in named for reason in _missed(name, bound, metrics)]
+    return [*reasons, *_more(len(beyond))]
 
 
 def _missed(name: str, bound: Bound, metrics: Mapping[str, Any]) -> Iterator[str]:
@@ -306,7 +306,7 @@ def _missed(name: str, bound: Bound, metrics: Mapping[str, Any]) -> Iterator[str
 
 
 def _unfinished(log: Log) -> list[str]:
-    """Say why a run did not come to its end, if it did not."""
+    """Report why a run did not come to its end, if it did not."""
     end = log.metadata.get(END_RECORD)
     if end is None:
         last = log.time_range()[1]
@@ -317,14 +317,14 @@ def _unfinished(log: Log) -> list[str]:
 
 
 def agenda_of(log: Log, scenario: Scenario) -> Agenda:
-    """What was to happen in the run of a log; of one that does not tell, as far as its scenario does.
+    """The agenda of the run of a log; of one without it, as far as its scenario gives it.
 
     Raises:
         LogError: what the log tells of it cannot be read.
     """
-    told = Agenda.from_metadata(log.metadata, str(log.path))
-    if told is not None:
-        return told
+    written = Agenda.from_metadata(log.metadata, str(log.path))
+    if written is not None:
+        return written
     pushes = [(f"pushes.{index}", push.time) for index, push in enumerate(scenario.pushes) if not push.live]
     events = [Event(f"{name} begins at", time) for name, time in pushes if time is not None]
     events += [Event(f"faults.{index} acts first at", fault.time) for index, fault in enumerate(scenario.faults)]
@@ -337,7 +337,7 @@ def agenda_of(log: Log, scenario: Scenario) -> Agenda:
 
 
 def _unacted(log: Log, agenda: Agenda, rate: int) -> list[str]:
-    """Say what was to happen after the run had ended, or does nothing; ``rate`` of the control ticks [Hz]."""
+    """Report what was to happen after the run had ended, or does nothing; ``rate`` of the control ticks [Hz]."""
     broke_off = log.metadata.get(END_RECORD, {}).get("kind") not in _ACCEPTED_ENDS
     end = log.time_range()[1] + 1.0 / rate
     if broke_off:  # in the tick after the last of its log, in which a fault may have acted
@@ -346,7 +346,7 @@ def _unacted(log: Log, agenda: Agenda, rate: int) -> list[str]:
 
 
 def _incomplete(log: Log) -> list[str]:
-    """Say what of the log is missing, and what is damaged or contradicts the rest, if anything is."""
+    """Report what of the log is missing, and what is damaged or contradicts the rest, if anything is."""
     return [*_listed("the log is incomplete", log.lacks()), *_listed("the log is damaged", log.faults())]
 
 

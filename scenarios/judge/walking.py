@@ -22,7 +22,7 @@ _STILL_READS: Reads = {"/truth": ("com_velocity",), "/contact": ("felt",)}
 
 @metric(needs=("/truth",), reads=FALL_READS, at_end=True)
 def fell(run: RunView) -> bool:
-    """Whether the robot fell."""
+    """True if the robot fell."""
     return fall_time(run) is not None
 
 
@@ -43,7 +43,7 @@ def _fall_time(run: RunView) -> float | None:
 
 @metric(unit="s", reads={**FALL_READS, "/plan": ("falling",)}, tolerance=(0.05, 0.0))
 def fall_warning(run: RunView) -> float | None:
-    """How long before a fall the planner told it for good, negative where it told one that did not come [s]."""
+    """Time before a fall at which the planner announced it for good, negative for a fall that did not come [s]."""
     plan, fallen = run.log["/plan"], fall_time(run)
     spells = runs_of(plan.field("falling") != 0)
     if fallen is None:
@@ -65,12 +65,12 @@ def duration(run: RunView) -> float:
     planned=True,
 )
 def steps_planned(run: RunView) -> int:
-    """Footsteps asked for, with those that a recovery added; those begun of a walk that is told where to go."""
+    """Footsteps asked for, with those that a recovery added; those begun of a walk that is commanded meanwhile."""
     return _begun(run) if _led(run) else max(run.constants.steps_planned, _begun(run))
 
 
 def steps_added(run: RunView) -> int:
-    """Footsteps begun beyond those asked for, by a recovery; none of a walk that is told where to go."""
+    """Footsteps begun beyond those asked for, by a recovery; none of a walk that is commanded meanwhile."""
     return 0 if _led(run) else max(0, _begun(run) - run.constants.steps_planned)
 
 
@@ -86,7 +86,7 @@ _PLACE_READS: Reads = {"/truth": ("left_sole", "right_sole"), "/command": ("plac
     unit="m", needs=("/truth", "/command"), shown=MM, reads=_PLACE_READS, least=0.0, tolerance=(0.001, 0.0), at_end=True
 )
 def place_error(run: RunView) -> float | None:
-    """Distance at the end from the middle of the stance to the place where the robot was told to go last [m]."""
+    """Distance at the end from the middle of the stance to the place where the robot was commanded to go last [m]."""
     place = _last_place(run)
     if place is None:
         return None
@@ -95,7 +95,7 @@ def place_error(run: RunView) -> float | None:
 
 @metric(unit="rad", needs=("/truth", "/command"), reads=_PLACE_READS, least=0.0, tolerance=(0.002, 0.0), at_end=True)
 def heading_error(run: RunView) -> float | None:
-    """Difference at the end of the mean heading of the soles from the one that the robot was told to have [rad]."""
+    """Difference at the end of the mean heading of the soles from the commanded one [rad]."""
     place = _last_place(run)
     if place is None:
         return None
@@ -107,7 +107,7 @@ AT_WAYPOINT = 0.05
 """Distance of a sole from where it would stand at a waypoint within which the robot has come there [m]."""
 
 WAYPOINT_HEADING = 0.1
-"""Likewise the difference of its heading from the one asked for there [rad]."""
+"""Difference of its heading from the one asked for there within which it has come there [rad]."""
 
 
 @metric(needs=("/truth", "/contact"), reads={"/contact": ("felt",)}, least=0.0)
@@ -138,7 +138,7 @@ def _stands_at(run: RunView, place: tuple[float, float, float]) -> Mask:
 
 
 def _led(run: RunView) -> bool:
-    """Whether the robot was told where to go."""
+    """Return true if the robot was commanded where to go."""
     if not run.has("/command"):
         return False
     log = run.log["/command"]
@@ -146,7 +146,7 @@ def _led(run: RunView) -> bool:
 
 
 def _last_place(run: RunView) -> tuple[float, float, float] | None:
-    """Where the robot was told to go last; None if it was told to follow a velocity then."""
+    """Last place that the robot was commanded to; None if it was commanded to follow a velocity then."""
     log = run.log["/command"]
     (x, y), yaw = log.field("place")[-1], log.field("heading")[-1]
     return None if np.isnan(x) else (float(x), float(y), float(yaw))
@@ -178,7 +178,7 @@ def swings_ended(run: RunView) -> list[tuple[int, int]]:
 
 @metric(unit="s", reads=_STILL_READS, least=0.0, tolerance=(0.05, 0.0))
 def standing_time_final(run: RunView) -> float:
-    """How long the run ends with the CoM still and both feet loaded [s]."""
+    """Time at the end of the run with the CoM still and both feet loaded [s]."""
     moving = np.flatnonzero(~_still(run))
     first = moving[-1] + 1 if len(moving) else 0
     return (run.ticks - int(first)) / run.constants.control_rate

@@ -15,7 +15,7 @@ _INDEX_HEADER = struct.Struct("<BQHI")
 
 
 class Clock:
-    """When the chunk under way is due.
+    """The time at which the chunk under way is due.
 
     Attributes:
         due: simulated time [ns] from which on the next message finds the chunk complete without it, or lets the last
@@ -59,7 +59,7 @@ class Waiting:
         raise NotImplementedError
 
     def taken(self) -> None:
-        """They are in a chunk, and wait no more."""
+        """Let go of the messages: they are in a chunk, and wait no more."""
         self.total += self.count
         self.drop()
 
@@ -78,7 +78,7 @@ class Slab:
         width: of a row [bytes].
 
     Attributes:
-        width: likewise.
+        width: of a row [bytes].
         memory: shape (capacity, width).
         rows: the rows as wholes, shape (capacity,).
     """
@@ -154,7 +154,8 @@ class ChannelWriter(Waiting):
             given: values by field, in place of those of the sources.
 
         Raises:
-            ValueError: a field that nothing gives, or a value that is of no field; else as of `append`.
+            ValueError: a field that nothing gives, or a value that is of no field or no shape of its field.
+                LogError: the chunk that is complete without this message cannot be written.
         """
         owners = {name: source for source in reversed(sources) for name in self._names if hasattr(source, name)}
         found = {name: getattr(source, name) for name, source in owners.items()} | given
@@ -162,7 +163,7 @@ class ChannelWriter(Waiting):
         self.append(time_ns, *(found[name] for name in self._names))
 
     def filler(self, attributes: Mapping[str, str], given: Sequence[str] = ()) -> Callable[..., None]:
-        """What adds messages of one source, without a look at names each time as `put` takes it.
+        """A function that adds messages of one source, without a look at names each time as `put` takes it.
 
         Args:
             attributes: of the source, dotted, by field.
@@ -198,7 +199,7 @@ class ChannelWriter(Waiting):
             )
 
     def view(self, name: str) -> NDArray[np.generic]:
-        """Where the values of a field wait, shape (capacity, *field shape)."""
+        """View of the values of a field that wait, shape (capacity, *field shape)."""
         return self._views[self._names.index(name)]
 
     def fill(self, times_ns: list[int], stamps: NDArray[np.uint64]) -> None:

@@ -71,7 +71,7 @@ class BlockMaker:
 
 
 def _alike(waiting: Sequence[Waiting]) -> list[ChannelWriter]:
-    """Of the channels of fixed layouts whose messages have the same times, those that have most bytes."""
+    """Channels of fixed layouts whose messages have the same times: the group with most bytes."""
     by_list: dict[int, list[ChannelWriter]] = {}
     for channel in waiting:
         if isinstance(channel, ChannelWriter):

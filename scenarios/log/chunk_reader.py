@@ -9,7 +9,7 @@ from surefoot.scenarios.log.encoding import decompress
 from surefoot.scenarios.log.scan import Buffer, ChunkPlace, Contents, index_chunk, release
 
 _LET_GO = 1 << 22
-"""Of a file that is gone through, what may be in memory behind the chunk that is read [bytes]."""
+"""Memory behind the chunk that is read of a file that is gone through [bytes]."""
 
 
 class ChunkReader:
@@ -36,7 +36,7 @@ class ChunkReader:
             pass
 
     def unpacked(self, chunks: Iterable[ChunkPlace], verify: bool = False) -> Iterator[tuple[ChunkPlace, bytes]]:
-        """Those chunks that can be unpacked, with their bytes; the memory of the file is let go behind them."""
+        """Unpack the chunks that can be unpacked, with their bytes; the memory of the file is let go behind them."""
         begin = end = 0
         for chunk in chunks:
             data = self._sound(chunk) if verify else self.decompressed(chunk)

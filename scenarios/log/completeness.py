@@ -33,7 +33,7 @@ _HEADER = np.dtype(
 
 
 _STAMP = np.dtype([("tag", "u1"), ("time", "<u8")])
-"""With which the content of a message of ours begins."""
+"""Head with which the content of a message of ours begins."""
 
 _STAMP_TAG = 1 << 3 | 1
 _STAMPED_BYTES = _HEADER.itemsize - PREFIX.size + _STAMP.itemsize
@@ -63,11 +63,11 @@ def _headers_at(data: Buffer, offsets: NDArray[np.uint64]) -> NDArray[np.void]:
 
 @dataclass(frozen=True, slots=True)
 class Count:
-    """What sequence numbers tell of the messages of a log.
+    """The count of a log's messages by their sequence numbers.
 
     Attributes:
         before: number of messages that are missing before the first one, by channel id.
-        missing: likewise between the first and the last one.
+        missing: number of messages that are missing between the first and the last one, by channel id.
         again: number of messages whose number another one of the channel has, by channel id.
     """
 
@@ -103,7 +103,7 @@ class Numbering:
         self._lasts.extend(keys[np.append(breaks, -1)].tolist())
 
     def count(self) -> Count | None:
-        """What they tell; None where they count no channel by itself."""
+        """The count; None where they count no channel by itself."""
         spans = {number: list(found) for number, found in self._spans()}
         before: dict[int, int] = {}
         missing: dict[int, int] = {}
@@ -134,7 +134,7 @@ class Numbering:
 
 
 def _of_all_together(spans: dict[int, list[tuple[int, int]]]) -> bool:
-    """Whether no two of several channels have a number in common, as where one counter goes over all of them."""
+    """Return true if no two of several channels have a number in common, as with one counter for all of them."""
     ordered = sorted(span for found in spans.values() for span in found)
     return len(spans) > 1 and all(later[0] > earlier[1] for earlier, later in pairwise(ordered))
 
@@ -144,7 +144,7 @@ _LOOSE_AT_ONCE = 1 << 15
 
 
 class Completeness:
-    """What shows that a log is as its run has written it, gathered as its chunks are looked at.
+    """The evidence that a log is as its run has written it, gathered as its chunks are looked at.
 
     Args:
         contents: of the file.
@@ -190,7 +190,7 @@ class Completeness:
 
     @cached_property
     def _counted(self) -> Count | None:
-        """What the numbers of all messages tell, once all chunks were looked at."""
+        """The count by the numbers of all messages, once all chunks were looked at."""
         for entries in self._contents.loose.values():
             for start in range(0, len(entries), _LOOSE_AT_ONCE):
                 offsets = np.array(entries[start : start + _LOOSE_AT_ONCE], INDEX_ENTRY)["offset"]
@@ -208,7 +208,7 @@ class Completeness:
 
     @cached_property
     def _stamped(self) -> NDArray[np.bool_]:
-        """Whether the messages of a channel bear their time first, as those of our package do, by its id."""
+        """Mark channels whose messages bear their time first, as those of our package do, by their ids."""
         channels, schemas = self._contents.channels, self._contents.schemas
         named = {number: schemas.get(channel.schema_id) for number, channel in channels.items()}
         ours = [number for number, schema in named.items() if schema and schema.name.startswith(f"{PACKAGE}.")]
@@ -217,7 +217,7 @@ class Completeness:
         return table
 
     def missing(self) -> str:
-        """Say how many messages are missing by their numbers; empty where none is."""
+        """Report the number of missing messages; empty where none is."""
         if self._counted is None:
             return ""
         lost = Counter(self._counted.missing)
@@ -227,7 +227,7 @@ class Completeness:
 
     @property
     def _dropped(self) -> int:
-        """How many messages the log says to have dropped itself, before all others."""
+        """Number of messages that the log itself says were dropped, before all others."""
         records = {record.name: record.metadata for record in self._contents.metadata}
         try:
             kept = Kept.from_metadata(records, "")
@@ -236,7 +236,7 @@ class Completeness:
         return 0 if kept is None else kept.dropped
 
     def contradictions(self) -> Iterator[str]:
-        """What of the log does not go with the rest, once everything was looked at; some are empty."""
+        """Parts of the log that contradict the rest, once everything was looked at; some are empty."""
         yield self.data_fault
         yield from (*self._contents.conflicts, *self._contents.faults)
         again = {} if self._counted is None else self._counted.again
@@ -250,7 +250,7 @@ class Completeness:
             yield f"{self._contents.behind} bytes stand behind its end"
 
     def unproven(self) -> tuple[str, ...]:
-        """Which evidence there is not, in words."""
+        """The evidence that is missing, in words."""
         ends = self._contents.data_end is not None
         absent = {
             "it has no checksum of its data": ends and not self._contents.data_crc,
@@ -262,12 +262,12 @@ class Completeness:
 
     @property
     def proven(self) -> bool:
-        """Whether the data agree with a checksum of all of them."""
+        """True if the data agree with a checksum of all of them."""
         return self._contents.data_end is not None and self._contents.data_crc != 0 and not self.data_fault
 
     @cached_property
     def data_fault(self) -> str:
-        """Why the data as a whole are not those that were written; empty if they are, or if nothing tells it."""
+        """Reason why the data as a whole are not those that were written; empty if they are, or if nothing shows it."""
         end, crc, step = self._contents.data_end, 0, 1 << 22
         if end is None or not self._contents.data_crc:
             return ""
@@ -279,7 +279,7 @@ class Completeness:
 
     @cached_property
     def _index_fault(self) -> str:
-        """Where the index at the end of the file counts otherwise; empty where it does not."""
+        """Fault of the counts in the index at the end of the file; empty where there is none."""
         said, here = self._contents.statistics, self._contents
         if not here.index_sound:
             return "its index does not agree with its checksum"
@@ -291,10 +291,14 @@ class Completeness:
             ("metadata records", said.metadata_count, len(here.metadata)),
         ]
         for number, channel in here.channels.items():
-            told, count = said.channel_message_counts.get(number, 0), len(here.loose.get(number, ()))
-            counts.append((f"messages of {channel.topic}", told, count + sum(one.count(number) for one in here.chunks)))
+            stated, count = said.channel_message_counts.get(number, 0), len(here.loose.get(number, ()))
+            counts.append(
+                (f"messages of {channel.topic}", stated, count + sum(one.count(number) for one in here.chunks))
+            )
         wrong = (
-            f"its index counts {told} {what}, and {count} are there" for what, told, count in counts if told != count
+            f"its index counts {stated} {what}, and {count} are there"
+            for what, stated, count in counts
+            if stated != count
         )
         return next(wrong, "")
 

@@ -30,7 +30,7 @@ def compress(data: bytes | memoryview, method: str) -> bytes:
 
 
 def decompress(data: bytes | memoryview, method: str, size: int) -> bytes:
-    """Decompress a chunk, of which so many bytes must come out, by a method as of `compress`.
+    """Decompress a chunk, of which so many bytes must come out, by a method of `compress`.
 
     Raises:
         LogError: the bytes are damaged or the method is unknown.

@@ -25,7 +25,7 @@ class Defined:
 
 
 Head: TypeAlias = Metadata | Attachment | Defined
-"""What a log has beside chunks."""
+"""Contents of a log beside chunks."""
 
 
 @dataclass(frozen=True, slots=True)
@@ -42,28 +42,28 @@ class IndexedChunk:
 
 
 class Sink(Protocol):
-    """What a log is written to."""
+    """The file that a log is written to."""
 
     @property
     def path(self) -> Path:
-        """Where the log is."""
+        """Path of the log."""
         ...
 
     @property
     def closed(self) -> bool:
-        """Whether nothing more can be written."""
+        """True if nothing more can be written."""
         ...
 
     def add(self, record: Head) -> None:
-        """Write a record that is no chunk; errors as of `Output.write`."""
+        """Write a record that is no chunk; LogError if it cannot be written."""
         ...
 
     def add_chunk(self, indexed: IndexedChunk) -> None:
-        """Write a chunk and the index of its messages; errors as of `Output.write`."""
+        """Write a chunk and the index of its messages; LogError if they cannot be written."""
         ...
 
     def finish(self) -> None:
-        """Write the index of the file, and close it; errors as of `Output.write`."""
+        """Write the index of the file, and close it; LogError if it cannot be written."""
         ...
 
     def discard(self) -> None:
@@ -125,7 +125,7 @@ class Output:
             raise (self._failed or self.given_up)(error) from None
 
     def given_up(self, error: OSError) -> LogError:
-        """Say why nothing more can be written, and give what was written the name ``*.incomplete``."""
+        """Make the error that says why nothing more can be written, and rename what was written to ``*.incomplete``."""
         kept = self._set_aside()
         return LogError(f"{self.path}: cannot be written on, {reason(error)}; what was written is kept in {kept.name}")
 
@@ -136,7 +136,7 @@ class Output:
 
     @property
     def closed(self) -> bool:
-        """Whether nothing more can be written."""
+        """True if nothing more can be written."""
         return self._file.closed
 
     def close(self) -> None:
@@ -169,7 +169,7 @@ class LogFile:
     """
 
     def __init__(self, path: Path, head: Iterable[Head], failed: Failed | None = None) -> None:
-        """Create the file, whose first records are on the disk when this returns; errors as of `Output`."""
+        """Create the file, whose first records are on the disk when this returns; LogError if it cannot be done."""
         self._summary = Summary()
         self._counts: dict[int, int] = {}
         beginning = bytearray(MAGIC + encoded(Header(_PROFILE, _LIBRARY)))
@@ -179,7 +179,7 @@ class LogFile:
 
     @property
     def path(self) -> Path:
-        """Where it is."""
+        """Path of the log."""
         return self.output.path
 
     @property

@@ -1,4 +1,4 @@
-"""What rows of the log are made of, and the table in which they wait."""
+"""The layout of rows of the log, and the table in which they wait."""
 
 from collections.abc import Callable, Iterable, Mapping, Sequence
 from dataclasses import dataclass, field
@@ -18,7 +18,7 @@ Place = tuple[str, str] | str
 
 
 class Derived(Protocol):
-    """What derives fields of rows from the rest of them, in a table that it knows."""
+    """A function that derives fields of rows from the rest of them, in a table that it knows."""
 
     def derive(self, rows: int) -> None:
         """Derive those of the first rows."""
@@ -40,17 +40,17 @@ class Table:
         self.values: Array = np.zeros((capacity, width(at)))
 
     def __getitem__(self, place: Place) -> Array:
-        """Where a field or an input waits, shape (capacity, size)."""
+        """View of a field or an input that waits, shape (capacity, size)."""
         return self.span(place, place)
 
     def span(self, first: Place, last: Place) -> Array:
-        """Where neighbours wait, from one to another, shape (capacity, sizes together)."""
+        """View of neighbours that wait, from one to another, shape (capacity, sizes together)."""
         return self.values[:, self._at[first].start : self._at[last].stop]
 
 
 @dataclass(frozen=True, slots=True)
 class RowLayout:
-    """What rows are made of: fields of channels, in this order.
+    """The layout of rows: fields of channels, in this order.
 
     Attributes:
         vectors: fields that come as vectors.

@@ -26,7 +26,7 @@ def content_at(data: Buffer, offset: int) -> bytes:
 
 
 def numbered_at(data: Buffer, offset: int) -> bytes:
-    """The same from its sequence number on, by which two messages of one content are told apart."""
+    """The same from its sequence number on, by which two messages of one content are distinguished."""
     number = offset + _HEAD.size
     return bytes(data[number : number + 4]) + content_at(data, offset)
 
@@ -135,7 +135,7 @@ class ChannelData:
         return ChannelData(self.topic, self.fields, self._records[first:last], self.joints)
 
     def joined(self, following: "ChannelData") -> "ChannelData":
-        """These messages and those that follow."""
+        """Join these messages and those that follow."""
         if not len(self) or not len(following):
             return following if not len(self) else self
         records = np.concatenate((self._records, following._records))
@@ -189,7 +189,7 @@ class ChannelData:
         return table
 
     def only(self, name: str) -> "ChannelData":
-        """The same messages with one field; errors as of `field`."""
+        """The same messages with one field; LogError if the channel has no such field."""
         return ChannelData(self.topic, self._chosen(name), self._records, self.joints)
 
     def _chosen(self, name: str) -> tuple[FieldSpec, ...]:

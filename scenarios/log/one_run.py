@@ -1,4 +1,4 @@
-"""Whether a file is the log of one run: nothing stands in it twice, and nothing is defined in two ways.
+"""Checks that a file is the log of one run: nothing stands in it twice or is defined in two ways.
 
 Which of two records of a name is the run's own, or which of two messages of a tick, nobody can say afterwards.
 """
@@ -20,7 +20,7 @@ Decompress = Callable[[ChunkPlace], bytes | None]
 
 
 def twice_named(contents: Contents) -> str:
-    """Say which name stands for two records or channels, or that there are two logs; empty where none does."""
+    """Report a name that stands for two records or channels, or that there are two logs; empty where none does."""
     return next(_twice(contents), "")
 
 
@@ -43,7 +43,7 @@ def _times(count: int) -> str:
 
 
 def twin(contents: Contents, data: Buffer, single: Callable[[str], bool], decompress: Decompress) -> str:
-    """Say which topic has a message twice; empty where none has.
+    """Report a topic that has a message twice; empty where none has.
 
     Args:
         contents: of the file.

@@ -35,7 +35,7 @@ RECOVERED = "recovered"
 """Metadata record of a log that was made of a truncated or damaged one: of which, and what was lost."""
 
 GREATEST_RATIO = 100
-"""How many times its size a log may hold; those of standing robots reach ten."""
+"""Greatest ratio of a log's content to its size; those of standing robots reach ten."""
 
 WINDOW = 4.0
 """Simulated time that is read at once where a whole log is gone through [s]."""
@@ -96,9 +96,12 @@ class Log:
         return f"Log({str(self.path)!r}, {start:.3f} to {end:.3f} s{state}: {topics or 'empty'})"
 
     def __getitem__(self, topic: str) -> ChannelData:
-        """Messages of a topic: held if they are few, else each field is read when it is asked for; errors as of `load`.
+        """Messages of a topic: held if they are few, else each field is read when it is asked for.
 
         Few are those that take up to 16 MB, such as half a minute of a channel of the control rate.
+
+        Raises:
+            LogError: there is no such topic, or its messages are not of a fixed layout.
         """
         self.load(topic)
         return self._loaded.get(topic) or LongChannel(self, topic, self.fields(topic))
@@ -106,7 +109,7 @@ class Log:
     def frame(self, topic: str) -> "DataFrame":
         """Messages of a topic as a pandas data frame: the index is time [s], the elements of a field are columns.
 
-        Unit, frame and meaning of the columns are in its ``attrs``, as of `ChannelData.notes`.
+        Unit, frame and meaning of the columns are in its ``attrs``, see `ChannelData.notes`.
 
         Raises:
             LogError: there is no such topic, its messages are not of a fixed layout, or pandas is missing.
@@ -161,7 +164,7 @@ class Log:
             topics: that are read.
             duration: of a part [s].
             start: time of the first messages, those of the log if None [s].
-            end: time of the last messages, likewise [s].
+            end: time of the last messages, those of the log if None [s].
             verify: leave out chunks that do not agree with their checksum, and note them in `damage`.
 
         Raises:
@@ -173,12 +176,12 @@ class Log:
         yield between(self._read(topics, (), verify), span)
 
     def parts(self, topic: str, start: float | None = None, end: float | None = None) -> Iterator[ChannelData]:
-        """Messages of a topic in order of time, a few seconds of them at once; errors as of `windows`.
+        """Messages of a topic in order of time, a few seconds of them at once.
 
         Args:
             topic: theirs.
             start: time of the first messages, those of the log if None [s].
-            end: time of the last messages, likewise [s].
+            end: time of the last messages, those of the log if None [s].
         """
         for _, found in self.stretches([topic], start, end):
             if len(found[topic]):
@@ -187,14 +190,14 @@ class Log:
     def stretches(
         self, topics: Collection[str], start: float | None = None, end: float | None = None
     ) -> Iterator[tuple[int, dict[str, ChannelData]]]:
-        """Go through topics together in order of time; errors as of `windows`.
+        """Go through topics together in order of time.
 
         Messages outside of all chunks are held together, and so are those of chunks that overlap in time.
 
         Args:
             topics: that are read.
             start: time of the first messages, those of the log if None [s].
-            end: time of the last messages, likewise [s].
+            end: time of the last messages, those of the log if None [s].
 
         Yields:
             a time [ns], and all messages before it that did not come yet.
@@ -216,13 +219,13 @@ class Log:
         Args:
             reads: names of fields by topic; those that there are not are left out.
             start: time of the first messages, those of the log if None [s].
-            end: time of the last messages, likewise [s].
+            end: time of the last messages, those of the log if None [s].
 
         Returns:
             the channels, in order of time.
 
         Raises:
-            LogError: errors as of `windows`; there is no room for the files.
+            LogError: messages are not of a fixed layout, times are not finite, or there is no room for the files.
         """
         kept, topics = Columns(), [topic for topic in reads if topic in self.numeric]
         for channels in self.windows(topics, start=start, end=end, verify=False):
@@ -305,7 +308,7 @@ class Log:
         self._file.verify()
 
     def lacks(self) -> tuple[str, ...]:
-        """What of the log is missing or cannot be read, in words, when everything was looked at.
+        """Parts of the log that are missing or cannot be read, in words, when everything was looked at.
 
         A log without its index may be whole: the record that ends its data has the checksum of everything before it.
         """
@@ -317,7 +320,7 @@ class Log:
         return tuple(dict.fromkeys(filter(None, (before, cut, *lost, *self.damage, self._file.completeness.missing()))))
 
     def faults(self) -> tuple[str, ...]:
-        """What of the log contradicts the rest, in words, when everything was looked at."""
+        """Parts of the log that contradict the rest, in words, when everything was looked at."""
         self.verify()
         _, changed = not_as_written(self._records)
         return tuple(dict.fromkeys(filter(None, (*changed, *self._file.completeness.contradictions()))))
@@ -331,7 +334,7 @@ class Log:
         return (*self.lacks(), *self.faults())
 
     def unproven(self) -> tuple[str, ...]:
-        """Which evidence there is not that the log is as its run has written it, in words.
+        """Evidence that is missing that the log is as its run has written it, in words.
 
         Other tools that write a log again may leave out what is needed for it, and change nothing else.
         """
@@ -349,7 +352,7 @@ class Log:
         return self._ids[topic]
 
     def _is_of_ticks(self, topic: str) -> bool:
-        """Whether a channel has a message each control tick; after states got lost, two plans may be made at one."""
+        """Return true if a channel has a message each control tick; after states got lost, one may have two plans."""
         return self._is_numeric(topic) and self.count(topic) == max(self._counts.values())
 
     def _is_numeric(self, topic: str) -> bool:

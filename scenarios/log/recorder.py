@@ -16,7 +16,7 @@ KEPT_RECORD = "kept"
 
 @dataclass(frozen=True, slots=True)
 class Kept:
-    """What of a run is in its log.
+    """The part of a run that is in its log.
 
     Attributes:
         keep: time that was to be kept at least [s].
@@ -69,7 +69,7 @@ class FlightRecorder:
         path: of the log.
 
     Raises:
-        LogError: as of `surefoot.scenarios.log.file.Output`.
+        LogError: the file exists, or cannot be created.
     """
 
     def __init__(self, path: Path, head: Iterable[Head], keep_ns: int) -> None:

@@ -20,7 +20,7 @@ Index = dict[int, NDArray[np.void]]
 
 @dataclass(frozen=True, slots=True)
 class Recovery:
-    """What was saved.
+    """The data that were saved.
 
     Attributes:
         messages: number of messages.

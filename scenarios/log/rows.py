@@ -46,7 +46,7 @@ class RowWriter:
 
     @property
     def topics(self) -> tuple[str, ...]:
-        """Of its channels."""
+        """Topics of its channels."""
         return tuple([writer.spec.topic for writer in self._writers])
 
     def append(self, time_ns: int, numbers: tuple[float, ...], *vectors: Array) -> None:

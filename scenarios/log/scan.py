@@ -81,7 +81,7 @@ class ChunkPlace:
 
     @property
     def used(self) -> set[int]:
-        """Those of them that it has one message of or more."""
+        """Channels of which it has a message."""
         if self.made is not None:
             return set(self.made)
         places = self.places
@@ -109,7 +109,7 @@ class ChunkPlace:
         return _OFFSET.unpack_from(data, start + 8)[0], _OFFSET.unpack_from(data, stop - 8)[0]
 
     def place(self, channel_id: int) -> tuple[int, int]:
-        """Where the index of a channel begins and ends in the file."""
+        """Begin and end of a channel's index in the file."""
         places = self.places
         for at in range(0, len(places), 3):
             if places[at] == channel_id:
@@ -119,11 +119,11 @@ class ChunkPlace:
 
 @dataclass(slots=True)
 class Contents:
-    """What a scan found.
+    """The results of a scan.
 
     Attributes:
         schemas: by id, as the first record has it.
-        channels: by id, likewise.
+        channels: by id, as the first record has it.
         conflicts: schemas and channels that a later record defines otherwise, in words.
         chunks: in file order.
         loose: index of the messages outside chunks, by channel id.
@@ -349,7 +349,7 @@ def _chunk(data: Buffer, position: int, body: slice) -> ChunkPlace:
 
 
 def _resume(data: Buffer, position: int, contents: Contents) -> int:
-    """Where to read on after a record that makes no sense: the next chunk that the file's own index knows."""
+    """Position to read on from after a record that makes no sense: the next chunk that the file's own index knows."""
     if contents.known is None:
         contents.known = _indexed_chunks(data)
     following = next(iter(contents.known[bisect_right(contents.known, position) :]), None)

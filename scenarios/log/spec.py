@@ -1,4 +1,4 @@
-"""What a channel of the log carries, and the bytes of its messages: protobuf that a numpy record describes.
+"""The content of a channel of the log, and the bytes of its messages: protobuf that a numpy record describes.
 
 Field 1 is the stamp (``fixed64``, always written). Every other field is always written whole: scalars as ``double``
 or ``sfixed32``, arrays as packed ``repeated`` ones. So any protobuf reader decodes a message by its schema, and numpy
@@ -88,7 +88,7 @@ _BASE: Mapping[int, tuple[str, ...]] = {
     6: tuple(f"base_{kind}_{axis}" for kind in ("linear", "angular") for axis in "xyz"),
     7: tuple(f"base_{part}" for part in ("x", "y", "z", "qx", "qy", "qz", "qw")),
 }
-"""What goes before the joints in a vector of so many elements more than joints: nothing, a velocity, a pose."""
+"""Elements before the joints in a vector of so many elements more than joints: none, a velocity, a pose."""
 
 
 @dataclass(frozen=True)
@@ -105,7 +105,7 @@ class ChannelSpec:
 
     @cached_property
     def metadata(self) -> Mapping[str, str]:
-        """What the schema cannot say, as metadata of the MCAP channel: layout, units, frames, meanings."""
+        """Metadata of the MCAP channel that the schema cannot hold: layout, units, frames, meanings."""
         layout = [[f.name, f.kind, list(f.shape)] for f in self.fields]
         notes = {f.name: " ".join(part for part in (f.doc, f"[{f.unit}]", f.frame) if part) for f in self.fields}
         return {
@@ -126,7 +126,7 @@ class ChannelSpec:
 
     @cached_property
     def places(self) -> Mapping[str, int]:
-        """Where each part of a message record begins in it [bytes]."""
+        """Begin of each part of a message record in it [bytes]."""
         return {name: part[1] for name, part in (self.dtype.fields or {}).items()}
 
     @cached_property
@@ -142,7 +142,7 @@ class ChannelSpec:
 
 
 _MOST_FIELDS, _MOST_AXES, _MOST_NUMBERS = 1000, 8, 1 << 17
-"""What a message may hold: a layout that asks for more is damaged, or made to exhaust the memory."""
+"""Greatest size of a message: a layout that asks for more is damaged, or made to exhaust the memory."""
 
 
 def layout_of(metadata: Mapping[str, str]) -> tuple[FieldSpec, ...]:

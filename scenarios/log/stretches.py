@@ -15,7 +15,7 @@ FIRST, LAST = -(2**63), 2**63 - 2
 """Bounds of all times [ns]."""
 
 START = attrgetter("start_ns")
-"""Of a chunk: the least time of its messages [ns]."""
+"""Start of a chunk: the least time of its messages [ns]."""
 
 
 def grouped(chunks: Iterable[ChunkPlace], duration: float) -> Iterator[list[ChunkPlace]]:

@@ -21,14 +21,14 @@ class Sieve:
         rate: messages that it has at most in a second [Hz].
 
     Attributes:
-        rate: likewise.
+        rate: messages that it has at most in a second [Hz].
     """
 
     def __init__(self, rate: int) -> None:
         self.rate, self._due = rate, 0
 
     def takes(self, time_ns: int) -> bool:
-        """Whether a message at a time, no earlier than that of the one before, is written [ns]."""
+        """Return true if a message at a time, no earlier than that of the one before, is written [ns]."""
         if time_ns < self._due:
             return False
         self._due = -(-(time_ns * self.rate // 10**9 + 1) * 10**9 // self.rate)
@@ -37,7 +37,7 @@ class Sieve:
 
 @dataclass(frozen=True, slots=True)
 class Thinning:
-    """Which channels are thinned.
+    """The thinning of channels.
 
     Attributes:
         rate: messages that a thinned channel has at most in a second [Hz].
@@ -48,7 +48,7 @@ class Thinning:
     whole: frozenset[str]
 
     def sieve(self, topic: str) -> Sieve | None:
-        """What thins a topic; None where it is not thinned."""
+        """The sieve of a topic; None where it is not thinned."""
         return None if topic in self.whole else Sieve(self.rate)
 
 

@@ -29,7 +29,7 @@ _WRITING_NS = 8_000_000
 """Simulated time in which a chunk is written, a part at each tick, so that none takes long [ns]."""
 
 WALKING_SHARE = 0.7
-"""What compression leaves of the messages of a walking robot; of a standing one it leaves less [-]."""
+"""Share of the messages of a walking robot that compression leaves; of a standing one it leaves less [-]."""
 
 _CAPACITY = 128
 
@@ -119,7 +119,7 @@ class LogWriter:
 
     @property
     def path(self) -> Path:
-        """Where the log is."""
+        """Path of the log."""
         return self._sink.path
 
     def channel(self, spec: ChannelSpec) -> ChannelWriter:
@@ -136,7 +136,7 @@ class LogWriter:
         return writer
 
     def rows(self, layout: RowLayout) -> RowWriter | ThinnedRows:
-        """Fill channels of one rate together, which are thinned together; errors as of `RowWriter`."""
+        """Fill channels of one rate together, which are thinned together; ValueError for a field missing or twice."""
         rows = RowWriter(layout, _CAPACITY, self._clock)
         self._rows.append(rows)
         sieves = {topic: self._sieve(topic) for topic in rows.topics}

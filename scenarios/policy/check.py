@@ -35,7 +35,7 @@ class Tried:
 
 @dataclass(frozen=True, slots=True)
 class Checked:
-    """What was found of a contract.
+    """The findings on a contract.
 
     Attributes:
         given: what it did as given.
@@ -59,7 +59,7 @@ def check(
         contract: that is checked.
         network: path of its network.
         robot: that it is for.
-        on_trial: is told each as it was tried.
+        on_trial: called with each as it was tried.
     """
     given = trial_or_refusal(contract, network, robot.name)
     mirror = _mirror(contract, network)

@@ -34,7 +34,7 @@ class Term(Group):
 
 
 class History(Group):
-    """How the last values of terms stand side by side."""
+    """The order in which the last values of terms stand side by side."""
 
     length: Annotated[int, Field(ge=1, le=1000), WHOLE] = key(1, "how many values of each term are observed")
     order: Literal["oldest_first", "newest_first"] = key("oldest_first", "which of them comes first")
@@ -43,7 +43,7 @@ class History(Group):
 
 
 class Action(Group):
-    """What the network's output means."""
+    """The meaning of the network's output."""
 
     output: str | None = key(None, "name of the output, null: the only one that is no state")
     kind: Literal["position", "torque"] = key("position", "targets of joints, or torques")
@@ -82,13 +82,13 @@ class Recurrent(Group):
 
 
 class Contract(Group):
-    """What a network observes and what its outputs mean; joints are told by their names in the robot."""
+    """The contract of a network: its observations and outputs; joints have their names in the robot."""
 
     network: str = Field(description="file of the network in ONNX, seen from this file")
     robot: str | None = key(None, "robot that it was trained for, null: any with these joints")
     rate: Annotated[float, Field(ge=1, le=10_000), Unit("Hz")] = Field(description="decisions in a second")
     joints: Many[str] = Field(description="names of the joints in the order of the network")
-    default: PerJoint = key(0.0, "default posture: where it starts, and from which joint positions are told [rad]")
+    default: PerJoint = key(0.0, "default posture: where it starts, and from which joint positions are counted [rad]")
     stiffness: PerJoint = Field(description="of the drives [N·m/rad]")
     damping: PerJoint = Field(description="of the drives [N·m·s/rad]")
     action: Action = key(Action.model_construct(), "what the output means")
@@ -124,9 +124,9 @@ def contract_of(values: Any, place: str) -> Contract:
         return Contract.model_validate(dict(values))
     except ValidationError as error:
         faults = error.errors(include_url=False)
-        told = "; ".join(f"{'.'.join(map(str, one['loc'])) or 'the file'}: {one['msg']}" for one in faults[:5])
+        listed = "; ".join(f"{'.'.join(map(str, one['loc'])) or 'the file'}: {one['msg']}" for one in faults[:5])
         more = f", and {len(faults) - 5} more" if len(faults) > 5 else ""
-        raise ParameterError(KEY, f"{place}: {told}{more}", "mend the contract") from None
+        raise ParameterError(KEY, f"{place}: {listed}{more}", "mend the contract") from None
 
 
 def schema() -> dict[str, Any]:

@@ -54,7 +54,7 @@ class Policy:
         parameters: for the log.
         posture: of all joints at the start, shape (nj,) [rad].
         followed: the velocity that it follows, within those that it was trained for.
-        told: observation and action of the last decision, for the log.
+        reported: observation and action of the last decision, for the log.
         target: of the joints that it moves, as last decided, shape (m,) [rad, N·m].
 
     Raises:
@@ -142,7 +142,7 @@ class Policy:
             raise ParameterError(KEY, what, "mend joints or action.joints of the contract")
 
     def _at_rest(self) -> Seen:
-        """What is seen of a robot that stands still in its default posture."""
+        """Observation of a robot that stands still in its default posture."""
         still = RobotState(np.concatenate((_UPRIGHT, self.posture)), np.zeros(6 + len(self.posture)))
         return self._seen(0.0, still)
 
@@ -186,13 +186,13 @@ class Policy:
         return Twist(*(value if pair is None else min(max(value, pair[0]), pair[1]) for value, pair in pairs))
 
     def _decided(self, now: float, state: RobotState) -> JointCommand:
-        """What the network makes of the state."""
+        """The decision of the network on the state."""
         seen = self._seen(now, state)
-        told: dict[str, Array] = {}
+        reported: dict[str, Array] = {}
         given = dict(self._states)
         for name, feed in self.feeds.items():
             observed = feed.observe(feed.values(seen))
-            told["observation" if len(self.feeds) == 1 else f"observation_{name}"] = observed
+            reported["observation" if len(self.feeds) == 1 else f"observation_{name}"] = observed
             given[name] = self.network.shaped(name, observed)
         found = self.network.run(given)
         for one in self.contract.recurrent:
@@ -201,11 +201,11 @@ class Policy:
         if len(output) != len(self._moved) or not np.isfinite(output).all():
             raise PartError(f"the network of {self.network.path.name} gave no finite action at {now:.3f} s", "mend it")
         self._action = output
-        self.told = {**told, "action": output}
+        self.told = {**reported, "action": output}
         return self._commanded(output)
 
     def _commanded(self, output: Array) -> JointCommand:
-        """What an output means."""
+        """The command that an output means."""
         action, joints = self.contract.action, self.joints
         used = output if action.clip is None else np.clip(output, *action.clip)
         target = self._offset + self._scale * used
@@ -241,7 +241,7 @@ class Policy:
         return R, spin, state.q.item(2) - min(soles)
 
     def _tell(self, state: RobotState, contact: tuple[bool, bool] | None) -> None:
-        """Tell an estimator what was decided; of a policy no acceleration is known."""
+        """Give an estimator what was decided; of a policy no acceleration is known."""
         torque = self._command.torque_at(state.q[7:], state.v[6:])
         self._senses.decided(Planned(np.zeros_like(state.v), torque, contact or (True, True), -1))
 

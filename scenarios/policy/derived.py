@@ -37,7 +37,7 @@ _TERMS: Mapping[str, str] = {
 """Observations of trainers by the names of ours."""
 
 USUAL = ("angular_velocity", "gravity", "command", "joint_position", "joint_velocity", "last_action")
-"""What most walkers observe, in the order in which most do."""
+"""Terms that most walkers observe, in the order in which most do."""
 
 _SIZES = {"angular_velocity": 3, "gravity": 3, "linear_velocity": 3, "command": 3, "phase": 2}
 
@@ -52,7 +52,7 @@ class Line:
 
     @property
     def text(self) -> str:
-        """It, on a line of its own."""
+        """The text, on a line of its own."""
         comment = f"  # {self.comment}" if self.comment else ""
         return f"{self.key}: {json.dumps(self.value)}{comment}"
 
@@ -61,17 +61,17 @@ def begun(network: Network, robot: RobotDescription | None = None, place: str | 
     """The text of a contract to be completed: lines that say ``to do`` are guessed.
 
     Args:
-        network: that is told of.
+        network: from which they are derived.
         robot: that it is for; None where nobody says.
         place: path of the network seen from the contract; its name if None.
 
     Raises:
         ParameterError: it has no output of joints.
     """
-    told = _told(network.metadata)
+    attached = _attached(network.metadata)
     actions = next((size for size in network.outputs.values() if size), 0)
     if not actions:
-        what = f"{network.path}: no output whose size is told"
+        what = f"{network.path}: no output whose size is known"
         raise ParameterError(KEY, what, "export the network with fixed sizes")
     head = (
         f"# The contract of {network.path.name}: what it observes, and what its outputs mean. The page of policies has"
@@ -80,13 +80,13 @@ def begun(network: Network, robot: RobotDescription | None = None, place: str | 
     if network.metadata:
         lines.append(f"# The network itself tells: {', '.join(sorted(network.metadata))}.")
     lines.append(Line("network", place or network.path.name).text)
-    lines += [line.text for line in _lines(told, robot, actions)]
-    lines += _observed(network, told, len(told.get("joints") or ()) or actions, actions)
+    lines += [line.text for line in _lines(attached, robot, actions)]
+    lines += _observed(network, attached, len(attached.get("joints") or ()) or actions, actions)
     return "\n".join(lines) + "\n"
 
 
-def _told(metadata: Mapping[str, str]) -> dict[str, list[Any]]:
-    """What a trainer has attached, by our names: lists of names or numbers."""
+def _attached(metadata: Mapping[str, str]) -> dict[str, list[Any]]:
+    """Data that a trainer has attached, by our names: lists of names or numbers."""
     found = {}
     for name, theirs in _NAMES.items():
         text = next((metadata[one] for one in theirs if one in metadata), None)
@@ -112,30 +112,30 @@ def _number(value: Any) -> Any:
         return value
 
 
-def _lines(told: Mapping[str, list[Any]], robot: RobotDescription | None, actions: int) -> Iterator[Line]:
+def _lines(attached: Mapping[str, list[Any]], robot: RobotDescription | None, actions: int) -> Iterator[Line]:
     if robot is not None:
         yield Line("robot", robot.name)
-    rate = told.get("rate")
+    rate = attached.get("rate")
     yield Line("rate", rate[0] if rate else 50, "" if rate else "to do: decisions in a second")
-    joints, comment = _joints(told, robot, actions)
+    joints, comment = _joints(attached, robot, actions)
     yield Line("joints", joints, comment)
     for name, usual, what in (
-        ("default", 0.0, "the posture from which joint positions are told, and to which actions are added [rad]"),
+        ("default", 0.0, "the posture from which joint positions are counted, and to which actions are added [rad]"),
         ("stiffness", 100.0, "of the drives, by joint or one for all [N·m/rad]"),
         ("damping", 2.0, "of the drives, by joint or one for all [N·m·s/rad]"),
     ):
-        yield Line(name, told.get(name, usual), "" if name in told else f"to do: {what}")
-    scale = told.get("scale")
+        yield Line(name, attached.get(name, usual), "" if name in attached else f"to do: {what}")
+    scale = attached.get("scale")
     value = {"scale": scale[0] if len(scale) == 1 else scale} if scale else {"scale": 0.25}
     yield Line("action", value, "" if scale else "to do: radians of an action of 1")
     wide = {"v_x": [-1.0, 1.0], "v_y": [-0.5, 0.5], "yaw_rate": [-1.0, 1.0]}
     yield Line("command", wide, "to do: velocities that it was trained for [m/s, rad/s]")
 
 
-def _joints(told: Mapping[str, list[Any]], robot: RobotDescription | None, actions: int) -> tuple[list[str], str]:
+def _joints(attached: Mapping[str, list[Any]], robot: RobotDescription | None, actions: int) -> tuple[list[str], str]:
     """Names of the joints, and how far they can be trusted."""
-    if "joints" in told:
-        return [str(name) for name in told["joints"]], ""
+    if "joints" in attached:
+        return [str(name) for name in attached["joints"]], ""
     if robot is not None and len(robot.joint_names) == actions:
         return list(robot.joint_names), "to do: in the order of the robot, which that of the network need not be"
     if robot is not None and len(robot.roles.legs) == actions:
@@ -144,7 +144,7 @@ def _joints(told: Mapping[str, list[Any]], robot: RobotDescription | None, actio
     return [f"joint_{index}" for index in range(actions)], f"to do: names of the {actions} joints, in its order"
 
 
-def _observed(network: Network, told: Mapping[str, list[Any]], joints: int, actions: int) -> list[str]:
+def _observed(network: Network, attached: Mapping[str, list[Any]], joints: int, actions: int) -> list[str]:
     """Lines of what the inputs are made of."""
     inputs, outputs = network.inputs, network.outputs
     states = _states(inputs, outputs)
@@ -153,7 +153,7 @@ def _observed(network: Network, told: Mapping[str, list[Any]], joints: int, acti
     if states:
         pairs = [{"input": one, "output": other} for one, other in states]
         found.append(Line("recurrent", pairs, "to do: outputs of the same size as inputs").text)
-    names, size = told.get("observations"), next(iter(free.values()), 0)
+    names, size = attached.get("observations"), next(iter(free.values()), 0)
     if names and len(free) == 1 and all(name in _TERMS for name in names):
         return [*found, "observations:", *(f"  - {{term: {_TERMS[name]}}}" for name in names)]
     sizes = {**_SIZES, "joint_position": joints, "joint_velocity": joints, "last_action": actions}

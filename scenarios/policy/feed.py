@@ -19,14 +19,14 @@ Array = NDArray[np.float64]
 
 
 class Feed:
-    """What an input of a network is made of.
+    """The feed of an input of a network.
 
     Args:
         terms: in order.
         contract: that they are of.
 
     Attributes:
-        terms: likewise.
+        terms: in order.
         looks: whether a term may want to know more than base and joints: where torso and soles are.
 
     Raises:

@@ -87,7 +87,7 @@ def named_robot(path: Path) -> str | None:
 
 
 def _reader(values: Any) -> Callable[[Any, Path, Sequence[str]], Any]:
-    """What makes a contract of values, by what they are."""
+    """The function that makes a contract of values, by what they are."""
     if isinstance(values, dict):
         for reader, keys in ((unitree.contract, unitree.KEYS), (leapp.contract, leapp.KEYS)):
             if all(key in values for key in keys):

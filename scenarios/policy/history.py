@@ -1,4 +1,4 @@
-"""How the last values of observation terms stand side by side in an input of a network."""
+"""The last values of observation terms, side by side in an input of a network."""
 
 from collections.abc import Sequence
 
@@ -24,7 +24,10 @@ class Stack:
     def __init__(self, lengths: Sequence[int], newest_first: bool, interleaved: bool, zero: bool) -> None:
         if interleaved and len(set(lengths)) > 1:
             raise ValueError(f"frames of terms with histories of {sorted(set(lengths))} values")
-        self._lengths, self._newest_first, self._interleaved, self._zero = lengths, newest_first, interleaved, zero
+        self._lengths = lengths
+        self._newest_first = newest_first
+        self._interleaved = interleaved
+        self._zero = zero
         self.reset()
 
     def reset(self) -> None:

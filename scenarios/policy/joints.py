@@ -74,7 +74,7 @@ class Joints:
         default: their default posture, shape (k,) [rad].
         posture: of all joints at the start, shape (nj,) [rad].
         stiffness: of all drives, shape (nj,) [N·m/rad].
-        damping: likewise [N·m·s/rad].
+        damping: of all drives, shape (nj,) [N·m·s/rad].
 
     Raises:
         ParameterError: they are not that robot's.
@@ -94,7 +94,7 @@ class Joints:
 
 
 def _held(others: Others, robot: RobotDescription, named: set[str]) -> tuple[Array, Array, Array]:
-    """Where joints are held that a contract does not name, and by what stiffness and damping, shape (nj,) each."""
+    """Angles at which joints that a contract does not name are held, their stiffness and damping, shape (nj,) each."""
     names = robot.joint_names
     posture = np.array(robot.nominal_joint_positions, dtype=np.float64)
     for pattern, angle in others.position.items():

@@ -38,8 +38,8 @@ def contract(values: Mapping[str, Any], file: Path, joint_names: Sequence[str]) 
         raise ParameterError(KEY, f"{file}: {len(models)} models in turn", "give a pipeline of one")
     (name, model), *_ = models.items()
     inputs, outputs = ({one["name"]: one for one in model[kind]} for kind in ("inputs", "outputs"))
-    told: list[str] = next(iter((pipeline.get("outputs") or {}).values()), [])
-    targets = [one for one in told if _target(outputs[one]) is not None]
+    offered: list[str] = next(iter((pipeline.get("outputs") or {}).values()), [])
+    targets = [one for one in offered if _target(outputs[one]) is not None]
     if len(targets) != 1:
         what = f"{file}: {len(targets)} outputs that are written to joints"
         raise ParameterError(KEY, what, "give one, of set_joint_position_target or set_joint_effort_target")

@@ -1,4 +1,4 @@
-"""What may be wrong with a contract: each fault with its sign, and the contract with that one thing mended."""
+"""The possible faults of a contract: each with its sign, and the contract with that one thing mended."""
 
 import re
 from collections.abc import Callable, Iterator, Sequence
@@ -11,10 +11,10 @@ from surefoot.scenarios.policy.contract import Contract, PerJoint, Term
 from surefoot.scenarios.policy.joints import spread
 
 ACTION_FACTORS = (-1.0, 0.5, 2.0, 0.25, 4.0, 0.1, 10.0)
-"""Of the scale of actions that are tried [-]."""
+"""Factors of the scale of actions that are tried [-]."""
 
 GAIN_FACTORS = (0.1, 0.2, 0.4, 2.5, 5.0, 10.0)
-"""Of stiffness and damping that are tried [-]."""
+"""Factors of stiffness and damping that are tried [-]."""
 
 RATES = (25.0, 50.0, 100.0, 200.0)
 """Decisions in a second that are tried [Hz]."""
@@ -82,7 +82,7 @@ def _terms(contract: Contract) -> list[Term]:
 
 
 def scaled(name: str, factor: float | tuple[float, ...]) -> Callable[[Term], Term]:
-    """What changes the scale of a term, by one factor or by one for each number."""
+    """A function that changes the scale of a term, by one factor or by one for each number."""
 
     def change(term: Term) -> Term:
         if term.term != name:
@@ -162,7 +162,7 @@ STRAIGHT = 0.02
 
 
 def _straight(contract: Contract, robot: RobotDescription) -> bool:
-    """Whether the default posture stands on straight knees, as no robot does that is to walk."""
+    """Return true if the default posture stands on straight knees, as no robot does that is to walk."""
     angles = spread(contract.default, contract.joints, "default")
     knees = [contract.joints.index(name) for name in robot.roles.knees if name in contract.joints]
     return bool(knees) and bool((np.abs(angles[knees]) < STRAIGHT).all())
@@ -182,8 +182,8 @@ def reordered(contract: Contract, names: Sequence[str]) -> Contract:
     """The contract with other names for its joints, in the order of the network, wherever it names them."""
     of = dict(zip(contract.joints, names, strict=True))
 
-    def other(told: tuple[str, ...] | None) -> tuple[str, ...] | None:
-        return None if told is None else tuple(of[name] for name in told)
+    def other(named: tuple[str, ...] | None) -> tuple[str, ...] | None:
+        return None if named is None else tuple(of[name] for name in named)
 
     changed = changed_terms(contract, lambda term: term.model_copy(update={"joints": other(term.joints)}))
     action = contract.action.model_copy(update={"joints": other(contract.action.joints)})
@@ -191,7 +191,7 @@ def reordered(contract: Contract, names: Sequence[str]) -> Contract:
 
 
 def depths(robot: RobotDescription) -> dict[str, int]:
-    """How many joints each has between it and the base, by its name."""
+    """Number of joints between each joint and the base, by its name."""
     from surefoot.models.pinocchio import pinocchio_model
 
     model = pinocchio_model(robot)
@@ -228,6 +228,6 @@ FAULTS: tuple[Fault, ...] = (
     Fault("gains", "with other gains it walks", _gains),
     Fault("rate", "with another rate it walks", _rates),
     Fault("default posture", "with another default posture it walks", _postures, _straight),
-    Fault("unit of the command", "with the command scaled by a factor it goes as fast as told", _commands),
+    Fault("unit of the command", "with the command scaled by a factor it goes as fast as commanded", _commands),
 )
-"""What is looked for; of mends that do as well, the first counts."""
+"""Faults that are looked for; of mends that do as well, the first counts."""

@@ -1,7 +1,7 @@
-"""How far a network is from treating left and right alike, which tells orders of joints apart without a run.
+"""The asymmetry of a network between left and right, which separates orders of joints without a run.
 
-A walker is built alike on both sides, and a network that has learnt to walk it does nearly the same with both: what it
-does of a mirrored observation is the mirror image of what it does. Under names in a wrong order it is not.
+A walker is built alike on both sides, and a network that has learnt to walk it treats both nearly alike. Its action on
+a mirrored observation is the mirror image of its action. Under names in a wrong order it is not.
 """
 
 from collections.abc import Sequence
@@ -21,10 +21,10 @@ SAMPLES = 6
 """Observations that are mirrored."""
 
 _SIZES = {"angular_velocity": 0.5, "gravity": 0.1, "command": 0.3, "joint_position": 0.1, "joint_velocity": 0.5}
-"""How far observations are drawn from rest, by term; of others 0.3 [SI]."""
+"""Spread of observations that are drawn around rest, by term; of others 0.3 [SI]."""
 
 _SIGNS = {"angular_velocity": (-1, 1, -1), "gravity": (1, -1, 1), "command": (1, -1, -1), "linear_velocity": (1, -1, 1)}
-"""What a mirror makes of vectors."""
+"""Signs that a mirror gives the parts of vectors."""
 
 _JOINTS = ("joint_position", "joint_velocity", "last_action")
 _UNTURNED = ("constant", "moving")
@@ -46,13 +46,13 @@ class Mirror:
         terms, states = contract.observations, {state.input for state in contract.recurrent}
         free = [name for name in network.inputs if name not in states]
         known = (*_SIGNS, *_JOINTS, *_UNTURNED)
-        told = all(term.term in known and not (term.options and term.term in _SIGNS) for term in terms)
-        if len(free) != 1 or not told:
+        is_known = all(term.term in known and not (term.options and term.term in _SIGNS) for term in terms)
+        if len(free) != 1 or not is_known:
             raise ValueError("its mirror image is not known")
         self._contract, self._network, self._input = contract, network, free[0]
         moved = contract.action.joints or contract.joints
         self._moved = [contract.joints.index(name) for name in moved]
-        self._told = [[contract.joints.index(name) for name in term.joints or contract.joints] for term in terms]
+        self._indices = [[contract.joints.index(name) for name in term.joints or contract.joints] for term in terms]
         self._states = {name: network.shaped(name, np.zeros(max(network.inputs[name], 1))) for name in states}
         outputs = [name for name in network.outputs if name not in {state.output for state in contract.recurrent}]
         self._output = contract.action.output or outputs[0]
@@ -76,7 +76,7 @@ class Mirror:
 
     def _joints(self, number: int) -> list[int]:
         """Places, among the joints of the contract, of those that a term tells."""
-        return self._moved if self._contract.observations[number].term == "last_action" else self._told[number]
+        return self._moved if self._contract.observations[number].term == "last_action" else self._indices[number]
 
     def _asked(self, frames: Sequence[Array]) -> Array:
         history = self._contract.history
@@ -87,7 +87,7 @@ class Mirror:
         return np.asarray(found[self._output], dtype=np.float64).ravel()
 
     def error(self, names: Sequence[str]) -> float:
-        """How far actions of mirrored observations are from mirrored actions, over the size of both [-]."""
+        """Distance of actions of mirrored observations from mirrored actions, over the size of both [-]."""
         partner, sign = _image([names[index] for index in self._moved])
         off = size = 0.0
         for frames, plain in zip(self._drawn, self._plain, strict=True):
@@ -117,7 +117,7 @@ class Mirror:
 
 
 def _image(names: Sequence[str]) -> tuple[NDArray[np.intp], Array]:
-    """Where each joint's counterpart is, and the sign that a mirror gives its angle, by their names."""
+    """Counterpart of each joint, and the sign that a mirror gives its angle, by their names."""
     places = {name: index for index, name in enumerate(names)}
     partner = [places.get(other_side(name), index) for index, name in enumerate(names)]
     turns = [-1.0 if "roll" in name or "yaw" in name else 1.0 for name in names]

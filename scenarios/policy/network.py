@@ -24,9 +24,9 @@ class Network:
         path: of the file.
 
     Attributes:
-        path: likewise.
+        path: of the file.
         inputs: number of values of each input, by name; 0 where the file does not say.
-        outputs: likewise of each output.
+        outputs: number of values of each output, by name; 0 where the file does not say.
         metadata: that the trainer has attached, by name.
 
     Raises:
@@ -73,7 +73,7 @@ def file_digest(path: Path) -> str:
 
 
 def _engine() -> ModuleType:
-    """What runs networks."""
+    """The engine that runs networks."""
     try:
         import onnxruntime
     except ImportError:
@@ -94,7 +94,7 @@ def _count(shape: Any) -> int:
 
 
 def _shape(shape: Any) -> tuple[int, ...]:
-    """The shape of an input with one for each size that is not told, but for the last one of several."""
+    """The shape of an input with one for each size that is not known, but for the last one of several."""
     sizes = [size if isinstance(size, int) else 1 for size in shape]
     if not _count(shape):
         sizes = [1] * max(len(sizes) - 1, 0) + [-1]

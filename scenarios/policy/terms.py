@@ -18,14 +18,14 @@ Array = NDArray[np.float64]
 
 @dataclass(frozen=True, slots=True)
 class Seen:
-    """What a policy may be told at a decision.
+    """The values that a policy may be given at a decision.
 
     Attributes:
         time: since the policy was reset [s].
         rotation: orientation of the base in the world, shape (3, 3).
-        torso_rotation: likewise of the torso.
+        torso_rotation: orientation of the torso in the world, shape (3, 3).
         angular_velocity: of the base in its frame, shape (3,) [rad/s].
-        torso_angular_velocity: likewise of the torso.
+        torso_angular_velocity: of the torso in its frame, shape (3,) [rad/s].
         linear_velocity: of the base in its frame, shape (3,) [m/s].
         height: of the base over the lower sole [m].
         position: of the joints that the term tells, shape (k,) [rad].
@@ -52,7 +52,7 @@ class Seen:
 
 
 Observation = Callable[..., Any]
-"""From what is seen, and options by name, to numbers."""
+"""A function of the observed values, and of options by name, that returns numbers."""
 
 
 def angular_velocity(seen: Seen, body: str = "base") -> Array:
@@ -125,7 +125,7 @@ def phase(
         seen: what is known.
         period: of the clock [s].
         offsets: shares of it, one for each foot [-].
-        waves: which of sin and cos are told.
+        waves: which of sin and cos are given.
         grouped: wave by wave, else offset by offset.
         begin: share at the reset [-].
         stance: share that is taken for the first half turn [-].
@@ -157,7 +157,7 @@ OWN: Mapping[str, Observation] = {
     )
 }  # fmt: skip
 OF_BASE = frozenset(OWN) - {"height"}
-"""Those that need no more than base and joints, but for options."""
+"""Terms that need no more than base and joints, but for options."""
 
 TERMS: Registry[Observation] = Registry("surefoot.observations", None, OWN)
 """All terms by name: ours, then those of other packages."""
@@ -172,5 +172,5 @@ def quaternion(R: Array) -> tuple[float, float, float, float]:
 
 
 def meaning(name: str) -> str:
-    """What a term tells, in a line."""
+    """Meaning of a term, in a line."""
     return doc_of(TERMS[name]).strip().split("\n", 1)[0]

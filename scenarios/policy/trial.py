@@ -1,4 +1,4 @@
-"""A short run of a policy with its contract as given: it stands, it is told to walk, and what it did is measured."""
+"""A short run of a policy with its contract as given: it stands, is commanded to walk, and is measured."""
 
 import math
 from collections.abc import Mapping
@@ -23,22 +23,25 @@ from surefoot.scenarios.setup.walk import resolve
 Array = NDArray[np.float64]
 
 STANDS, WALKS = 1.5, 3.5
-"""How long the robot stands and then walks in a trial, of the reference robot [s]."""
+"""Times for which the robot stands and then walks in a trial, of the reference robot [s]."""
 
 SETTLED = 1.5
-"""How long it may take to come to the velocity, likewise [s]."""
+"""Time within which it comes to the velocity, of the reference robot [s]."""
 
 SPEED = 0.4
-"""That it is told to walk ahead with, at most, and the share of the fastest that the contract knows [m/s, -]."""
+"""Speed at which it is to walk ahead, at most, and the share of the fastest that the contract knows [m/s, -]."""
 
 ASTRAY, LEANS, JUMPS = 0.5, 0.35, 0.5
-"""What a walk of a sound contract stays under: the error of the velocity over that commanded [-], the tilt of the base
-[rad], and the change of targets from one decision to the next, RMS over joints and time [rad]."""
+"""Bounds of a walk of a sound contract.
+
+They are on the error of the velocity over that commanded [-], on the tilt of the base [rad], and on the change of
+targets from one decision to the next, RMS over joints and time [rad].
+"""
 
 
 @dataclass(frozen=True, slots=True)
 class Trial:
-    """What a policy did.
+    """The result of a policy in a trial.
 
     Attributes:
         stood: how long it was up [s].
@@ -58,13 +61,13 @@ class Trial:
 
     @property
     def sound(self) -> bool:
-        """Whether it stood and walked as one of a sound contract does."""
+        """True if it stood and walked as one of a sound contract does."""
         up = self.stood >= self.lasted and not self.fault
         return up and self.astray < ASTRAY and self.leaned < LEANS and self.jumped < JUMPS
 
     @property
     def cost(self) -> float:
-        """How badly it did: less is better; who falls sooner is worse whatever else there is [-]."""
+        """Cost of the trial: less is better; who falls sooner is worse whatever else there is [-]."""
         if self.stood < self.lasted or self.fault:
             return 10.0 * (2.0 - self.stood / self.lasted)
         return min(self.astray, 3.0) / ASTRAY + min(self.leaned, 1.5) / LEANS + min(self.jumped, 3.0) / JUMPS
@@ -95,7 +98,7 @@ def _fastest(contract: Contract) -> float:
 
 
 def scenario_of(robot: str, policy: str, speed: float) -> Scenario:
-    """What a policy is tried in: level ground, the true state, a velocity ahead [m/s] after a while."""
+    """The scenario in which a policy is tried: level ground, true state, a velocity ahead [m/s] after a while."""
     height = float(describe(robot, Scenario().robot_options).com_height)
     time = math.sqrt(height)
     values: Mapping[str, Any] = {
@@ -118,10 +121,10 @@ def _tried(scenario: Scenario, speed: float) -> Trial:
     tilts: list[float] = []
     actions: list[Array] = []
     begun: tuple[float, Array] | None = None
-    told = None
+    reported = None
     while not loop.done and not loop.fell and loop.step():
-        if walker.mind.told is not told:
-            told = walker.mind.told
+        if walker.mind.told is not reported:
+            reported = walker.mind.told
             actions.append(walker.mind.target)
         x, y = walker.measurement.q[3:5].tolist()
         tilts.append(math.acos(min(max(1.0 - 2.0 * (x * x + y * y), -1.0), 1.0)))

@@ -23,7 +23,7 @@ _TERMS = {
 """Observations of such files by the names of ours."""
 
 _PLACES = ("../exported/policy.onnx", "exported/policy.onnx", "policy.onnx", "../policy.onnx")
-"""Where the network is, seen from the file."""
+"""Places of the network, seen from the file."""
 
 _RANGES = {"v_x": "lin_vel_x", "v_y": "lin_vel_y", "yaw_rate": "ang_vel_z"}
 
@@ -32,7 +32,7 @@ def contract(values: Mapping[str, Any], file: Path, joint_names: Sequence[str]) 
     """The contract of such a file.
 
     Its joints are numbered as the motors of the robot are, which are taken to be in the order of the robot's joints.
-    Stiffness and damping are told by motor, all else by joint of the policy. Histories go from old to new by terms.
+    Stiffness and damping are given by motor, all else by joint of the policy. Histories go from old to new by terms.
 
     Raises:
         ParameterError: it says what no contract can, or the robot has fewer joints.
@@ -62,10 +62,10 @@ def contract(values: Mapping[str, Any], file: Path, joint_names: Sequence[str]) 
 
 
 def _gains(values: Mapping[str, Any], name: str, order: Sequence[int], file: Path) -> list[float]:
-    told = values.get(name)
-    if not isinstance(told, list) or len(told) <= max(order):
+    given = values.get(name)
+    if not isinstance(given, list) or len(given) <= max(order):
         raise ParameterError(KEY, f"{file}: {name} does not tell all motors", "give a number for each")
-    return [float(told[i]) for i in order]
+    return [float(given[i]) for i in order]
 
 
 def _action(action: Mapping[str, Any], names: Sequence[str], file: Path) -> dict[str, Any]:
@@ -78,8 +78,8 @@ def _action(action: Mapping[str, Any], names: Sequence[str], file: Path) -> dict
     return found
 
 
-def _observations(told: Mapping[str, Any], names: Sequence[str], file: Path) -> Iterator[dict[str, Any]]:
-    for theirs, keys in told.items():
+def _observations(given: Mapping[str, Any], names: Sequence[str], file: Path) -> Iterator[dict[str, Any]]:
+    for theirs, keys in given.items():
         if not isinstance(keys, Mapping):
             continue
         if theirs not in _TERMS:

@@ -1,1 +1,1 @@
-"""What a running loop writes into the log's channels."""
+"""The rows that a running loop writes into the log's channels."""

@@ -21,8 +21,10 @@ Array = NDArray[np.float64]
 _SECOND, _FALLBACK = float(SolveStatus.SECOND_SOLVER), float(SolveStatus.EQUALITIES_ONLY)
 
 _MORE_NUMBERS = ("omega", "upright")
-"""What is not logged as it is, but needed for what is: the pendulum's natural frequency for the DCM, and the vertical
-part of the torso's upward axis for its tilt."""
+"""Inputs that are not logged as they are.
+
+They are the pendulum's natural frequency for the DCM, and the vertical part of the torso's upward axis for its tilt.
+"""
 
 
 class Recorder:
@@ -101,7 +103,7 @@ class Recorder:
 
 
 class RobotRows:
-    """What of a robot's rows follows from the rest: ZMP, centres of pressure, the torso's tilt, the largest torque.
+    """The fields that follow from the rest of a robot's rows: ZMP, centres of pressure, torso's tilt, largest torque.
 
     Args:
         table: of the rows.
@@ -138,7 +140,7 @@ class RobotRows:
             self._cop[n, foot, 0], self._cop[n, foot, 1] = zmp.centre_of_pressure(wrench[foot])
 
     def _follow(self, n: int) -> None:
-        """What follows of more than is logged of every robot."""
+        """Derive the fields of more than is logged of every robot."""
 
     def _largest_ratio(self, n: int) -> float:
         """Largest torque over its limit; NaN where one is."""

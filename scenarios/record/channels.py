@@ -47,13 +47,13 @@ def _int(name: str, doc: str, *shape: int) -> FieldSpec:
 
 
 _STEP = "in the physics step that ended at the message's time"
-"""Of which instant forces are: they follow from the state in which that step began."""
+"""Instant of forces: they follow from the state in which that step began."""
 
 _PUSHED = "sum of pushes, mean over the tick that ends at the message's time; NaN where a plant does not measure it"
 
 
 def measurement(n: Sizes) -> ChannelSpec:
-    """What the sensors give, every control tick."""
+    """Values of ideal sensors and of the pushes, every control tick."""
     fields = (
         _real("joint_position", n.nj, "rad", "", "encoders"),
         _real("joint_velocity", n.nj, "rad/s", "", "encoders"),
@@ -68,7 +68,7 @@ def measurement(n: Sizes) -> ChannelSpec:
 
 
 def readings(n: Sizes) -> ChannelSpec:
-    """What sensors say to an estimator, every control tick; only in a run whose estimator reads them."""
+    """Readings that sensors give an estimator, every control tick; only in a run whose estimator reads them."""
     fields = (
         _real("joint_position", n.nj, "rad", "", "encoders"),
         _real("joint_velocity", n.nj, "rad/s", "", "encoders; NaN of those that say none"),
@@ -133,7 +133,7 @@ def estimate(_: Sizes) -> ChannelSpec:
 
 
 def estimation() -> ChannelSpec:
-    """What an estimator of the sensors knows, how sure it is and by what it is wrong, every control tick.
+    """Estimate from the sensors, with its deviation and its error, every control tick.
 
     Errors are estimate minus truth, seen from the foot that carries more and turned to the true heading.
     """
@@ -161,7 +161,7 @@ def estimation() -> ChannelSpec:
 
 
 def planner_state(_: Sizes) -> ChannelSpec:
-    """What the planner measured of the CoM and was given of it, every planner tick."""
+    """CoM that the planner measured, and that which it was given, every planner tick."""
     fields = (
         _real("measured_com", 3, "m", "world", "CoM with noise"),
         _real("measured_com_velocity", 3, "m/s", "world", "CoM velocity with noise"),
@@ -308,18 +308,18 @@ def torque(n: Sizes) -> ChannelSpec:
 
 
 def coupling(n: Sizes) -> ChannelSpec:
-    """How well the simulator holds joints that follow others, every control tick; only of a robot that has such."""
+    """Errors of the simulator in joints that follow others, every control tick; only of a robot that has such."""
     fields = (_real("apart", n.nf, "rad", "", "of each from where the joint that it follows would have it"),)
     return ChannelSpec("/coupling", "Coupling", fields, doc_of(coupling))
 
 
 def link(_: Sizes | None = None) -> ChannelSpec:
-    """What became of messages between plant and controller in two processes, with each state that came."""
+    """Fate of the messages between plant and controller in two processes, with each state that came."""
     fields = (
         _scalar("command_age", "s", "of the state that the command in force answers, when this one was measured"),
         _int("states_missed", "control ticks since the state before whose states did not come"),
         _int("commands_missed", "control ticks so far at which no new command was there"),
-        _int("commands_limited", "control ticks so far at which the plant did less than it was told"),
+        _int("commands_limited", "control ticks so far at which the plant did less than it was commanded"),
         _int("damped", "1: the plant has damped its joints"),
     )
     return ChannelSpec("/link", "Link", fields, doc_of(link))
@@ -340,12 +340,12 @@ def timing(_: Sizes) -> ChannelSpec:
 
 
 def command(_: Sizes) -> ChannelSpec:
-    """What the walk was told while it went on, in the plan from which on it holds; NaN for what was not."""
+    """Commands to the walk while it went on, in the plan from which on each holds; NaN for what was not commanded."""
     fields = (
         _real("velocity", 2, "m/s", "path", "asked for, forward and to the left"),
         _scalar("yaw_rate", "rad/s", "of the heading, asked for"),
         _real("followed_velocity", 2, "m/s", "path", "followed in its place, whose steps are in reach"),
-        _scalar("followed_yaw_rate", "rad/s", "likewise"),
+        _scalar("followed_yaw_rate", "rad/s", "of the heading, followed in its place"),
         _real("place", 2, "m", "world", "where to go last"),
         _scalar("heading", "rad", "there"),
         _scalar("single_support", "s", "duration from now on"),

@@ -19,5 +19,5 @@ class CouplingRecorder:
         self._channel, self._world = writer.channel(channels.coupling(sizes)), world
 
     def tick(self, time_ns: int) -> None:
-        """Where the joints are at a control tick [ns]."""
+        """Log where the joints are at a control tick [ns]."""
         self._channel.put(time_ns, apart=self._world.apart)

@@ -6,11 +6,11 @@ from surefoot.maths.algebra cimport vector3
 cdef double PI
 
 cdef class EstimationRecorder:
-    cdef object _readings, _row, _writer, _more, _told
+    cdef object _readings, _row, _writer, _more, _extra
     cdef object _wrench, _deviations, _rotations
 
     cpdef tick(self, time_ns, readings, estimate, wrench, terms, truth, forces)
-    cdef _tell(self, time_ns, told)
+    cdef _tell(self, time_ns, extra)
 
 cdef class EstimationRows:
     cdef double[:, :] _stance, _q, _base_pose, _com, _com_velocity, _true_com, _true_com_velocity

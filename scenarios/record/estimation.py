@@ -19,7 +19,7 @@ from surefoot.wbc.types import Array
 
 _THREE, _TWO = np.full(3, np.nan), np.full(2, np.nan)
 _UNKNOWN = Deviation(_THREE, _THREE, _TWO, _TWO, np.nan, np.nan, np.nan)
-"""Of an estimator that does not say how sure it is."""
+"""Deviation of an estimator that gives none."""
 
 PI = math.pi
 
@@ -55,7 +55,7 @@ class EstimationRecorder:
         # Wrenches and deviations come in other arrays at each tick, and rotations by columns: they are copied here.
         self._wrench, self._deviations, self._rotations = np.zeros((2, 6)), np.zeros(10), np.zeros((2, 3, 3))
         self._writer = writer
-        self._told: tuple[str, ...] | None = None
+        self._extra: tuple[str, ...] | None = None
 
     def tick(
         self, time_ns: int, readings: Readings, estimate: Estimate, wrench: Array, terms: RobotTerms,
@@ -76,7 +76,10 @@ class EstimationRecorder:
         sure, contact = estimate.deviation or _UNKNOWN, estimate.contact or (False, False)
         self._wrench[...] = wrench
         own = self._deviations
-        own[0:3], own[3:6], own[6:8], own[8:10] = sure.com, sure.com_velocity, sure.tilt, sure.sole_height
+        own[0:3] = sure.com
+        own[3:6] = sure.com_velocity
+        own[6:8] = sure.tilt
+        own[8:10] = sure.sole_height
         self._rotations[0], self._rotations[1] = terms.base_rotation, truth.base_rotation
         numbers = (*contact, sure.force, sure.moment, forces.item(1) > forces.item(0))
         self._row.append(
@@ -86,20 +89,20 @@ class EstimationRecorder:
         if estimate.channels:
             self._tell(time_ns, estimate.channels)
 
-    def _tell(self, time_ns: int, told: Mapping[str, Array]) -> None:
+    def _tell(self, time_ns: int, extra: Mapping[str, Array]) -> None:
         """Log what else an estimator tells; what it tells at the first tick is what it tells."""
-        if self._told is None:
-            self._told = tuple(told)
-            fields = tuple([FieldSpec(name, np.shape(value), "", "", "") for name, value in told.items()])
+        if self._extra is None:
+            self._extra = tuple(extra)
+            fields = tuple([FieldSpec(name, np.shape(value), "", "", "") for name, value in extra.items()])
             self._more = self._writer.channel(ChannelSpec("/estimator", "Estimator", fields, _OWN))
-        self._more.append(time_ns, *[told[name] for name in self._told])
+        self._more.append(time_ns, *[extra[name] for name in self._extra])
 
 
 _OWN = "What else the estimator tells, by names of its own, every control tick."
 
 
 class EstimationRows:
-    """By what the estimate is wrong where it counts: from the stance foot, with its heading turned to the true one.
+    """The error of the estimate where it counts: from the stance foot, with its heading turned to the true one.
 
     Where the robot is in the world and where it looks no sensor tells; that is in place_error and yaw_error.
 

@@ -69,7 +69,7 @@ def _with_required(names: Iterable[str]) -> Iterator[tuple[str, Distribution]]:
 
 
 def _is_copied(package: Distribution) -> bool:
-    """Whether the installer has copied the code, so that the version tells it."""
+    """Return true if the installer has copied the code, so that the version identifies it."""
     return any(file.suffix in (".py", ".so", ".pyd") for file in package.files or ())
 
 
@@ -126,7 +126,7 @@ def _beside(module: Path) -> Iterator[Path]:
 
 
 def _digest(files: Mapping[str, Path]) -> str:
-    """Of the content of files; of what Python writes itself, or the installer, nothing is in it."""
+    """Digest of the content of files; of what Python writes itself, or the installer, nothing is in it."""
     digest = hashlib.sha256()
     for name, path in sorted(files.items()):
         hidden = any(part.startswith(".") and part != ".." for part in name.split("/"))

@@ -1,4 +1,4 @@
-"""What a log carries about its run beside the channels: its constants, and the versions of all that it depends on."""
+"""The constants of a run that its log carries beside the channels, and the versions of all that it depends on."""
 
 import hashlib
 import itertools
@@ -34,10 +34,10 @@ END_RECORD = "end"
 """Metadata record written last: how the run ended."""
 
 STOPPED = "stopped from outside"
-"""Why a run ended that a program or a driver has closed: it is as long as they wanted it."""
+"""Reason of the end of a run that a program or a driver has closed: it is as long as they wanted it."""
 
 AFTER_FALL = 0.3
-"""How long a run goes on after a fall, so that the log shows it [s]."""
+"""Time for which a run goes on after a fall, so that the log shows it [s]."""
 
 PUSH_RECORD = "push "
 """Beginning of the names of metadata records that hold a push given while the run went on, each with its number."""
@@ -46,7 +46,7 @@ BEGUN_RECORD = "begun "
 """Beginning of the names of those that hold a push which waited for a point of the gait, as it began."""
 
 COMMAND_RECORD = "command "
-"""Likewise of those that hold a command, in the words of a scenario's `commands`."""
+"""Beginning of the names of those that hold a command, in the words of a scenario's `commands`."""
 
 AGENDA_RECORD = "agenda"
 """Metadata record of what was to happen in a run, and when; logs of earlier versions have none."""
@@ -73,7 +73,7 @@ _GREATEST = 1e6
 
 @dataclass(frozen=True, slots=True)
 class RunConstants:
-    """What is fixed during a run.
+    """The constants of a run.
 
     Attributes:
         scenario: its name.
@@ -100,7 +100,8 @@ class RunConstants:
         knee_turn: turn of the shanks for an angle of the knees; a log has it where that is not 1 [-].
         unforeseen: numbers of the boxes that are not where planner and controller believe them to be, by the key of the
             scenario that has put them there; a log has it where there are any.
-        waypoints: places to go to one after another, as x, y [m] and heading [rad] in the world; likewise.
+        waypoints: places to go to one after another, as x, y [m] and heading [rad] in the world; a log has
+            it where there are any.
         size: length and mass of the robot over the reference's; a log has it where they are not 1 [-].
         controller: name of what has the seat of planner and whole-body controller; a log has it where something has.
     """
@@ -222,7 +223,7 @@ class Event:
     idle: str = ""
 
     def missed(self, end: float) -> str:
-        """Why it does nothing in a run that ends at a time [s]; empty where it acts."""
+        """Reason why it does nothing in a run that ends at a time [s]; empty where it acts."""
         late = f"{self.what} {self.time:.6g} s and never acts: the run ends at {end:.6g} s"
         return late if self.time >= end else self.idle
 
@@ -247,7 +248,7 @@ class AskedPush:
 
     @classmethod
     def of(cls, push: Push, live: bool = False) -> "AskedPush":
-        """What is told of a push."""
+        """Make the promise of a push."""
         x, y, z = (float(part) for part in push.force)
         return cls(float(push.time), float(push.duration), (x, y, z), push.body, live)
 
@@ -267,10 +268,10 @@ def asked_pushes(records: Mapping[str, Mapping[str, str]], log_name: str) -> tup
         LogError: what the log tells of them cannot be read.
     """
     agenda = Agenda.from_metadata(records, log_name)
-    told = () if agenda is None else agenda.pushes
+    promised = () if agenda is None else agenda.pushes
     begun = _pushes_of(records, BEGUN_RECORD, log_name)
     given = (replace(push, live=True) for push in _pushes_of(records, PUSH_RECORD, log_name))
-    pushes = (*told, *begun, *given)
+    pushes = (*promised, *begun, *given)
     if not all(math.isfinite(part) for push in pushes for part in (push.time, push.duration, *push.force)):
         raise LogError(f"{log_name}: tells pushes that are not finite; give a log that `surefoot run` has written")
     return tuple(sorted(pushes, key=lambda push: push.time))
@@ -288,7 +289,7 @@ def _pushes_of(records: Mapping[str, Mapping[str, str]], kind: str, log_name: st
 
 @dataclass(frozen=True, slots=True)
 class Agenda:
-    """What only the setup of a run knows of its scenario: when its events act, and which of its keys do nothing.
+    """The events of a scenario that only the setup of a run knows: their times, and keys that do nothing.
 
     Attributes:
         events: pushes and faults that are to act; pushes that were given by hand are not among them.
@@ -383,8 +384,8 @@ def _version(package: str) -> str:
     except PackageNotFoundError:
         return ABSENT
     # Its first lines say it; what reads letters goes through the licences below, too, and takes ten times as long.
-    told = _VERSION.search(found.read_text("METADATA") or "")
-    return told[1] if told else found.version
+    matched = _VERSION.search(found.read_text("METADATA") or "")
+    return matched[1] if matched else found.version
 
 
 @cache

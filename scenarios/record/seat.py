@@ -59,7 +59,7 @@ class SeatRecorder(RunRecorder):
 
         self._row = writer.rows(RowLayout(vectors, numbers, derived, derive, {"sole_rotation": 18}, ("upright",)))
         super().__init__(writer, sizes)
-        self._told: tuple[str, ...] | None = None
+        self._names: tuple[str, ...] | None = None
 
     def tick(
         self,
@@ -99,10 +99,10 @@ class SeatRecorder(RunRecorder):
         place = np.append(truth.sole_position[foot], yaw)
         self._footstep.put(time_ns, index=step, foot=int(foot), planned=np.full(4, np.nan), actual=place)
 
-    def told(self, time_ns: int, told: Mapping[str, Array]) -> None:
-        """What else the controller tells; what it tells at first is what it tells."""
-        if self._told is None:
-            self._told = tuple(told)
-            fields = tuple([FieldSpec(name, np.shape(value), "", "", "") for name, value in told.items()])
+    def reported(self, time_ns: int, reported: Mapping[str, Array]) -> None:
+        """Log the values that the controller reports beside; those of the first call fix which they are."""
+        if self._names is None:
+            self._names = tuple(reported)
+            fields = tuple([FieldSpec(name, np.shape(value), "", "", "") for name, value in reported.items()])
             self._more = self._writer.channel(ChannelSpec("/controller", "Controller", fields, _OWN))
-        self._more.append(time_ns, *[told[name] for name in self._told])
+        self._more.append(time_ns, *[reported[name] for name in self._names])

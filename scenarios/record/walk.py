@@ -31,7 +31,7 @@ _REFERENCE = {
     "swing_velocity": _VELOCITY,
     "support": slice(POINT, POINT + 2 * SUPPORT_VERTICES),
 }
-"""What the reference of a tick has of a sample of the plan, and where: in a point, behind which is the support."""
+"""Fields that the reference of a tick has of a sample of the plan, and their place in a point, before the support."""
 
 _STATE = {
     "measured_com": "measured.com",
@@ -50,7 +50,7 @@ _PLAN = {
     "step_shift": "balance.shift",
     "step_delay": "balance.delay",
 }
-"""Where the fields of these channels are in a planner's state and in a plan."""
+"""Places of the fields of these channels in a planner's state and in a plan."""
 
 _FOOTSTEPS = ("current_left", "current_right", "next", "next_foot", "touchdown_time")
 
@@ -63,7 +63,7 @@ TickTiming = tuple[float, float, float, float, float, float, float, float]
 
 @dataclass(frozen=True)
 class PlannerState:
-    """What the planner measured, and what it was given; world frame.
+    """The CoM that the planner measured, and the one that it was given; world frame.
 
     Attributes:
         measured: CoM as measured.
@@ -82,7 +82,7 @@ class PlannerState:
 
 
 class RunRecorder:
-    """The channels of every run: its clock, what it is told, and footsteps taken.
+    """The channels of every run: its clock, its commands, and footsteps taken.
 
     Args:
         writer: of the log.
@@ -110,7 +110,7 @@ class RunRecorder:
         self._writer.add_metadata(f"{BEGUN_RECORD}{self._begun}", AskedPush.of(push, live).to_metadata())
 
     def command(self, time_ns: int, orders: Command) -> None:
-        """What the walk is told from now on."""
+        """Log the commands to the walk from now on."""
         place = orders.places[-1] if orders.places else None
         numbers = ((math.nan,) * 3 if twist is None else twist[:3] for twist in (place, orders.twist, orders.followed))
         (*place_xy, heading), (*velocity, yaw_rate), (*followed, followed_rate) = numbers
@@ -150,7 +150,7 @@ class WalkRecorder(RunRecorder):
         self._rolls = sizes.nj > 0  # the ideal feet of a point mass stay level
 
     def planner_state(self, time_ns: int, state: PlannerState) -> None:
-        """What the planner measured and was given."""
+        """Log what the planner measured and was given."""
         self._state(time_ns, state)
 
     def plan(self, time_ns: int, plan: WalkPlan) -> None:

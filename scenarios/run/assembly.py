@@ -1,4 +1,4 @@
-"""What a controller is put together of: a walk, and parts of Surefoot or of others."""
+"""The assembly of a controller from a walk, and from parts of Surefoot or of others."""
 
 from collections.abc import Callable, Iterator, Mapping
 from dataclasses import dataclass, fields, replace
@@ -54,14 +54,16 @@ class Parts:
         return cls(**{name: part for name, part in chosen.items() if part is not None})
 
     def given(self) -> dict[str, object]:
-        """Those that are not surefoot's own, by name."""
+        """Parts that are not surefoot's own, by name."""
         own = Parts()
         return {
             e.name: getattr(self, e.name) for e in fields(self) if getattr(self, e.name) is not getattr(own, e.name)
         }
 
 
-def walk_of(robot: str | RobotDescription, gait: Scenario | Walk | str, control: Mapping[str, Any] | None) -> Walk:
+def resolved_walk(
+    robot: str | RobotDescription, gait: Scenario | Walk | str, control: Mapping[str, Any] | None
+) -> Walk:
     """The walk of a robot."""
     if isinstance(gait, Walk):
         return gait

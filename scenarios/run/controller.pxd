@@ -18,6 +18,6 @@ cdef class Controller:
     cdef _decide(self, WbcReport report)
     cdef _observe(self, readings, double now)
     cpdef _touching(self)
-    cdef _tell(self, driven, JointCommand told)
+    cdef _drive(self, driven, JointCommand command)
     cdef _inferred(self, readings, state, double passed)
     cdef _lasting(self)

@@ -16,12 +16,12 @@ from surefoot.planner.types import CentroidalState, FeetState
 from surefoot.readings import Reading, Readings
 from surefoot.scenarios.file.schema import Scenario
 from surefoot.scenarios.record.channels import Sizes
-from surefoot.scenarios.run.assembly import Parts, senses_of, walk_of, whole_body_of
+from surefoot.scenarios.run.assembly import Parts, resolved_walk, senses_of, whole_body_of
 from surefoot.scenarios.run.landing import Landing
 from surefoot.scenarios.run.output import Output
 from surefoot.scenarios.run.planning import FaultSchedule, Measured, Planning, RunFault
 from surefoot.scenarios.run.reference import planned
-from surefoot.scenarios.run.sensed import foot_sensing, unsure
+from surefoot.scenarios.run.sensed import foot_sensing, with_deviations
 from surefoot.scenarios.run.tick import Spent
 from surefoot.scenarios.setup.feasible import made_ready
 from surefoot.scenarios.setup.robot.body import body_of, feet_at
@@ -80,7 +80,7 @@ class Controller:
         control: Mapping[str, Any] | None = None,
         parts: Parts | None = None,
     ) -> None:
-        self.walk = walk = walk_of(robot, gait, control)
+        self.walk = walk = resolved_walk(robot, gait, control)
         self._parts = parts = parts or Parts()
         self.body = body = body_of(walk.robot)
         self.posture, self._leg = made_ready(walk, body)
@@ -137,7 +137,7 @@ class Controller:
 
     @property
     def orders(self) -> Command:
-        """What the walk does of what it has been told, in its last plan.
+        """Commands that the walk follows in its last plan.
 
         Raises:
             ParameterError: the planner takes no commands.
@@ -146,7 +146,7 @@ class Controller:
 
     @property
     def sizes(self) -> Sizes:
-        """Of what is logged of it; there are none before the first `reset`."""
+        """Sizes of what is logged of it; there are none before the first `reset`."""
         layout = self.whole_body.layout
         horizon, tasks = self.planning.planner.parameters.horizon, self.whole_body.task_layout
         nf = len(self.walk.robot.couplings)
@@ -158,7 +158,7 @@ class Controller:
         command: Command | None = None,
         driven_joints: JointCommand | None = None,
     ) -> JointCommand:
-        """What the joints shall do from now on.
+        """Compute the command of the joints from now on.
 
         Args:
             readings: what sensors say; of an estimator that is given the truth, that.
@@ -189,8 +189,8 @@ class Controller:
         state_time = time.perf_counter() - begin
         planning = self.planning
         plan_time = planning.follow(now, self._measured) if now >= planning.due else 0.0
-        # What is decided now acts until the next command, so that it is to do what is planned for the middle of that;
-        # the state is held against that of now, from which on it does so.
+        # The command acts until the next one, so that it follows the plan in the middle of that time. The state is
+        # compared with the plan of now.
         middle = now + 0.5 * self._output.period
         self.sample, reference = planned(planning.sampler, now, middle)
         if now < self._next:
@@ -203,10 +203,10 @@ class Controller:
         sensing = foot_sensing(self.estimate, self.wrench, self._estimates, self._torques, touching)
         fails = self._faults is not None and self._faults.active("qp_failure", planning.tick(now))
         if self.whole_body.driven is not None:
-            self._tell(self.whole_body.driven, driven_joints)
+            self._drive(self.whole_body.driven, driven_joints)
         self.report = report = self.whole_body.update(reference, sensing, fails)
         if self.senses.listens:
-            self.senses.told(reference, report)
+            self.senses.feed_back(reference, report)
         self._landed, self._load = report.active, report.load
         # A named tuple's own constructor goes through Python.
         self.spent = tuple.__new__(Spent, (state_time, plan_time, report.build_time, report.solve_time))
@@ -216,7 +216,8 @@ class Controller:
     def _decide(self, report: WbcReport) -> None:
         """Make the command of a report.
 
-        What falls gives way; the controller goes on, unheard, since estimator and planner take its contacts.
+        A robot that falls gets the torques of `GivingWay`. The controller still runs, since estimator and planner use
+        its contacts.
         """
         state, torque = self.state, report.torque
         if self._giving_way is not None and self.planning.plan.status.falling:
@@ -242,7 +243,7 @@ class Controller:
         self.state = state
 
     def _touching(self) -> tuple[bool, bool]:
-        """Which sole counts as one that stands before anything is felt of it, (left, right).
+        """Mark the soles that count as standing before anything is felt of them, (left, right).
 
         Within a command that is held a foot lands and stands. Commands that swung it on all the while pushed the robot
         off its plan. A foot with which the planner has ended a single support is as good as on the ground.
@@ -254,13 +255,13 @@ class Controller:
             return NONE_TOUCHES
         return comes_down(self.planning.plan, self.terms, self._now, self._output.period)
 
-    def _tell(self, driven: DrivenRows, told: JointCommand | None) -> None:
-        """Tell the whole-body controller what drives the joints that are not its own."""
-        if told is None:
+    def _drive(self, driven: DrivenRows, command: JointCommand | None) -> None:
+        """Give the whole-body controller the command of the joints that are not its own."""
+        if command is None:
             driven.tell(None)
             return
-        q, v, servo = self.state.q[7:], self.state.v[6:], told.servo
-        torque = told.torque_at(q + self._output.period * v, v)
+        q, v, servo = self.state.q[7:], self.state.v[6:], command.servo
+        torque = command.torque_at(q + self._output.period * v, v)
         driven.tell(torque, *((servo.stiffness, servo.damping) if servo is not None else ()))
 
     def _inferred(self, readings: "Readings | Measurement", state: RobotState, passed: float) -> Array:
@@ -280,7 +281,7 @@ class Controller:
         return self._torques.update(state, self._command.torque if math.isnan(torque.item(0)) else torque, passed)
 
     def _measured(self) -> Measured:
-        """What the planner may measure, without noise."""
+        """The state that the planner may measure, without noise."""
         terms, wrench = self.terms, self.wrench
         zmp = measured_zmp(wrench, terms.sole_position, terms.sole_rotation)
         state = CentroidalState(self._now, terms.com.copy(), terms.com_velocity.copy(), self._lasting())
@@ -289,7 +290,7 @@ class Controller:
             self._arriving = comes_down(self.planning.plan, terms, self._now, arrives, due=True)
         feet = FeetState(terms.level_soles(self._toe), yaws(terms.sole_rotation), self._landed, arriving=self._arriving)
         if self.estimate.deviation is not None:
-            state, feet = unsure(self.estimate.deviation, state, feet)
+            state, feet = with_deviations(self.estimate.deviation, state, feet)
         return state, np.array(zmp[:2]), feet
 
     def _lasting(self) -> ExternalLoad | None:
@@ -299,7 +300,7 @@ class Controller:
 
 
 def comes_down(plan: WalkPlan, terms: RobotTerms, now: float, time: float, due: bool = False) -> tuple[bool, bool]:
-    """Which sole comes to the planned ground in no more than so long, (left, right).
+    """Mark the soles that come to the planned ground in no more than so long, (left, right).
 
     Args:
         plan: that is followed.

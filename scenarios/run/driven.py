@@ -15,11 +15,11 @@ EVERY = 0.02
 """Time after which somebody who moves joints at random gives them other targets [s]."""
 
 FARTHEST = 0.6
-"""How far from where they stood such targets go [rad]."""
+"""Farthest way of such targets from where the joints stood [rad]."""
 
 
 def driven_joints(keys: ControlSettings, robot: RobotDescription) -> NDArray[np.bool_] | None:
-    """Which joints somebody else drives, bool, shape (nj,); None for none.
+    """Mark the joints that somebody else drives, bool, shape (nj,); None for none.
 
     Raises:
         ParameterError: a pattern names none.
@@ -68,7 +68,7 @@ class Somebody:
         self._changed = 0
 
     def command(self, now: float) -> JointCommand:
-        """What they are to do from an instant on [s]; nothing of the other joints."""
+        """Command of the driven joints from an instant on [s]; none of the other joints."""
         if self._motion:
             while self._changed * EVERY <= now:
                 step = self._rng.uniform(-self._motion, self._motion, len(self._target))

@@ -54,14 +54,14 @@ def sensed_state(walk: Walk, **options: Any) -> SensedState:
 
 
 def imu_mount(robot: RobotDescription) -> ImuMount:
-    """Where a robot's IMU is, in the estimator's terms."""
+    """The place of a robot's IMU, in the estimator's terms."""
     place = robot.imu
     turned = pin.Quaternion(*place.quaternion).matrix()
     return ImuMount(place.body, place.position, tuple(map(tuple, turned.tolist())))
 
 
 def sensor_noise(errors: SensorErrors, period: float) -> SensorNoise:
-    """What an estimator counts on of sensors with these errors.
+    """The noise that an estimator counts on for sensors with these errors.
 
     Args:
         errors: of the sensors.

@@ -10,13 +10,13 @@ from surefoot.scenarios.judge.feet import LOADED
 from surefoot.similarity import GRAVITY, REFERENCE_SIZE, Similarity
 
 GRAZE = 0.02
-"""How long a foot loses or gains its load at least until that counts, of the reference robot [s]."""
+"""Time for which a foot loses or gains its load until that counts, of the reference robot [s]."""
 
 STILL = 0.5
-"""How long both feet carry load until the robot stands, of the reference robot [s]."""
+"""Time for which both feet carry load until the robot stands, of the reference robot [s]."""
 
 USUAL = {PhaseKind.SINGLE: 0.4, PhaseKind.DOUBLE: 0.1}
-"""How long a phase is taken to last before there was one of its kind, of the reference robot [s]."""
+"""Usual duration of a phase before there was one of its kind, of the reference robot [s]."""
 
 
 class FeltGait:
@@ -64,7 +64,7 @@ class FeltGait:
             self._kind = PhaseKind.STAND
 
     def _settled(self, foot: int, force: float) -> bool:
-        """Whether a foot carries load, which it has to do, or not to do, for a while."""
+        """Return true if a foot carries load, once it has done so, or not done so, for a while."""
         loaded, was = force > self._least, self.contact[foot]
         if loaded is was:
             self._other[foot] = None
@@ -79,7 +79,7 @@ class FeltGait:
 
     @property
     def phase(self) -> PhaseInfo:
-        """Where the gait is now; phases are taken to last as long as the last ones of their kind."""
+        """The gait's phase now; phases are taken to last as long as the last ones of their kind."""
         kind = self._kind
         if kind is PhaseKind.STAND:
             return PhaseInfo(kind, None, self.step, self._now - self._began, math.inf, 0, math.inf)

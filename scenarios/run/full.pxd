@@ -7,7 +7,7 @@ cdef class WholeBody(Moved):
     cdef readonly Mind mind
     cdef object _recorder, _view, _sensed, _coupled, _somebody
     cdef JointCommand _no_torque
-    cdef bint _told
+    cdef bint _shares_targets
 
     cpdef control(self, long long tick, double now)
     cpdef record(self, now_ns, sample)

@@ -27,7 +27,7 @@ from surefoot.scenarios.run.planning import Planned, Planning
 from surefoot.scenarios.run.plant import Plant, PlantMaker, Sensors, completed, made, push_plant
 from surefoot.scenarios.run.skeleton import ClosedLoop
 from surefoot.scenarios.run.tick import Look, Spent
-from surefoot.scenarios.setup.stances.start import as_told, disturbed, pressed
+from surefoot.scenarios.setup.stances.start import at_believed_start, disturbed, pressed
 from surefoot.scenarios.setup.walk import Walk
 from surefoot.sim.drives import IDEAL, Drives
 from surefoot.sim.world import World
@@ -67,7 +67,7 @@ def full_loop(walk: Walk, writer: LogWriter, parts: Parts | None = None) -> Clos
         plant.reset(q, torque=torque)
         for push in walk.pushes:
             push_plant(plant, push)
-    controller.reset(as_told(q, walk, body) if controller.senses.reads else q)
+    controller.reset(at_believed_start(q, walk, body) if controller.senses.reads else q)
     sizes = controller.sizes
     writer.attach(AttachedFile(WORLD_FILE, "application/xml", world.mjcf().encode()))
     sensors, sensed = sensors_of(walk, plant, controller.senses.reads), None
@@ -92,7 +92,7 @@ def simulated(walk: Walk) -> World:
 
 
 PLANTS: Registry[PlantMaker] = PLANT_NAMES.filled(None, {"mujoco": simulated})
-"""What makes a plant of a walk and of ``plant.options`` by name, by the value of ``plant.name``."""
+"""Makers of a plant from a walk and ``plant.options``, by the value of ``plant.name``."""
 
 
 def plant_of(walk: Walk, world: World, parts: Parts, senses: bool) -> Plant:
@@ -114,7 +114,7 @@ class WholeBody(Moved, Planned):
 
     Args:
         mind: its controller, reset to the start.
-        plant: what moves it, likewise.
+        plant: what moves it, reset to the start.
         sensors: that the estimator reads; None for one that is given the measurement.
         recorder: of its channels.
         view: of what MCAP viewers show.
@@ -139,11 +139,14 @@ class WholeBody(Moved, Planned):
         # The controller's terms are those of the true robot in its true state where nothing is believed or estimated.
         super().__init__(walk, plant, sensors, known=mind.senses.is_truth and walk.true_robot is walk.robot)
         self.mind = mind
-        self._recorder, self._view, self._sensed, self._coupled = recorder, view, sensed, coupled
+        self._recorder = recorder
+        self._view = view
+        self._sensed = sensed
+        self._coupled = coupled
         keys, self._somebody = walk.control, None
         if keys.driven_joints and not self.foreign:
             self._somebody = Somebody(keys, walk.robot, mind.posture[7:], walk.seed)
-        self._told = keys.driven_told is not False
+        self._shares_targets = keys.driven_told is not False
         self._no_torque = JointCommand(np.zeros(mind.whole_body.layout.joints))
 
     @property
@@ -164,7 +167,7 @@ class WholeBody(Moved, Planned):
             command = mind.step(self._readings)
         else:
             theirs = somebody.command(now)
-            command = mind.step(self._readings, None, theirs if self._told else None)
+            command = mind.step(self._readings, None, theirs if self._shares_targets else None)
             command = command.with_joints(somebody.joints, theirs)
         self._truth = self._own_truth or mind.terms
         lost = self._faults is not None and self._faults.active("torque_loss", tick)

@@ -11,10 +11,10 @@ from types import FrameType
 SIGNALS = (signal.SIGINT, signal.SIGTERM, *((signal.SIGHUP,) if hasattr(signal, "SIGHUP") else ()))
 
 _PATIENCE = 3
-"""How many signals are held back before one is obeyed wherever the program is."""
+"""Number of signals that are held back before one is obeyed wherever the program is."""
 
 _HANGING = 2.0
-"""How long a signal waits for the loop to look before it is obeyed wherever the loop hangs [s]."""
+"""Time for which a signal waits for the loop to look before it is obeyed wherever the loop hangs [s]."""
 
 _received: list[int] = []
 
@@ -24,7 +24,7 @@ class Interrupted(KeyboardInterrupt):
 
 
 def exit_code() -> int:
-    """Of a program that a signal has ended, as shells count: 130 for Ctrl-C, 143 for SIGTERM, 129 for SIGHUP."""
+    """Exit code of a program that a signal has ended, as shells count: 130 Ctrl-C, 143 SIGTERM, 129 SIGHUP."""
     return 128 + (_received[-1] if _received else signal.SIGINT)
 
 

@@ -46,7 +46,7 @@ class Landing:
         self._began = self._loaded_since = 0.0
 
     def hold(self, readings: Readings | Measurement) -> JointCommand | None:
-        """What the joints shall do until the next readings; None once the robot stands."""
+        """Command of the joints until the next readings; None once the robot stands."""
         now = readings.time
         position, velocity, torque, wrench = _joints(readings)
         if self._from is None:

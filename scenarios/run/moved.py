@@ -25,7 +25,7 @@ if TYPE_CHECKING:
 
 
 def sensors_of(walk: Walk, plant: Plant, senses: bool) -> "SensorSuite | Sensors | None":
-    """What says of a plant's measurements what sensors say, to whom it is to say it; None where nobody reads it.
+    """The sensors of a plant's measurements, for whoever reads them; None where nobody does.
 
     A run in which nobody reads them does not import them.
 
@@ -94,7 +94,7 @@ class Moved:
         return measured_tick(self.plant.control_tick, tick, self.walk.rates.control)  # type: ignore[attr-defined]
 
     def lost(self, tick: int, kind: str) -> bool:
-        """Whether a fault of a kind acts at a control tick."""
+        """Return true if a fault of a kind acts at a control tick."""
         return self._faults is not None and self._faults.active(kind, tick)
 
     def fallen(self, sample: object) -> bool:

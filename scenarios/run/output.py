@@ -1,4 +1,4 @@
-"""What a controller gives to the joints: torques, or targets with gains that the drives follow by themselves."""
+"""The output of a controller to the joints: torques, or targets with gains that the drives follow by themselves."""
 
 import math
 import re

@@ -107,7 +107,7 @@ class CartTablePlant(CartTable):
 
 
 def plant(settings: PendulumSettings, mass: float, position: Array, height_error: float) -> Plant:
-    """The plant that a scenario asks for; arguments as of the plants."""
+    """The plant that a scenario asks for."""
     if settings.plant == "cart_table":
         return CartTablePlant(mass, position, height_error)
     return PendulumPlant(mass, position, height_error, settings.feedback)
@@ -194,7 +194,7 @@ class PointMass(Planned):
         return tick
 
     def measured(self) -> Measured:
-        """What the planner may measure."""
+        """The state that the planner may measure."""
         state = self.state
         believed = CentroidalState(state.time, np.append(state.com[:2], self._height), state.com_velocity)
         return believed, self._plant.zmp, self._feet.state
@@ -213,7 +213,7 @@ class PointMass(Planned):
         self._recorder.contact(now_ns, self._plant.zmp, sample, self._feet.state)
 
     def fallen(self, sample: PlanSample) -> bool:
-        """Whether no foot could catch the mass any more."""
+        """Return true if no foot could catch the mass any more."""
         dcm = self.state.com[:2] + self.state.com_velocity[:2] / sample.omega
         return self._plant.can_fall and bool(lost(dcm, self._plant.zmp, self._length))
 
@@ -255,7 +255,7 @@ class PointMass(Planned):
 
 
 def start_position(walk: Walk) -> Array:
-    """Where the mass rests at the start: over the middle of the feet, with the start noise, shape (2,) [m]."""
+    """Start of the mass: at rest over the middle of the feet, with the start noise, shape (2,) [m]."""
     start = walk.start
     noise = np.random.default_rng(walk.seed).uniform(-start.position_noise, start.position_noise, 2)
     return np.array([start.x, start.y]) + noise

@@ -1,4 +1,4 @@
-"""The planner under a controller or a point mass: on its own clock, told and logged."""
+"""The planner under a controller or a point mass: on its own clock, commanded and logged."""
 
 import math
 import time
@@ -28,14 +28,14 @@ ROUNDING = 1e-6
 
 
 Measured = tuple[CentroidalState, NDArray[np.float64], FeetState]
-"""What a planner may measure: CoM, ZMP, shape (2,) [m], and feet."""
+"""State that a planner may measure: CoM, ZMP, shape (2,) [m], and feet."""
 
 MOST_MISSED = 25
 """Plans that are made up for at once where readings have failed to come; a longer gap ends the walk [-]."""
 
 
 class RunFault(Exception):  # noqa: N818  the event, not a mistake of the caller
-    """What ends a run before its time, in words."""
+    """A fault that ends a run before its time, in words."""
 
 
 class CommandedPlanner(Planner, Protocol):
@@ -43,7 +43,7 @@ class CommandedPlanner(Planner, Protocol):
 
     @property
     def orders(self) -> Command:
-        """What the walk does of what it has been told."""
+        """Commands that the walk follows."""
 
     def command(self, command: Command) -> None:
         """Do something else from the next plan on.
@@ -87,7 +87,7 @@ class FaultSchedule:
         self._windows = tuple(FaultWindow.of(fault, control_rate) for fault in faults)
 
     def active(self, kind: str, tick: int) -> bool:
-        """Whether a fault of that kind acts at that control tick."""
+        """Return true if a fault of that kind acts at that control tick."""
         return bool(self._windows) and any(window.kind == kind and window.holds(tick) for window in self._windows)
 
 
@@ -98,7 +98,7 @@ class Planning:
 
     Args:
         planner: what plans.
-        sensing: what it is told of the state.
+        sensing: what it is given of the state.
         recorder: of its channels; None for no record.
         faults: injected.
         rates: of the clock; that of the planner need not divide that of the control ticks.
@@ -123,7 +123,10 @@ class Planning:
         commands: Sequence[Command] = (),
         guard: Guard = OWN_GUARD,
     ) -> None:
-        self.planner, self._sensing, self.recorder, self._faults = planner, sensing, recorder, faults
+        self.planner = planner
+        self._sensing = sensing
+        self.recorder = recorder
+        self._faults = faults
         self._guard = guard
         self._plan_rate, self._rate = rates.planner, rates.control
         self._made, self.due = 0, -math.inf
@@ -131,14 +134,14 @@ class Planning:
         self.sampler: PlanSampler
         self._started = False
         self._commands = deque(sorted(commands, key=lambda command: command.time))
-        self._told = False
+        self._has_command = False
         self._aim: Footstep | None = None
         self._landing: Footstep | None = None
         self._swinging: Foot | None = None
 
     @classmethod
     def of(cls, walk: Walk, planner: Planner) -> "Planning":
-        """That of a walk around its planner, at its start and without a record."""
+        """Make the planning of a walk around its planner, at its start and without a record."""
         faults = FaultSchedule(walk.faults, walk.rates.control)
         return cls(planner, PlannerSensing(walk), None, faults, walk.rates, walk.commands, walk.formulation.guard)
 
@@ -205,13 +208,13 @@ class Planning:
 
     def _record(self, recorder: WalkRecorder, now_ns: int, feet: FeetState) -> None:
         recorder.plan(now_ns, self.plan)
-        if self._told:
+        if self._has_command:
             recorder.command(now_ns, self.orders)
-            self._told = False
+            self._has_command = False
         self._book(recorder, now_ns, feet)
 
     def command(self, command: Command, now: float) -> None:
-        """Tell the planner something at an instant [s], from the next plan on.
+        """Command the planner at an instant [s], from the next plan on.
 
         Raises:
             ParameterError: it is a planner that takes no commands, or cannot do this.
@@ -222,7 +225,7 @@ class Planning:
 
     @property
     def orders(self) -> Command:
-        """What the walk does of what it has been told.
+        """Commands that the walk follows.
 
         Raises:
             ParameterError: it is a planner that takes no commands.
@@ -240,10 +243,10 @@ class Planning:
     def _say(self, command: Command) -> None:
         with self._guard.making:
             self._commanded.command(command)
-        self._told = True
+        self._has_command = True
 
     def _tell(self, tick: int) -> None:
-        """Tell the planner what it is to hear at a control tick or was to hear since its last plan."""
+        """Give the planner the commands of a control tick, and those since its last plan."""
         while self._commands and self._commands[0].time * self._rate <= tick + ROUNDING:
             self._say(self._commands.popleft())
 

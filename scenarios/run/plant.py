@@ -1,4 +1,4 @@
-"""What moves a robot and measures it: Surefoot's simulated world, another simulator, or a machine."""
+"""A plant, which moves a robot and measures it: Surefoot's simulated world, another simulator, or a machine."""
 
 import math
 from collections.abc import Callable, Mapping
@@ -19,7 +19,7 @@ from surefoot.sim.measurement import Array, Measurement, is_rotation
 
 
 class Plant(Protocol):
-    """What a closed loop asks of that which moves the robot; its joints are in the order of the robot's description.
+    """A plant as a closed loop sees it; its joints are in the order of the robot's description.
 
     The loop calls `reset`, and then in turn `measure` and `act`, once each in a control tick. What a plant raises ends
     the run with a fault that names it. Two methods more are asked only of plants that have them: ``push``, which takes
@@ -33,13 +33,13 @@ class Plant(Protocol):
 
         Args:
             q: configuration in Pinocchio's convention, shape (7 + nj,) [m, -, rad].
-            v: velocity likewise, shape (6 + nj,) [m/s, rad/s]; None for rest.
+            v: velocity in Pinocchio's convention, shape (6 + nj,) [m/s, rad/s]; None for rest.
             torque: of the joints, that hold it, shape (nj,) [N·m].
         """
         ...
 
     def measure(self) -> Measurement:
-        """What is so now; `q` and `v` count as the truth, by which a run is judged."""
+        """Measure the state now; `q` and `v` count as the truth, by which a run is judged."""
         ...
 
     def act(self, command: JointCommand, period: float) -> None:
@@ -48,10 +48,10 @@ class Plant(Protocol):
 
 
 class Sensors(Protocol):
-    """What says of a measurement what sensors say."""
+    """The sensors that turn a measurement into readings."""
 
     def read(self, measurement: Measurement, tick: int) -> Readings:
-        """What has arrived at a control tick."""
+        """Read what has arrived at a control tick."""
         ...
 
 
@@ -103,7 +103,7 @@ def push_plant(plant: Plant, push: Push) -> None:
 
 
 def _measured(joints: int) -> Callable[..., Measurement]:
-    """What is taken for a measurement of a plant of so many joints."""
+    """A check of measurements of a plant of so many joints."""
 
     def take(answer: Measurement, *_: Any) -> Measurement:
         taken_for(Measurement)(answer)

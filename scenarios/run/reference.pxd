@@ -11,11 +11,11 @@ cdef Py_ssize_t SWING, SWING_VELOCITY, SWING_ACCELERATION
 
 @cython.locals(sample=PlanSample, until=PlanSample)
 cpdef planned(PlanSampler sampler, double time, double middle)
-@cython.locals(passed=double, left=double, told=WbcReference)
+@cython.locals(passed=double, left=double, reference=WbcReference)
 cpdef WbcReference whole_body_reference(plan, PlanSample sample)
 @cython.locals(swings=int, yaw_left=double, yaw_right=double)
-cdef int _ground(WbcReference told, plan, double yaw) except -1
+cdef int _ground(WbcReference reference, plan, double yaw) except -1
 cdef vector3 _tuple(vector)
 @cython.locals(rates=vector3)
-cdef void _fill(WbcReference told, const double[::1] point) noexcept nogil
+cdef void _fill(WbcReference reference, const double[::1] point) noexcept nogil
 cdef vector3 _part(const double[::1] point, Py_ssize_t first) noexcept nogil

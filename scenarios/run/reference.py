@@ -1,4 +1,4 @@
-"""What the whole-body controller is asked to do at each control tick, out of the plan."""
+"""The reference of the whole-body controller at each control tick, out of the plan."""
 
 import numpy as np
 from numpy.typing import NDArray
@@ -20,7 +20,7 @@ OMEGA, STIFFNESS, LOAD, ZMP, PENDULUM_ZMP, COM, VELOCITY, ACCELERATION, SWING, S
         "swing_velocity", "swing_acceleration",
     )
 )  # fmt: skip
-"""Where quantities begin in the numbers of a sample."""
+"""Places of quantities in the numbers of a sample."""
 
 
 def planned(sampler: PlanSampler, time: float, middle: float) -> tuple[PlanSample, WbcReference]:
@@ -30,37 +30,37 @@ def planned(sampler: PlanSampler, time: float, middle: float) -> tuple[PlanSampl
 
 
 def whole_body_reference(plan: WalkPlan, sample: PlanSample) -> WbcReference:
-    """What the whole-body controller shall do at the sample's instant of the plan, or over a tick that it stands for.
+    """Reference of the whole-body controller at the sample's instant, or over a tick that it stands for.
 
     The heading of pelvis and torso is the mean of both feet's yaws, so that it turns smoothly with the swing foot.
     """
     phase, passed = plan.phase, sample.time - plan.time
-    told = WbcReference.__new__(WbcReference)
-    _fill(told, sample.point)
-    told.planned_contact, told.time_to_switch = sample.contacts, max(0.0, phase.left - passed)
-    told.swing_foot, told.swing_progress, told.lifting_foot = -1, 0.0, -1
+    reference = WbcReference.__new__(WbcReference)
+    _fill(reference, sample.point)
+    reference.planned_contact, reference.time_to_switch = sample.contacts, max(0.0, phase.left - passed)
+    reference.swing_foot, reference.swing_progress, reference.lifting_foot = -1, 0.0, -1
     if sample.swing_foot is not None:
-        told.swing_foot = int(sample.swing_foot)
-        told.swing_progress = min(1.0, (phase.elapsed + passed) / phase.duration)
+        reference.swing_foot = int(sample.swing_foot)
+        reference.swing_progress = min(1.0, (phase.elapsed + passed) / phase.duration)
     elif phase.kind is PhaseKind.DOUBLE and phase.leads_to > 0:
-        told.lifting_foot = int(plan.footsteps[0].foot)
-    _ground(told, plan, sample.point.item(SWING + 3))
-    told.rolling_foot, told.roll = -1, (0.0, 0.0, 0.0)
+        reference.lifting_foot = int(plan.footsteps[0].foot)
+    _ground(reference, plan, sample.point.item(SWING + 3))
+    reference.rolling_foot, reference.roll = -1, (0.0, 0.0, 0.0)
     if plan.roll is not None and plan.roll.rolling(sample.time):
-        told.rolling_foot, told.roll = int(plan.roll.foot), plan.roll.evaluate(sample.time)
-    told.catching = plan.balance.catching
-    return told
+        reference.rolling_foot, reference.roll = int(plan.roll.foot), plan.roll.evaluate(sample.time)
+    reference.catching = plan.balance.catching
+    return reference
 
 
-def _ground(told: WbcReference, plan: WalkPlan, yaw: float) -> None:
+def _ground(reference: WbcReference, plan: WalkPlan, yaw: float) -> None:
     """The ground under the feet and their mean yaw, of which the swing foot has that [rad]."""
-    swings, footholds = told.swing_foot, plan.footholds
+    swings, footholds = reference.swing_foot, plan.footholds
     left = plan.footsteps[0] if swings == 0 else footholds[0]
     right = plan.footsteps[0] if swings == 1 else footholds[1]
-    told._n = _tuple(left.normal), _tuple(right.normal)
+    reference._n = _tuple(left.normal), _tuple(right.normal)
     yaw_left = yaw if swings == 0 else left.yaw
     yaw_right = yaw if swings == 1 else right.yaw
-    told.heading = 0.5 * (yaw_left + yaw_right)
+    reference.heading = 0.5 * (yaw_left + yaw_right)
 
 
 def _tuple(vector: Array) -> algebra.Vector:
@@ -69,21 +69,21 @@ def _tuple(vector: Array) -> algebra.Vector:
     return x, y, z
 
 
-def _fill(told: WbcReference, point: Array) -> None:
-    """What follows from the numbers of a sample alone."""
-    told.omega, told.stiffness = point[OMEGA], point[STIFFNESS]
-    told.load_share = point[LOAD], 1.0 - point[LOAD]
-    told._c, told._c_dot = _part(point, COM), _part(point, VELOCITY)
-    told._c_ddot = _part(point, ACCELERATION)
-    told._p = point[PENDULUM_ZMP], point[PENDULUM_ZMP + 1]
-    told._o = point[ZMP] - point[PENDULUM_ZMP], point[ZMP + 1] - point[PENDULUM_ZMP + 1]
-    told._s, told._s_dot = _part(point, SWING), _part(point, SWING_VELOCITY)
-    told._s_ddot = _part(point, SWING_ACCELERATION)
+def _fill(reference: WbcReference, point: Array) -> None:
+    """Fill in what follows from the numbers of a sample alone."""
+    reference.omega, reference.stiffness = point[OMEGA], point[STIFFNESS]
+    reference.load_share = point[LOAD], 1.0 - point[LOAD]
+    reference._c, reference._c_dot = _part(point, COM), _part(point, VELOCITY)
+    reference._c_ddot = _part(point, ACCELERATION)
+    reference._p = point[PENDULUM_ZMP], point[PENDULUM_ZMP + 1]
+    reference._o = point[ZMP] - point[PENDULUM_ZMP], point[ZMP + 1] - point[PENDULUM_ZMP + 1]
+    reference._s, reference._s_dot = _part(point, SWING), _part(point, SWING_VELOCITY)
+    reference._s_ddot = _part(point, SWING_ACCELERATION)
     angles, rates = _part(point, SWING + 3), _part(point, SWING_VELOCITY + 3)
-    told._R = orientation.rows(angles)
-    told._w = orientation.sole_spin(angles, rates)
-    told._w_dot = orientation.sole_spin_rate(angles, rates, _part(point, SWING_ACCELERATION + 3))
-    told.heading_rate = 0.5 * rates[0]
+    reference._R = orientation.rows(angles)
+    reference._w = orientation.sole_spin(angles, rates)
+    reference._w_dot = orientation.sole_spin_rate(angles, rates, _part(point, SWING_ACCELERATION + 3))
+    reference.heading_rate = 0.5 * rates[0]
 
 
 def _part(point: Array, first: int) -> algebra.Vector:

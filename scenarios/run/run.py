@@ -49,7 +49,7 @@ if TYPE_CHECKING:
 
 @dataclass(frozen=True, slots=True)
 class Result:
-    """What a run left behind.
+    """The result of a run.
 
     Attributes:
         verdict: computed from the log.
@@ -126,11 +126,11 @@ def run_scenario(
     Args:
         scenario: what to run.
         out: directory that gets the run's own folder.
-        on_progress: is told where the run is.
+        on_progress: called with the progress of the run.
         simulate: the closed loop; that of the scenario's fidelity by default.
         robot: its robot; described from the scenario by default.
         profile: the planner's profile; the one that the scenario names by default.
-        on_begin: is told where the log is, once it is there.
+        on_begin: called with the path of the log, once it is there.
 
     Raises:
         LogError: the log or the verdict cannot be written.
@@ -168,7 +168,7 @@ def own_folder(out: Path, scenario: str, seed: int) -> Path:
 
 @contextmanager
 def _own_folder(out: Path, walk: Walk) -> Iterator[Path]:
-    """A run's own folder, which is taken away again if the run leaves nothing in it; errors as of `own_folder`."""
+    """A run's own folder, which is taken away if the run leaves nothing in it; LogError if it cannot be made."""
     folder = own_folder(out, walk.name, walk.seed)
     try:
         yield folder
@@ -231,7 +231,7 @@ def _seat(walk: Walk, writer: LogWriter, parts: "Parts | None") -> ClosedLoop:
 
 
 _LOOPS = {"full": _full, "pendulum": _pendulum, "seat": _seat}
-"""What makes the loop of a kind of walker."""
+"""Makers of the loop of a kind of walker."""
 
 
 def note_parts(writer: LogWriter, given: Mapping[str, object]) -> None:
@@ -319,7 +319,7 @@ def _watched(
             end = simulate(walk, writer, note)
             interrupts.look()
     except (KeyboardInterrupt, Exception) as error:
-        # A signal that is raised while a compiled part converts an argument is told as a wrong argument.
+        # A signal that is raised while a compiled part converts an argument is reported as a wrong argument.
         if interrupts.count == 0 and not isinstance(error, KeyboardInterrupt):
             if not isinstance(error, PartError):
                 if isinstance(error, ScenarioError | SetupError):
@@ -336,8 +336,8 @@ def _watched(
 
 def write_end(writer: LogWriter, end: End) -> None:
     """Write how a run ended, the last record of its log."""
-    told = {"kind": end.kind, "time": f"{end.time:.6f}", "reason": end.reason}
-    writer.add_metadata(END_RECORD, {**told, "traceback": end.trace} if end.trace else told)
+    record = {"kind": end.kind, "time": f"{end.time:.6f}", "reason": end.reason}
+    writer.add_metadata(END_RECORD, {**record, "traceback": end.trace} if end.trace else record)
 
 
 def made_folder(path: Path) -> Path:
@@ -354,6 +354,6 @@ def made_folder(path: Path) -> Path:
 
 
 def unmade(path: Path, error: OSError) -> LogError:
-    """Why a directory is not there."""
+    """Make the error of a directory that is not there."""
     why = "not a directory" if isinstance(error, FileExistsError) else reason(error)
     return LogError(f"{path}: cannot be created, {why}; choose another directory with --out")

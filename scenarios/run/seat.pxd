@@ -4,7 +4,7 @@ from surefoot.scenarios.run.moved cimport Moved
 
 cdef class Seated(Moved):
     cdef readonly object mind
-    cdef object _guard, _recorder, _view, _sensed, _coupled, _felt, _waiting, _rate, _twist, _told
+    cdef object _guard, _recorder, _view, _sensed, _coupled, _felt, _waiting, _rate, _twist, _reported
     cdef bint _heard
     cdef JointCommand _no_torque
 

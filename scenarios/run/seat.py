@@ -48,7 +48,7 @@ Array = NDArray[np.float64]
 
 
 class SeatedController(Protocol):
-    """What has the seat of planner and whole-body controller: from what is measured to what the joints shall do.
+    """A controller in the seat of planner and whole-body controller: from measured values to a joint command.
 
     It is made of a `Walk` and of ``controller.options``, and then reset once. It is asked at every control tick, and
     gives the same command until its own next one is due.
@@ -74,7 +74,7 @@ class SeatedController(Protocol):
         ...
 
     def step(self, readings: Readings | Measurement, command: Command | None = None) -> JointCommand:
-        """What the joints shall do from now on.
+        """Compute the command of the joints from now on.
 
         Args:
             readings: what sensors say, or the truth.
@@ -127,7 +127,7 @@ def name_of(walk: Walk) -> str:
 
 
 def seated(walk: Walk) -> SeatedController:
-    """What has the seat of a walk, behind its guard.
+    """The controller in the seat of a walk, behind its guard.
 
     Raises:
         ParameterError: it refuses the walk.
@@ -151,7 +151,7 @@ def seated(walk: Walk) -> SeatedController:
 
 
 def _commanded(joints: int) -> Callable[..., JointCommand]:
-    """What is taken for a command of so many joints."""
+    """A check of commands of so many joints."""
 
     def take(answer: JointCommand, *_: Any) -> JointCommand:
         taken_for(JointCommand)(answer)
@@ -200,7 +200,7 @@ class Seated(Moved):
     Args:
         walk: what is run.
         controller: that has the seat, reset to the start.
-        plant: what moves the robot, likewise.
+        plant: what moves the robot, reset to the start.
         sensors: that the controller reads, and what records them; None for one that is given the measurement.
         recorder: of its channels.
         view: of what MCAP viewers show.
@@ -232,7 +232,7 @@ class Seated(Moved):
         self._waiting, self._rate = deque(velocities(walk)), walk.rates.control
         self._twist, self._heard = STANDING, False
         self._no_torque = JointCommand(np.zeros(len(walk.robot.joint_names)))
-        self._told: Mapping[str, Array] | None = None
+        self._reported: Mapping[str, Array] | None = None
 
     @property
     def gait(self) -> tuple[float, PhaseInfo]:
@@ -280,7 +280,7 @@ class Seated(Moved):
         return Command(self._twist, time=now, march=found.march)
 
     def _torque(self) -> Array:
-        """What the joints are given at this instant, shape (nj,) [N·m]."""
+        """Torques that the joints are given at this instant, shape (nj,) [N·m]."""
         measurement = self.measurement
         return self._command.torque_at(measurement.joint_position, measurement.joint_velocity)
 
@@ -293,11 +293,11 @@ class Seated(Moved):
         if self._heard:
             recorder.command(now_ns, self.orders)
             self._heard = False
-        told = getattr(self.mind, "told", None)
-        if told is not None and told is not self._told:
+        reported = getattr(self.mind, "told", None)
+        if reported is not None and reported is not self._reported:
             with self._guard:
-                recorder.told(now_ns, told)
-            self._told = told
+                recorder.reported(now_ns, reported)
+            self._reported = reported
         if self._coupled is not None:
             self._coupled.tick(now_ns)
         if self._sensed is not None and isinstance(self._readings, Readings):

@@ -4,7 +4,7 @@ from surefoot.wbc.estimation.estimate cimport Deviation, Estimate, Planned
 
 cdef class Senses:
     cdef readonly bint is_truth, reads, listens
-    cdef object _sense, _estimate, _told
+    cdef object _sense, _estimate, _feed
     cdef Estimate _last
 
-    cpdef told(self, reference, report)
+    cpdef feed_back(self, reference, report)

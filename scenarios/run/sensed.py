@@ -1,4 +1,4 @@
-"""How an estimator of either kind is asked and told, and what of its estimate controller and planner are given."""
+"""The exchange with an estimator of either kind, and the part of its estimate for controller and planner."""
 
 from collections.abc import Callable
 from dataclasses import replace
@@ -30,14 +30,14 @@ class Senses:
     Attributes:
         is_truth: whether it hands on the true state.
         reads: whether it is given what sensors say, in place of the measurement.
-        listens: whether it wants to know what was decided; see `told`.
+        listens: whether it wants to know what was decided; see `feed_back`.
 
     Raises:
         MisfitError: it is of neither kind.
     """
 
     def __init__(self, estimator: Any, guard: Guard) -> None:
-        self.reads, told = callable(getattr(estimator, "sense", None)), callable(getattr(estimator, "told", None))
+        self.reads, hears = callable(getattr(estimator, "sense", None)), callable(getattr(estimator, "told", None))
         if not self.reads and not callable(getattr(estimator, "estimate", None)):
             raise MisfitError("has neither a method sense nor a method estimate")
         part = guarded(estimator, guard, ESTIMATE)
@@ -47,8 +47,8 @@ class Senses:
         else:
             self._estimate = part.estimate
         self._last: Estimate | None = None
-        self._told: Callable[[Planned], None] | None = part.told if self.reads and told else None
-        self.listens = self._told is not None
+        self._feed: Callable[[Planned], None] | None = part.told if self.reads and hears else None
+        self.listens = self._feed is not None
 
     def __call__(self, readings: Readings | Measurement) -> Estimate:
         """The estimate of a tick, with the wrenches of the sensors where the estimator has none of its own.
@@ -71,17 +71,17 @@ class Senses:
             return estimate
         return replace(estimate, wrench=felt.values, wrench_age=felt.age)
 
-    def told(self, reference: WbcReference, report: WbcReport) -> None:
-        """Tell the estimator what was decided, if it wants to know."""
-        if self._told is not None:
+    def feed_back(self, reference: WbcReference, report: WbcReport) -> None:
+        """Give the estimator what was decided, if it takes that."""
+        if self._feed is not None:
             self.decided(
                 Planned(report.acceleration.copy(), report.torque.copy(), report.active, reference.rolling_foot)
             )
 
     def decided(self, planned: Planned) -> None:
-        """Tell the estimator what somebody else has decided, if it wants to know."""
-        if self._told is not None:
-            self._told(planned)
+        """Give the estimator what somebody else has decided, if it takes that."""
+        if self._feed is not None:
+            self._feed(planned)
 
 
 def foot_sensing(
@@ -91,7 +91,7 @@ def foot_sensing(
     inferred: "TorqueWrench | None" = None,
     touching: tuple[bool, bool] = NONE_TOUCHES,
 ) -> FootSensing:
-    """What the feet feel.
+    """The sensing of the feet.
 
     Args:
         estimate: of this tick.
@@ -110,7 +110,7 @@ def foot_sensing(
     return FootSensing(forces, wrench if wanted else None, estimate.contact, deviation, age, touching)
 
 
-def unsure(deviation: Deviation, state: CentroidalState, feet: FeetState) -> tuple[CentroidalState, FeetState]:
+def with_deviations(deviation: Deviation, state: CentroidalState, feet: FeetState) -> tuple[CentroidalState, FeetState]:
     """State and feet with how sure they are."""
     com, velocity = float(np.hypot(*deviation.com[:2])), float(np.hypot(*deviation.com_velocity[:2]))
     return replace(state, deviation=(com, velocity)), replace(feet, height_deviation=deviation.step_height)

@@ -1,4 +1,4 @@
-"""What is measured: the estimator slot of the controller, and noise and filter of what the planner is told."""
+"""The estimator slot of the controller, and noise and filter of what the planner is given."""
 
 from collections.abc import Callable
 from dataclasses import replace
@@ -95,7 +95,7 @@ def ekf(walk: Walk, **options: Any) -> "SensedState":
 
 
 ESTIMATORS: Registry[EstimatorMaker] = SOURCES.filled(None, {"truth": TrueState, "ekf": ekf})
-"""What makes an estimator of a walk and of ``sensing.options`` by name, by the value of ``sensing.source``."""
+"""Makers of an estimator from a walk and ``sensing.options``, by the value of ``sensing.source``."""
 
 
 Array = NDArray[np.float64]
@@ -114,7 +114,7 @@ LEAST_COM_DEVIATION = 1e-4
 """The filter trusts no CoM more than this, so that its covariance keeps an inverse [m]."""
 
 _PRIOR = (0.01, 0.01, 0.05)
-"""How far from standing still over the middle of its feet the robot may start [m, m/s, m/s^2]."""
+"""Deviation of the robot's start from standing still over the middle of its feet [m, m/s, m/s^2]."""
 
 _STREAM = 1
 """Random numbers of the measurement, apart from those of the start pose with the same seed."""
@@ -190,7 +190,7 @@ def _filter(walk: Walk) -> CentroidalFilter | None:
 
 
 def filter_noise(sensing: Sensing, size: Similarity = REFERENCE_SIZE) -> FilterNoise:
-    """What the filter counts on: the sensors' own noise, down to what the model of a robot of a size can promise."""
+    """The noise that the filter counts on: the sensors' own, at least what the model of a robot of a size promises."""
     com = max(sensing.com_noise, LEAST_COM_DEVIATION * size.length)
     zmp = max(sensing.zmp_noise, LEAST_ZMP_DEVIATION * size.length)
     return replace(size.scaled(FilterNoise()), zmp=zmp, com=com, com_velocity=size.times(VELOCITY_NOISE, "1/s") * com)

@@ -94,7 +94,7 @@ class Simulation:
         self._writer: LogWriter
         self._loop: ClosedLoop
         self._last: float | None
-        self._pushes, self._told, self._closed = 0, 0, False
+        self._pushes, self._commands, self._closed = 0, 0, False
         self._threads = one_thread()
         self._begin()
 
@@ -119,22 +119,22 @@ class Simulation:
 
     @property
     def done(self) -> bool:
-        """Whether there is nothing more to step: the time is over, the robot has fallen, or a fault ended the run."""
+        """True if there is nothing more to step: the time is over, the robot has fallen, or a fault ended the run."""
         return self._loop.done
 
     @property
     def fell(self) -> bool:
-        """Whether the robot has fallen."""
+        """True if the robot has fallen."""
         return self._loop.fell
 
     @property
     def end(self) -> End:
-        """How the run ended, or will if nothing happens."""
+        """The end of the run, or that which comes if nothing happens."""
         return self._loop.end
 
     @property
     def log_growth(self) -> float | None:
-        """By how much the log grows in simulated time while the robot walks; None without one, and at first [B/s].
+        """Growth of the log in simulated time while the robot walks; None without one, and at first [B/s].
 
         With `log.keep` it is the growth of what would be written without.
         """
@@ -175,7 +175,7 @@ class Simulation:
         return self.look()
 
     def advance(self) -> None:
-        """Go through one control tick without a look at it, which saves a tenth of the time; errors as of `step`."""
+        """Go through one control tick without a look at it, which saves a tenth of the time; RunFault if it is over."""
         self._refuse_when_over()
         loop = self._loop
         time, goes_on = loop.time, loop.step()
@@ -229,18 +229,18 @@ class Simulation:
         double_support: float | None = None,
         swing_height: float | None = None,
     ) -> None:
-        """Tell the walk something, from the next plan on; what is None stays as it is.
+        """Command the walk, from the next plan on; what is None stays as it is.
 
         A step that is being swung, or to which the weight is being shifted, is taken as it was planned. A velocity that
         is out of reach is bent to the fastest in its direction that is not; see `orders`.
 
         Args:
             v_x: forward velocity of the path, held until the next one; 0 if another of the three is given [m/s].
-            v_y: to the left, likewise [m/s].
-            yaw_rate: rate of the heading, likewise, positive to the left [rad/s].
+            v_y: velocity to the left, held until the next one; 0 if another of the three is given [m/s].
+            yaw_rate: rate of the heading, positive to the left; 0 if another of the three is given [rad/s].
             march: whether it steps in place where the velocity is zero, in place of standing.
             single_support: duration; what is left of the present phase changes in proportion [s].
-            double_support: likewise [s].
+            double_support: duration; what is left of the present phase changes in proportion [s].
             swing_height: clearance of the steps to come [m].
 
         Raises:
@@ -256,11 +256,12 @@ class Simulation:
 
         Args:
             x: where the middle of the stance shall be, in the world frame [m].
-            y: likewise [m].
+            y: where it shall be along the world's y axis [m].
             yaw: heading there [rad].
 
         Raises:
-            ParameterError: as of `command`.
+            RunFault: the run is over.
+            ParameterError: a number is out of bounds, the ground has edges, or the planner takes no commands.
         """
         self._tell({"place": {"x": x, "y": y, "yaw": yaw}})
 
@@ -276,13 +277,13 @@ class Simulation:
             what = f"a command with {fault['loc'][-1]} {fault['input']!r}"
             raise ParameterError(("command", *map(str, fault["loc"])), what, fault["msg"]) from None
         self._loop.walker.command(command_of(settings), self._loop.time)
-        self._told += 1
+        self._commands += 1
         record = json.dumps(settings.model_dump(mode="json", exclude_none=True))
-        self._writer.add_metadata(f"{COMMAND_RECORD}{self._told}", {"command": record})
+        self._writer.add_metadata(f"{COMMAND_RECORD}{self._commands}", {"command": record})
 
     @property
     def orders(self) -> Command:
-        """What the walk does of what it has been told, in its last plan.
+        """Commands that the walk follows, in its last plan.
 
         Raises:
             ParameterError: the planner takes no commands.
@@ -324,7 +325,7 @@ class Simulation:
         """
         if self._path is not None:
             raise LogError(f"{self._path}: a log holds one run; make another Simulation with a file of its own")
-        self._pushes, self._told = 0, 0
+        self._pushes, self._commands = 0, 0
         self._begin()
 
     def close(self) -> None:
@@ -338,7 +339,7 @@ class Simulation:
         self._threads.restore_original_limits()
 
     def __enter__(self) -> Self:
-        """For ``with Simulation(...) as sim``."""
+        """Enter ``with Simulation(...) as sim``."""
         return self
 
     def __exit__(
@@ -348,6 +349,6 @@ class Simulation:
         self.close()
 
     def __repr__(self) -> str:
-        """What is simulated, and how far it is."""
+        """The simulation and its progress, in words."""
         state = f"over: {self.end.kind}" if self.done else "goes on"
         return f"<Simulation of {self.walk.name}, seed {self.walk.seed}, at {self.time:.3f} s, {state}>"

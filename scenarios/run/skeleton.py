@@ -1,4 +1,4 @@
-"""What every closed loop has in common: it goes tick by tick until its time is over, it falls or it meets a fault."""
+"""The skeleton of every closed loop: it goes tick by tick until its time is over, a fall or a fault."""
 
 import time
 from collections.abc import Callable, Iterator, Sequence
@@ -26,7 +26,7 @@ _PHASE_NAMES = {PhaseKind.STAND: "standing", PhaseKind.DOUBLE: "double support",
 
 @dataclass(frozen=True, slots=True)
 class Progress:
-    """Where a run is.
+    """The progress of a run.
 
     Attributes:
         time: simulated [s].
@@ -43,7 +43,7 @@ class Progress:
 
 @dataclass(frozen=True, slots=True)
 class End:
-    """How a run ended.
+    """The end of a run.
 
     Attributes:
         kind: completed; fall; fault (NaN, divergence, solver failure); interrupted by the user.
@@ -93,7 +93,7 @@ S = TypeVar("S")
 
 
 class Walker(Protocol[S]):
-    """What walks in a closed loop: a robot under its whole-body controller or another one, or a point mass.
+    """A walker in a closed loop: a robot under its whole-body controller or another one, or a point mass.
 
     What it follows is a sample of the plan, or nothing. The skeleton calls its verbs in the order in which they stand
     here, once per control tick.
@@ -106,12 +106,12 @@ class Walker(Protocol[S]):
 
     @property
     def gait(self) -> tuple[float, PhaseInfo]:
-        """Where it is in its gait, and at what instant it was there [s]."""
+        """Phase of its gait, and the instant at which it was there [s]."""
         ...
 
     @property
     def orders(self) -> Command:
-        """What it does of what it has been told.
+        """Commands that it follows.
 
         Raises:
             ParameterError: it takes no commands.
@@ -119,7 +119,7 @@ class Walker(Protocol[S]):
         ...
 
     def command(self, command: Command, now: float) -> None:
-        """Tell it something at an instant [s].
+        """Command it at an instant [s].
 
         Raises:
             ParameterError: it takes no commands, or cannot do this.
@@ -148,7 +148,7 @@ class Walker(Protocol[S]):
         ...
 
     def fallen(self, sample: S) -> bool:
-        """Whether it has fallen."""
+        """Return true if it has fallen."""
         ...
 
     def draw(self, tick: int, now_ns: int, plan: Any, sample: S, fallen: bool) -> None:
@@ -164,7 +164,7 @@ class Walker(Protocol[S]):
         ...
 
     def look(self) -> Look:
-        """What there is to see of the tick."""
+        """Look at the tick, for a viewer."""
         ...
 
     def push(self, push: Push) -> None:
@@ -235,7 +235,7 @@ class ClosedLoop:
 
     @property
     def phase(self) -> PhaseInfo:
-        """Where the gait stands; asked only after a step."""
+        """Phase of the gait; asked only after a step."""
         return self.walker.gait[1]
 
     def step(self) -> bool:
@@ -259,7 +259,7 @@ class ClosedLoop:
         return True
 
     def _broken_promise(self) -> str:
-        """Which push at a point of the gait did not act, or not to its end; empty when all did that are to."""
+        """The push at a point of the gait that did not act, or not to its end; empty when all did that are to."""
         for point, _ in self._pushes:
             if point.promised:
                 return f"a push never acted: the walk never came to {point}"
@@ -318,7 +318,7 @@ def run_loop(loop: ClosedLoop, on_progress: OnProgress) -> End:
 
     Args:
         loop: the closed loop, at its start.
-        on_progress: is told where the run is, every simulated tenth of a second.
+        on_progress: called with the progress of the run, every simulated tenth of a second.
     """
     started, every = time.perf_counter(), loop.rate // 10 or 1
     while not loop.done and loop.step():

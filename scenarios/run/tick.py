@@ -1,4 +1,4 @@
-"""What there is to see of a control tick: of what walks, and of a simulation that is stepped from outside."""
+"""The view of a control tick: of what walks, and of a simulation that is stepped from outside."""
 
 from dataclasses import dataclass
 from typing import NamedTuple
@@ -54,7 +54,7 @@ class Look:
 
 @dataclass(frozen=True, slots=True, repr=False)
 class Tick:
-    """What happened in one control tick; its arrays are its own.
+    """The events of one control tick; its arrays are its own.
 
     Attributes:
         time: begin of the tick [s].
@@ -91,7 +91,7 @@ class Tick:
 
     @property
     def reference(self) -> PlanSample:
-        """References of the plan at this instant; errors as of `plan`."""
+        """References of the plan at this instant; AttributeError if another controller has the planner's seat."""
         return self._found()[1]
 
     def _found(self) -> tuple[WalkPlan, PlanSample]:

@@ -1,4 +1,4 @@
-"""What is to happen to a walk while it goes on: its pushes, faults and commands in time, and which never act."""
+"""The events of a walk: its pushes, faults and commands in time, and those that never act."""
 
 import math
 from bisect import bisect_right
@@ -39,7 +39,7 @@ LEAST = 1e-9
 sizes that act: a nanometre, a nanoradian, the mass of a grain of dust [SI]."""
 
 MOST_IDLE = 20
-"""Commands that never act of which a scenario is told."""
+"""Commands that never act that are reported of a scenario."""
 
 
 @dataclass(frozen=True, slots=True)
@@ -63,7 +63,7 @@ class FaultWindow:
         return cls(fault.kind, round(fault.time * control_rate), end)
 
     def holds(self, tick: int) -> bool:
-        """Whether it holds at a control tick."""
+        """Return true if it holds at a control tick."""
         return self.start <= tick < self.end
 
     def first_act(self, rates: Rates) -> float:
@@ -105,8 +105,8 @@ def due(walk: Walk) -> Iterator[Due]:
     rates, cancelled = walk.keys.rates, _cancelled(walk)
     for index, push in _promised(walk):
         key, name = ("pushes", index), f"pushes.{index}"
-        # Whether a walk that is told where to go comes to a step, the run will show.
-        time = 0.0 if walk.told and push.time is None else push_time(walk.asked_gait, push)
+        # Whether a walk that takes commands comes to a step, the run will show.
+        time = 0.0 if walk.takes_commands and push.time is None else push_time(walk.asked_gait, push)
         start, stop = physics_window(time, push.duration, rates.physics)
         idle = next(_weak(key, push), None)
         if stop <= start:
@@ -127,7 +127,11 @@ def due(walk: Walk) -> Iterator[Due]:
 
 
 def never_act(walk: Walk) -> Iterator[Problem]:
-    """List the promised pushes and the faults that do nothing in the whole run; errors as of `due`."""
+    """List the promised pushes and the faults that do nothing in the whole run.
+
+    Raises:
+        ParameterError: the gait cannot be walked, so that its phases have no times.
+    """
     end = walk.duration
     for one in due(walk):
         if one.event.time >= end:
@@ -137,7 +141,7 @@ def never_act(walk: Walk) -> Iterator[Problem]:
 
 
 def events(walk: Walk) -> tuple[Event, ...]:
-    """What the log is to tell of the promised pushes and the faults."""
+    """The events that the log is to promise: pushes and faults."""
     try:
         return tuple(one.event for one in due(walk))
     except ParameterError as fault:
@@ -154,7 +158,7 @@ def cut_off(walk: Walk) -> Iterator[Problem]:
     end = round(walk.duration * rates.control) / rates.control
     last = round(end * rates.physics, 6)
     for index, push in _promised(walk):
-        if push.time is None and walk.told:
+        if push.time is None and walk.takes_commands:
             continue
         start, stop = physics_window(push_time(walk.asked_gait, push), push.duration, rates.physics)
         if start < last < stop:
@@ -179,7 +183,7 @@ def _promised(walk: Walk) -> Iterator[tuple[int, PushSettings]]:
 
 
 def _weak(key: Key, push: PushSettings) -> Iterator[Problem]:
-    """Tell a push that moves nothing; of a force given in newtons the mass does not matter, as that of any robot."""
+    """Report a push that moves nothing; of a force given in newtons the mass does not matter, as that of any robot."""
     given = "force" if push.impulse is None else "impulse"
     name = f"{key[0]}.{key[1]}.{given}"
     impulse = push.duration * math.hypot(*(push.force or ())) if push.impulse is None else push.impulse
@@ -199,7 +203,7 @@ def _cancelled(walk: Walk) -> set[int]:
     """
     by_body: dict[tuple[str, bool], list[tuple[int, float, float, Array]]] = {}
     for index, push in _promised(walk):
-        if push.time is None and walk.told:
+        if push.time is None and walk.takes_commands:
             continue
         begin = push_time(walk.asked_gait, push)
         body = push.body if push.body is not None and walk.walker.has_body else ""
@@ -281,11 +285,11 @@ def idle_commands(walk: Walk) -> Iterator[Problem]:
                 what = f"gait.velocity.{index} is over at {until:g} s, before any foot lifts off by it, and never acts"
                 yield Problem(("gait", "velocity", index), what, "let it hold for a step, or leave it out")
                 found += 1
-    except ParameterError:  # told by the checks of the walk
+    except ParameterError:  # reported by the checks of the walk
         return
 
 
-def told_problems(walk: Walk) -> Iterator[Problem]:
+def command_problems(walk: Walk) -> Iterator[Problem]:
     """List commands and waypoints that say nothing, say two things, or cannot be obeyed."""
     keys = walk.keys
     placed = any(command.place is not None and not command.live for command in keys.commands)
@@ -297,7 +301,7 @@ def told_problems(walk: Walk) -> Iterator[Problem]:
         yield Problem(("gait", "waypoints"), what, "give one of them", at_key=True)
         return
     for index, command in enumerate(keys.commands):
-        yield from _told_problems(walk, ("commands", index), command)
+        yield from _problems_of(walk, ("commands", index), command)
     yield from _no_way(walk)
     where: list[Key] = [("gait", "waypoints")] if keys.gait.waypoints else []
     where += [("commands", index) for index in range(len(keys.commands))]
@@ -325,7 +329,7 @@ def _no_way(walk: Walk) -> Iterator[Problem]:
         before, where = place, f"gait.waypoints.{index} is"
 
 
-def _told_problems(walk: Walk, key: Key, command: CommandSettings) -> Iterator[Problem]:
+def _problems_of(walk: Walk, key: Key, command: CommandSettings) -> Iterator[Problem]:
     given = {name for name in type(command).model_fields if getattr(command, name) is not None} - {"time", "live"}
     name = f"commands.{key[1]}"
     if not given:
@@ -344,8 +348,8 @@ def _told_problems(walk: Walk, key: Key, command: CommandSettings) -> Iterator[P
 
 def _unheard(walk: Walk, key: Key) -> Iterator[Problem]:
     """List what of a promised command no plan hears of: the first at its time or later takes it, of two the last."""
-    told, index = walk.keys.commands, int(key[1])
-    command, name = told[index], f"commands.{key[1]}"
+    commands, index = walk.keys.commands, int(key[1])
+    command, name = commands[index], f"commands.{key[1]}"
     rate, end = walk.keys.rates.planner, walk.keys.duration
     heard = plan_of(command, rate)
     if command.live:
@@ -355,7 +359,7 @@ def _unheard(walk: Walk, key: Key) -> Iterator[Problem]:
         what += f"the run ends at {end:g} s" if command.time >= end else f"no plan comes before the end at {end:g} s"
         yield Problem((*key, "time"), what, "let it come before")
         return
-    for number, other in enumerate(told):
+    for number, other in enumerate(commands):
         later = (other.time, number) > (command.time, index) and plan_of(other, rate) == heard
         for entry in sorted(command.superseded_by(other)) if later and not other.live else ():
             what = f"{name}.{entry} never acts: commands.{number} supersedes it before the plan at {heard / rate:g} s"
@@ -368,11 +372,11 @@ def plan_of(command: CommandSettings, rate: int) -> int:
 
 
 def _leads(command: CommandSettings) -> bool:
-    """Whether it says where to walk."""
+    """Return true if it says where to walk."""
     return any(getattr(command, name) is not None for name in ("v_x", "v_y", "yaw_rate", "march", "place"))
 
 
 def _stops(command: CommandSettings) -> bool:
-    """Whether it asks to stand."""
+    """Return true if it asks to stand."""
     twist = command_of(command).twist
     return twist is not None and twist.is_zero and not command.march

@@ -1,4 +1,4 @@
-"""Whether a robot can do a walk, by its stances and first steps; and where it cannot, one of the kind that it can.
+"""Checks that a robot can do a walk, by its stances and first steps; else a walk of the kind that it can do.
 
 What a refusal proposes has been tried: the scenario with it goes through every check that comes before a run.
 """
@@ -63,11 +63,11 @@ def made_ready(walk: Walk, body: Body) -> "tuple[NDArray[np.float64], LegInertia
         if found:
             unmet = unmet_by(found, walk)
             out = f" (which leaves out {', '.join(unmet)} of the criteria)" if unmet else ""
-            right = f"take for example {told(found)}{out}"
+            right = f"take for example {proposal_text(found)}{out}"
         raise ParameterError(refusal.key, refusal.what, right) from None
 
 
-def told(proposal: Proposal) -> str:
+def proposal_text(proposal: Proposal) -> str:
     """A proposal as options of a command line, to be copied as they stand."""
     return " ".join(f"--set {quote(f'{key}={_value(value)}')}" for key, value in proposal.items())
 
@@ -89,7 +89,7 @@ def unmet_by(proposal: Proposal, walk: Walk) -> tuple[str, ...]:
 
 
 def _asks(bound: Bound) -> bool:
-    """Say whether a bound asks for some way, to whichever side; one around zero asks for none."""
+    """Return true if a bound asks for some way, to whichever side; one around zero asks for none."""
     least, most = (np.atleast_1d(0.0 if limit is None else limit) for limit in (bound.min, bound.max))
     return bool((least > 0.0).any() or (most < 0.0).any())
 
@@ -101,7 +101,7 @@ def _value(value: Any) -> str:
 
 
 def proposed(walk: Walk, body: Body, key: Key) -> Proposal | None:
-    """What to set over a walk, refused at a key, of which its robot can do the result; None if nothing was found.
+    """The setting over a walk, refused at a key, of which its robot can do the result; None if none was found.
 
     Whatever the next refusal is about gives way next.
     """
@@ -180,7 +180,7 @@ class _Calm:
     refused: int = 0
 
     def after(self, key: Key, climbs: bool) -> "_Calm":
-        """What to try after a refusal at a key, on ground that is uneven or not."""
+        """The settings to try after a refusal at a key, on ground that is uneven or not."""
         if key == ("gait", "com_height"):
             return replace(self, posture=self.posture + 1)
         if key == ("gait", "single_support"):
@@ -216,16 +216,17 @@ def _shorter(keys: Scenario, share: float) -> Proposal:
     """The walk with steps of a share of their size, or with a share of its velocities."""
     if not keys.gait.velocity:
         return _times(keys.gait, "gait", _STRIDE, share)
-    slower = ({name: _rounded(share * value) for name, value in told} for told in keys.gait.velocity)
+    slower = ({name: _rounded(share * value) for name, value in velocity} for velocity in keys.gait.velocity)
     return {
         "gait.velocity": [
-            {**one, "time": float(f"{told.time:.6g}")} for one, told in zip(slower, keys.gait.velocity, strict=True)
+            {**one, "time": float(f"{velocity.time:.6g}")}
+            for one, velocity in zip(slower, keys.gait.velocity, strict=True)
         ]
     }
 
 
 def _times(group: Any, name: str, keys: tuple[str, ...], share: float) -> Proposal:
-    """Those of the keys that are not zero, times a share."""
+    """Values of the keys that are not zero, times a share."""
     given = {f"{name}.{key}": _rounded(share * getattr(group, key)) for key in keys}
     return {key: value for key, value in given.items() if value}
 

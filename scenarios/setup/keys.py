@@ -39,7 +39,7 @@ def scenario_key(key: Key) -> Key:
 
 
 def scenario_problem(refusal: ValueError) -> Problem:
-    """What the user is told of the refusal of a part: its key in the scenario's words, the fault, what is right."""
+    """The problem that a part's refusal is to the user: its key in the scenario's words, the fault, what is right."""
     if not isinstance(refusal, ParameterError):
         return Problem((), str(refusal).rstrip("."), "change the scenario so that it fits")
     return Problem(scenario_key(refusal.key), refusal.what, refusal.right)
@@ -72,7 +72,7 @@ _OF_A_PLANNER = (
 
 @dataclass(frozen=True, slots=True)
 class Fidelity:
-    """What walks.
+    """The fidelity of a run: the thing that walks.
 
     Attributes:
         thing: it, in the words of a message.
@@ -100,4 +100,4 @@ FIDELITIES = {
         (*(("pendulum", name) for name in PendulumSettings.model_fields), *_OF_A_PLANNER),
     ),
 }
-"""By the kind of walker: the values of the key ``fidelity``, and ``seat`` beside the key ``controller``."""
+"""Fidelities by the kind of walker: the values of the key ``fidelity``, and ``seat`` beside the key ``controller``."""

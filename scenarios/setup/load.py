@@ -16,7 +16,7 @@ from pydantic import ValidationError
 from surefoot.errors import ParameterError, PartError
 from surefoot.models.names import is_file
 from surefoot.scenarios import catalogue
-from surefoot.scenarios.errors import Key, LogError, Problem, ScenarioError, SetupError, told_once
+from surefoot.scenarios.errors import Key, LogError, Problem, ScenarioError, SetupError, hinted_once
 from surefoot.scenarios.file.criteria import Bound, standing_walk
 from surefoot.scenarios.file.names import unusable
 from surefoot.scenarios.file.schema import Scenario
@@ -30,12 +30,12 @@ from surefoot.scenarios.record import provenance
 from surefoot.scenarios.setup.checks.checks import check
 from surefoot.scenarios.setup.checks.criteria import criteria_problems
 from surefoot.scenarios.setup.robot.robots import Robots
-from surefoot.scenarios.setup.sized import say_for, walk_of
+from surefoot.scenarios.setup.sized import say_for, sized_walk
 from surefoot.scenarios.setup.terrain import kind_of
 
 LOG_ENDING = ".mcap"
-MOST_TOLD = 20
-"""Problems of a scenario that are told at once."""
+MOST_PROBLEMS = 20
+"""Problems of a scenario that are shown at once."""
 
 
 class Written(NamedTuple):
@@ -47,7 +47,7 @@ class Written(NamedTuple):
 
 
 def is_log(reference: str) -> bool:
-    """Whether a reference to a scenario is the path of a log, by its ending or by how the file begins."""
+    """Return true if a reference to a scenario is the path of a log, by its ending or by how the file begins."""
     if reference.endswith(LOG_ENDING):
         return True
     try:
@@ -133,7 +133,7 @@ def _until(end: float, fault: dict[str, Any]) -> dict[str, Any]:
 
 
 def written(reference: str) -> Written:
-    """The text of a scenario, by a reference as of `load`.
+    """The text of a scenario, by its name, the path of a YAML file or that of a log.
 
     Raises:
         ScenarioError: it cannot be found or read.
@@ -179,7 +179,7 @@ def load(reference: str | Path, overrides: Overrides = (), robots: Robots | None
 
 
 def locate(reference: str, overrides: Overrides, refusal: SetupError) -> ScenarioError:
-    """Say where the cause of a refusal stands: at the key that it names, else at the begin; arguments of `load`."""
+    """Locate the cause of a refusal: at the key that it names, else at the begin; arguments of `load`."""
     source = _source(written(reference), overrides, Robots())
     return ScenarioError([source.describe(refusal.problem, together=True)])
 
@@ -187,7 +187,7 @@ def locate(reference: str, overrides: Overrides, refusal: SetupError) -> Scenari
 def read_scenario(
     text: str, place: str, stem: str, overrides: Overrides = (), robots: Robots | None = None
 ) -> Scenario:
-    """Check a scenario as it is `Written`; other arguments and errors as of `load`."""
+    """Check a scenario as it is `Written`; ScenarioError lists every fault with its place."""
     robots = robots or Robots()
     source = _source(Written(text, place, stem), overrides, robots)
     scenario, problems = _validated(source.value)
@@ -197,7 +197,7 @@ def read_scenario(
     semantic = [*criteria_problems(scenario.criteria, scenario.walker), *unfit]
     semantic = [problem for problem in semantic if not _touched(problem.key, wrong)]
     if problems or semantic:
-        raise ScenarioError(_told(source, problems, semantic))
+        raise ScenarioError(_described(source, problems, semantic))
     if "fell" not in scenario.criteria:
         criteria = {"fell": Bound(equals=False), **scenario.criteria}
         scenario = scenario.model_copy(update={"criteria": criteria})
@@ -221,7 +221,7 @@ def key_problems(written: Written, overrides: Overrides, robots: Robots) -> list
 def for_robot(
     written: Written, values: Mapping[str, Any], origin: str, robot: str | None, robots: Robots
 ) -> dict[str, Any]:
-    """What values by key, for an origin, are for a robot, or the scenario's own; without those that it has itself.
+    """Values by key, for an origin, as they are for a robot or the scenario's own; without those that it has itself.
 
     Raises:
         ScenarioError: the scenario cannot be read, or a key leads nowhere.
@@ -262,8 +262,8 @@ def _source(written: Written, overrides: Overrides, robots: Robots) -> Source:
 
 def _size(source: Source, overrides: Overrides, robots: Robots) -> None:
     """Translate a file for the robot that it is run with, whose knees are to be bent as the other one's."""
-    told = overrides if isinstance(overrides, Mapping) else [one.partition("=")[0].strip() for one in overrides]
-    if "sized_for" not in source.value and "sized_for" not in told:
+    given = overrides if isinstance(overrides, Mapping) else [one.partition("=")[0].strip() for one in overrides]
+    if "sized_for" not in source.value and "sized_for" not in given:
         return
     before = copy.deepcopy(source.value)
     names = say_for(source, overrides, robots)
@@ -293,13 +293,13 @@ def _checked(scenario: Scenario, robots: Robots) -> tuple[Scenario, list[Problem
     """The scenario with what follows from its ground, and what of it does not fit together."""
     try:
         gait = kind_of(scenario.terrain.kind).completed(scenario.terrain, scenario.gait)
-        walk = walk_of(scenario.model_copy(update={"gait": gait}), robots)
+        walk = sized_walk(scenario.model_copy(update={"gait": gait}), robots)
         return walk.keys, check(walk, robots)
     except PartError as fault:  # of the ground: what is wrong with a robot is among the checks
         return scenario, [Problem(("terrain", "kind"), fault.what, fault.right)]
 
 
-def _told(source: Source, alone: list[Problem], together: list[Problem]) -> list[str]:
+def _described(source: Source, alone: list[Problem], together: list[Problem]) -> list[str]:
     """The first problems with their places, in the order of the file, and how many more there are.
 
     Args:
@@ -308,11 +308,11 @@ def _told(source: Source, alone: list[Problem], together: list[Problem]) -> list
         together: of values that do not fit together.
     """
     found = sorted(((*alone, *together)), key=source.spot)
-    first = found[:MOST_TOLD]
-    shortened = zip(first, told_once(first), strict=True)
-    told = [source.describe(short, problem in together) for problem, short in shortened]
-    rest = len(found) - len(told)
-    return [*told, f"{source.name}: {rest} problems more; mend these first"] if rest else told
+    first = found[:MOST_PROBLEMS]
+    shortened = zip(first, hinted_once(first), strict=True)
+    lines = [source.describe(short, problem in together) for problem, short in shortened]
+    rest = len(found) - len(lines)
+    return [*lines, f"{source.name}: {rest} problems more; mend these first"] if rest else lines
 
 
 def _place_files(source: Source, folder: Path) -> None:
@@ -361,7 +361,7 @@ def _ask_of_seat(values: dict[str, Any], written: list[Any], overrides: Override
 
 
 def _needs_planner(bound: Any, name: Any) -> bool:
-    """Whether a criterion as it is written is one that only a planner can be held to; a faulty one is not."""
+    """Return true if a criterion as it is written needs a planner; a faulty one does not."""
     with suppress(ValidationError):
         return not applies(str(name), Bound.model_validate(bound), "seat")
     return False
@@ -384,5 +384,5 @@ def _validated(data: Any) -> tuple[Scenario, list[Problem]]:
 
 
 def _touched(key: Key, wrong: set[Key]) -> bool:
-    """Whether a finding concerns something that is already known to be at fault."""
+    """Return true if a finding concerns something that is already known to be at fault."""
     return any(key[: len(other)] == other or other[: len(key)] == key for other in wrong)

@@ -23,7 +23,7 @@ Shape = tuple[int, ...]
 
 
 def profile_guard(profile: Profile, given: bool) -> Guard:
-    """What stands around the calls of what a profile brings, which a program may have given in place of a name."""
+    """A guard for the calls of what a profile brings, which a program may have given in place of a name."""
     if PROFILES.owns(profile) or not given:
         return PROFILES.guard(profile.name)
     return Guard(f"profile '{profile.name}' of this program")
@@ -47,7 +47,7 @@ def guarded(part: Any, guard: Guard, take: dict[str, Callable[..., Any]]) -> Any
 
 
 def _motion(answer: Motion, problem: MotionProblem) -> Motion:
-    """What a law gives."""
+    """The motion of a law, checked."""
     fit(answer.jerk, problem.fallback.shape, "jerk")
     fit(answer.shifts, (2, 2), "shifts")
     for name in ("zmp_slack", "terminal_slack"):
@@ -64,7 +64,7 @@ _SAMPLED: dict[str, Shape] = {
 
 
 def plan(answer: WalkPlan, *_: Any) -> WalkPlan:
-    """What a planner gives; see `surefoot.parts.guard.Guard.function`."""
+    """The plan of a planner, checked; see `surefoot.parts.guard.Guard.function`."""
     taken_for(WalkPlan)(answer)
     horizon = len(answer.jerk)
     fit(answer.jerk, (horizon, 2), "jerk")
@@ -74,14 +74,14 @@ def plan(answer: WalkPlan, *_: Any) -> WalkPlan:
 
 
 def _state(answer: "RobotState", measurement: "Measurement") -> "RobotState":
-    """What an estimator gives."""
+    """The state of an estimator, checked."""
     fit(answer.q, measurement.q.shape, "q")
     fit(answer.v, measurement.v.shape, "v")
     return answer
 
 
 def _estimate(answer: Estimate, readings: "Readings") -> Estimate:
-    """What an estimator gives that senses."""
+    """The estimate of an estimator that senses, checked."""
     taken_for(Estimate)(answer)
     joints = len(readings.joint_position.values)
     fit(answer.state.q, (7 + joints,), "q", finite=False)
@@ -109,7 +109,7 @@ _DEVIATED: dict[str, Shape] = {
 
 
 def _wanted(answer: Iterable[float], terms: Any, reference: Any, scale: Array, rows: Array) -> Any:
-    """What a task gives, and has written into its rows."""
+    """The target of a task, which it has also written into its rows, checked."""
     wanted = [float(one) for one in answer]
     if len(wanted) != len(scale) or not math.isfinite(sum(wanted)):
         fit(wanted, scale.shape[:1], "acceleration")
@@ -119,7 +119,7 @@ def _wanted(answer: Iterable[float], terms: Any, reference: Any, scale: Array, r
 
 ESTIMATE: dict[str, Callable[..., Any]] = {"estimate": _state, "sense": _estimate}
 TASK = {"write": _wanted}
-"""By the methods of an estimator and of a task, what is taken for their answers."""
+"""Checks of the answers of an estimator and of a task, by their methods."""
 
 
 def fit(value: Any, shape: Shape, name: str, finite: bool = True) -> None:

@@ -1,4 +1,4 @@
-"""What a scenario asks of a controller that has the seat of planner and whole-body controller: velocities over time."""
+"""The demand of a scenario on a controller in the seat of planner and whole-body controller: velocities over time."""
 
 from collections.abc import Iterator
 
@@ -42,7 +42,7 @@ def seat_problems(walk: Walk) -> Iterator[Problem]:
 
 
 def _unnamed(walk: Walk) -> Iterator[Problem]:
-    """Tell a seat that names nothing, or two things."""
+    """Report a seat that names nothing, or two things."""
     seat = walk.keys.controller
     assert seat is not None
     name = seat.name or DEFAULTS["controller"]
@@ -54,13 +54,13 @@ def _unnamed(walk: Walk) -> Iterator[Problem]:
 
 
 def velocities(walk: Walk) -> tuple[Command, ...]:
-    """What a controller in the seat hears, in order of time; before the first it stands.
+    """Commands to a controller in the seat, in order of time; before the first it stands.
 
     Equal steps are the velocity of their path, from the first lift-off for as long as they take; so it goes as far.
     """
     gait, keys = walk.asked_gait, walk.keys
     heard = velocities_of(keys.gait.velocity)
-    if not heard and keys.gait.steps > 1 and not walk.told:
+    if not heard and keys.gait.steps > 1 and not walk.takes_commands:
         twist = Twist(gait.step_length, gait.lateral_step, gait.turn).scaled(1.0 / gait.period)
         begin = gait.lift_off(1)
         heard = [Command(twist, time=begin), Command(STANDING, time=begin + (gait.steps - 1) * gait.period)]

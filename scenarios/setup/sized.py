@@ -38,7 +38,7 @@ _TORQUE = "torque_ratio_max"
 """The metric whose bounds rise for weaker robots: a walk takes so many times what standing on one foot does."""
 
 _RESERVE = 0.05
-"""Of its motors' torque, that such a bound leaves a weaker robot at least [-]."""
+"""Least share of its motors' torque that such a bound leaves a weaker robot [-]."""
 
 _APART: tuple[Key, ...] = (("wbc",), ("planner", "recovery"), ("rates",), ("planner", "sample_time"), ("log",))
 """Keys whose units are those of parameters, that follow from the clock, or that bound what is written."""
@@ -49,8 +49,8 @@ _SOLES = ("foot_length", "foot_width")
 G = TypeVar("G", bound=BaseModel)
 
 
-def walk_of(scenario: Scenario, robots: Robots) -> Walk:
-    """What a scenario means with the defaults of its robot; of one that nobody has, which others tell, as it is."""
+def sized_walk(scenario: Scenario, robots: Robots) -> Walk:
+    """The walk of a scenario, with the defaults of its robot."""
     facts = None if scenario.robot == REFERENCE else _facts(scenario.robot, RobotSettings(), robots)
     if facts is None or facts.size == REFERENCE_SIZE:
         return Walk(scenario)
@@ -106,7 +106,7 @@ def say_for(source: Source, overrides: Overrides, robots: Robots) -> tuple[str, 
 def _effort(
     values: dict[str, Any], before: tuple[str, RobotSettings], after: tuple[str, RobotSettings], robots: Robots
 ) -> float:
-    """How many times the share of its motors' torque standing on one foot takes of a robot that it takes of another.
+    """Ratio of the shares of motor torque that standing on one foot takes, of one robot over another.
 
     1 where no criterion asks for it, and where one of them cannot stand so.
     """

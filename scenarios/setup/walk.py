@@ -1,4 +1,4 @@
-"""What a scenario means, each part derived once, in the terms of the layers below; nobody there sees a scenario."""
+"""The walk that a scenario means, each part derived once, for the layers below; nobody there sees a scenario."""
 
 import math
 from collections.abc import Mapping
@@ -29,11 +29,11 @@ from surefoot.scenarios.setup.groups.gait import (
     FINAL_STAND,
     PushPoint,
     command_of,
+    commanded_until,
     gait_of,
     push_force,
     step_region,
     there_at,
-    told_until,
     waypoints_of,
 )
 from surefoot.scenarios.setup.groups.hardware import Hardware
@@ -56,7 +56,7 @@ LEAST_BELIEVED_FRICTION = 0.05
 class Walk:
     """Everything that a run is made of, and what the checks look at before anyone knows whether it can be run.
 
-    What "is believed" is what planner and controller are told; the simulated world may differ. Each part is derived
+    What "is believed" is what planner and controller are given; the simulated world may differ. Each part is derived
     once, when it is first asked for, and raises `ParameterError` where the keys refuse it; of a walk that `resolve`
     gives all have been.
 
@@ -78,7 +78,7 @@ class Walk:
 
     @property
     def name(self) -> str:
-        """Of the scenario."""
+        """Name of the scenario."""
         return self.keys.name
 
     @property
@@ -88,22 +88,22 @@ class Walk:
 
     @property
     def seed(self) -> int:
-        """Of everything random."""
+        """Seed of everything random."""
         return self.keys.seed
 
     @property
     def rates(self) -> Rates:
-        """Of the clock."""
+        """Rates of the clock."""
         return self.keys.rates
 
     @property
     def start(self) -> Start:
-        """Where the walk starts, with its noises."""
+        """Start of the walk, with its noises."""
         return self.keys.start
 
     @property
     def sensing(self) -> Sensing:
-        """What planner and controller know of the robot."""
+        """The knowledge of the robot for planner and controller."""
         return self.keys.sensing
 
     @property
@@ -127,12 +127,12 @@ class Walk:
 
     @property
     def walker(self) -> Fidelity:
-        """What walks."""
+        """The fidelity of the thing that walks."""
         return FIDELITIES[self.keys.walker]
 
     @property
-    def told(self) -> bool:
-        """Whether the walk hears while it goes on where to go, so that its steps are not known before."""
+    def takes_commands(self) -> bool:
+        """True if the walk is commanded while it goes on, so that its steps are not known before."""
         return bool(self.keys.gait.waypoints or self.keys.commands)
 
     @cached_property
@@ -142,7 +142,7 @@ class Walk:
 
     @cached_property
     def gait(self) -> GaitParameters:
-        """What is walked: the strides of a velocity are as wide as feet may land."""
+        """The gait: the strides of a velocity are as wide as feet may land."""
         if not self.keys.gait.velocity:
             return self.asked_gait
         return fitted(self.asked_gait, step_region(self.formulation.parameters, self.sole, self.robot.shank_spacing))
@@ -160,8 +160,10 @@ class Walk:
 
     @cached_property
     def gait_duration(self) -> float:
-        """Until the end of the last double support, or until the robot stands after all that it is told [s]."""
-        end = max([self.asked_gait.duration, *(told_until(self.asked_gait, told) for told in self.keys.commands)])
+        """Until the end of the last double support, or until the robot stands after all of its commands [s]."""
+        end = max(
+            [self.asked_gait.duration, *(commanded_until(self.asked_gait, command) for command in self.keys.commands)]
+        )
         if not self.waypoints:
             return end
         start = Twist(self.start.x, self.start.y, self.start.yaw)
@@ -174,12 +176,12 @@ class Walk:
 
     @cached_property
     def pushes(self) -> tuple[Push, ...]:
-        """Those on bodies, world frame, that begin at a time."""
+        """Pushes on bodies, world frame, that begin at a time."""
         return tuple(self._push(push) for push in self.keys.pushes if PushPoint.of(push) is None)
 
     @cached_property
     def gait_pushes(self) -> tuple[tuple[PushPoint, Push], ...]:
-        """Those that begin at a point of the gait, whenever it is reached; their time means nothing."""
+        """Pushes that begin at a point of the gait, whenever it is reached; their time means nothing."""
         pointed = ((PushPoint.of(push), push) for push in self.keys.pushes)
         return tuple((point, self._push(push)) for point, push in pointed if point is not None)
 
@@ -218,7 +220,7 @@ class Walk:
 
     @cached_property
     def formulation(self) -> Formulation:
-        """What the scenario says of the planner."""
+        """The scenario's planner."""
         return Formulation(self.keys.planner, self.ground, self.size, self.wider, self.walker.rise, self.given)
 
     @property
@@ -228,7 +230,10 @@ class Walk:
 
     @cached_property
     def parameters(self) -> PlannerParameters:
-        """Of the planner, for legs without inertia. Adaptation leaves at least half the planned gap between soles."""
+        """Parameters of the planner, for legs without inertia.
+
+        Adaptation leaves at least half the planned gap between soles.
+        """
         asked = self.formulation.parameters
         near, far = asked.reach_width
         apart = max(near, self.robot.sole_width + 0.5 * asked.recovery.sole_gap)
@@ -242,12 +247,12 @@ class Walk:
 
     @property
     def region(self) -> StepRegion:
-        """Where a step that is commanded while it walks may land."""
+        """Region in which a step that is commanded while it walks may land."""
         return region_of(self.parameters, self.facts, self.gait.com_height)
 
     @property
     def legs(self) -> LegReach:
-        """What the legs can do to catch the body."""
+        """The reach of the legs that catch the body."""
         return leg_reach(self.parameters, self.facts, self.gait.com_height, self.standing_height)
 
     def planner(self, feet: FeetState, leg: LegInertia) -> Planner:
@@ -273,12 +278,12 @@ class Walk:
 
     @cached_property
     def robot(self) -> "RobotDescription":
-        """As believed."""
+        """The robot as believed."""
         return self.described or describe(self.keys.robot, self.keys.robot_options)
 
     @property
     def facts(self) -> RobotFacts:
-        """What of it bounds a walk."""
+        """The facts of the robot that bound a walk."""
         return facts_of(self.robot)
 
     @property
@@ -292,12 +297,12 @@ class Walk:
 
     @property
     def true_robot(self) -> "RobotDescription":
-        """As simulated; the same object when nothing about it is believed wrongly."""
+        """The robot as simulated; the same object when nothing about it is believed wrongly."""
         return self._truth if self.walker.has_body else self.robot
 
     @property
     def true_mass(self) -> float:
-        """Of the robot as it is [kg]."""
+        """Mass of the robot as it is [kg]."""
         return float(self._truth.mass)
 
     @property
@@ -325,32 +330,32 @@ class Walk:
 
     @property
     def control(self) -> ControlSettings:
-        """What the joints are given."""
+        """The commands to the joints."""
         return self.keys.control or ControlSettings()
 
     @cached_property
     def hardware(self) -> Hardware:
-        """What sensors and motors do that nobody is told of."""
+        """The errors of sensors and motors that no part of the controller knows."""
         return Hardware.of(self.sensing, self.keys.motors, self.size)
 
     @property
     def seat(self) -> SeatSettings | None:
-        """What has the seat of planner and whole-body controller; None where they have it."""
+        """The controller in the seat of planner and whole-body controller; None where they have it themselves."""
         return self.keys.controller
 
     @property
     def log(self) -> LogSettings:
-        """How much of the run its log holds."""
+        """The part of the run that its log holds."""
         return self.keys.log or LogSettings()
 
     @property
     def tasks(self) -> tuple[str, ...]:
-        """Of other packages in its QP, by name."""
+        """Names of tasks of other packages in its QP."""
         return self.keys.wbc.tasks if self.keys.wbc is not None else ()
 
 
 def resolve(scenario: Scenario, robot: "RobotDescription | None" = None, profile: Profile | None = None) -> Walk:
-    """Say what a checked scenario means, with a robot and a profile, if given, in place of those that it names.
+    """Resolve a checked scenario into its walk, with a robot and a profile, if given, in place of those that it names.
 
     Raises:
         ParameterError: a part refuses its parameters.

@@ -1,1 +1,1 @@
-"""What people look at: tables, figures, comparison, replay."""
+"""The views for people: tables, figures, comparison, replay."""

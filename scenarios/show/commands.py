@@ -20,7 +20,7 @@ app = typer.Typer()
 
 @dataclass(frozen=True, slots=True)
 class InspectOptions:
-    """What `surefoot inspect` is told."""
+    """The arguments of `surefoot inspect`."""
 
     log: LogFile
     topic: Annotated[
@@ -43,7 +43,7 @@ class InspectOptions:
 
 @app.command()
 @with_options(InspectOptions)
-def inspect(told: InspectOptions) -> None:
+def inspect(options: InspectOptions) -> None:
     """Show verdict, metrics, health, topics and rates of a log."""
     with importing():
         from surefoot.scenarios.judge import inspection
@@ -52,19 +52,19 @@ def inspect(told: InspectOptions) -> None:
         from surefoot.scenarios.show.moment import Moment
         from surefoot.scenarios.show.touching import touching
 
-    opened, asked = read(told.log), told.topic or []
-    if (asked or told.where is not None) and told.strict:
+    opened, asked = read(options.log), options.topic or []
+    if (asked or options.where is not None) and options.strict:
         raise LogError("--strict is of the verdict; leave --topic and --where away")
-    if told.where is not None:
-        _show_stretches(opened, told.where, asked, told)
+    if options.where is not None:
+        _show_stretches(opened, options.where, asked, options)
         return
     if asked:
-        _show_topics(opened, asked, told)
+        _show_topics(opened, asked, options)
         return
-    if (told.field, told.start, told.end, told.export) != (None, None, None, None):
+    if (options.field, options.start, options.end, options.export) != (None, None, None, None):
         raise LogError("--field, --from, --to and --export choose from topics; name one with --topic")
-    found, touches = inspection.inspect(opened, told.strict), touching(opened)
-    if told.as_json:
+    found, touches = inspection.inspect(opened, options.strict), touching(opened)
+    if options.as_json:
         bodies = [touch._asdict() for touch in touches]
         shown = {**found.to_json(), "touching": bodies}
         for one in shown["health"]:
@@ -75,7 +75,7 @@ def inspect(told: InspectOptions) -> None:
     raise typer.Exit(0 if found.verdict.passed else MISSED)
 
 
-def _show_topics(log: "Log", topics: list[str], told: InspectOptions) -> None:
+def _show_topics(log: "Log", topics: list[str], options: InspectOptions) -> None:
     """Summarise topics, or export them and say where they are; what is said in words is printed."""
     from surefoot.scenarios.judge.inspection import topic_summary
     from surefoot.scenarios.show.console import print_topic
@@ -84,24 +84,27 @@ def _show_topics(log: "Log", topics: list[str], told: InspectOptions) -> None:
     if EVENTS in topics and EVENTS in log:
         if len(topics) > 1:
             raise LogError(f"{EVENTS} has words, which no table of numbers holds; ask for it alone")
-        _show_events(log, told)
+        _show_events(log, options)
         return
-    if len(topics) > 1 and told.field is not None:
+    if len(topics) > 1 and options.field is not None:
         raise LogError(f"--field is of one topic, and {len(topics)} are named; leave it away, or name one")
     if len(set(topics)) < len(topics):
         raise LogError("--topic names one twice; name each once")
-    chosen = [selected(log, topic, told.start, told.end, told.field) for topic in topics]
+    chosen = [selected(log, topic, options.start, options.end, options.field) for topic in topics]
     one, *others = chosen
-    if told.export is not None:
-        count, file = export(Joined(tuple(chosen)) if others else one, told.export, told.force), str(told.export)
-        typer.echo(json.dumps({"file": file, "messages": count}) if told.as_json else file)
+    if options.export is not None:
+        count, file = (
+            export(Joined(tuple(chosen)) if others else one, options.export, options.force),
+            str(options.export),
+        )
+        typer.echo(json.dumps({"file": file, "messages": count}) if options.as_json else file)
     else:
         summary = topic_summary(one)
         if others:
             named = [(each, [field.name for field in prefixed(each.topic, each.fields)]) for each in chosen]
             rows = [zip(names, topic_summary(each).values(), strict=True) for each, names in named]
             summary = {name: row for part in rows for name, row in part}
-        if told.as_json:
+        if options.as_json:
             typer.echo(json.dumps(summary, allow_nan=False))
         else:
             print_topic(", ".join(topics), summary)
@@ -109,15 +112,17 @@ def _show_topics(log: "Log", topics: list[str], told: InspectOptions) -> None:
         typer.echo(f"not read: {loss}", err=True)
 
 
-def _show_stretches(log: "Log", question: str, topics: list[str], told: InspectOptions) -> None:
+def _show_stretches(log: "Log", question: str, topics: list[str], options: InspectOptions) -> None:
     """Print when a question holds."""
     from surefoot.scenarios.judge.questions import stretches
     from surefoot.scenarios.show.console import print_stretches
 
-    if told.field is not None or told.export is not None:
-        raise LogError(f"{'--field' if told.field is not None else '--export'} is of topics; leave it or --where away")
-    found, units = stretches(log, question, told.start, told.end, topics)
-    if told.as_json:
+    if options.field is not None or options.export is not None:
+        raise LogError(
+            f"{'--field' if options.field is not None else '--export'} is of topics; leave it or --where away"
+        )
+    found, units = stretches(log, question, options.start, options.end, topics)
+    if options.as_json:
         typer.echo(json.dumps([one._asdict() for one in found], allow_nan=False))
     else:
         print_stretches(question, found, units[0])
@@ -129,17 +134,20 @@ EVENTS = "/events"
 """Topic whose messages are in words."""
 
 
-def _show_events(log: "Log", told: InspectOptions) -> None:
+def _show_events(log: "Log", options: InspectOptions) -> None:
     """Print what happens, in words."""
     from surefoot.scenarios.record.foxglove.views import events
     from surefoot.scenarios.show.console import print_table
 
-    if told.field is not None or told.export is not None:
-        option = "--field" if told.field is not None else "--export"
+    if options.field is not None or options.export is not None:
+        option = "--field" if options.field is not None else "--export"
         raise LogError(f"{option} is of topics with numbers; {EVENTS} has words, which --json gives for programs")
-    first, last = -math.inf if told.start is None else told.start, math.inf if told.end is None else told.end
+    first, last = (
+        -math.inf if options.start is None else options.start,
+        math.inf if options.end is None else options.end,
+    )
     found = list(events(log, first, last))
-    if told.as_json:
+    if options.as_json:
         typer.echo(json.dumps([one._asdict() for one in found], allow_nan=False))
         return
     rows = ((f"{one.time:.3f}", one.kind, one.text) for one in found)
@@ -215,7 +223,7 @@ def recover(
 
 @dataclass(frozen=True, slots=True)
 class ReplayOptions:
-    """What `surefoot replay` is told."""
+    """The arguments of `surefoot replay`."""
 
     log: Annotated[Path, typer.Argument(help="A log, also a truncated or growing one.")]
     html: Annotated[Path | None, typer.Option(help="Write one page that opens offline.")] = None
@@ -234,34 +242,36 @@ class ReplayOptions:
 
 @app.command()
 @with_options(ReplayOptions)
-def replay(told: ReplayOptions) -> None:
+def replay(options: ReplayOptions) -> None:
     """Show a log in 3D: as a page, as a video, in rerun or live."""
-    if (told.html is not None) + (told.video is not None) + (told.rrd is not None) + told.live != 1:
+    if (options.html is not None) + (options.video is not None) + (options.rrd is not None) + options.live != 1:
         raise typer.BadParameter("give one of --html FILE, --video FILE, --rrd FILE and --live")
-    if told.video is None and (told.speed, told.camera, told.size) != (1.0, "follow", "1280x720"):
+    if options.video is None and (options.speed, options.camera, options.size) != (1.0, "follow", "1280x720"):
         raise typer.BadParameter("--speed, --camera and --size are of a video; give them with --video FILE")
     from surefoot.scenarios.show.replay.content import ReplayWindow
 
-    window = ReplayWindow(told.start, told.end)
-    if told.html is not None:
+    window = ReplayWindow(options.start, options.end)
+    if options.html is not None:
         from surefoot.scenarios.show.replay.page import write_page
 
-        rate = write_page(told.log, told.html, window, told.force)
+        rate = write_page(options.log, options.html, window, options.force)
         if rate < window.frame_rate:
             right = "--from and --to choose a part that is shown at the full rate"
             typer.echo(f"note: the page shows {rate:.3g} pictures of a simulated second; {right}", err=True)
-        typer.echo(str(told.html))
-    elif told.video is not None:
+        typer.echo(str(options.html))
+    elif options.video is not None:
         from surefoot.scenarios.show.replay.video import Film, write_video
 
-        write_video(told.log, told.video, window, Film.of(told.speed, told.camera, told.size), told.force)
-        typer.echo(str(told.video))
-    elif told.rrd is not None:
+        write_video(
+            options.log, options.video, window, Film.of(options.speed, options.camera, options.size), options.force
+        )
+        typer.echo(str(options.video))
+    elif options.rrd is not None:
         from surefoot.scenarios.show.replay.rrd import write_rrd
 
-        write_rrd(told.log, told.rrd, window, told.force)
-        typer.echo(str(told.rrd))
+        write_rrd(options.log, options.rrd, window, options.force)
+        typer.echo(str(options.rrd))
     else:
         from surefoot.scenarios.show.replay.live import serve
 
-        serve(told.log, window, typer.echo)
+        serve(options.log, window, typer.echo)

@@ -36,7 +36,7 @@ TOLERANCE = 1e-6
 
 @dataclass(frozen=True, slots=True)
 class Comparison:
-    """What two logs, A and B, have in common and what not.
+    """The common parts and the differences of two logs, A and B.
 
     Attributes:
         a: path of the first log.
@@ -70,12 +70,12 @@ class Comparison:
 
     @property
     def identical(self) -> bool:
-        """Whether both hold the same run to the last bit, apart from what the wall clock wrote."""
+        """True if both hold the same run to the last bit, apart from what the wall clock wrote."""
         return self.agree and all(channel.same for channel in self.channels)
 
     @property
     def agree(self) -> bool:
-        """Whether both hold the same run, with values within the tolerance; not when something could not be read."""
+        """True if both hold the same run, with values within the tolerance; not when something could not be read."""
         return (
             not (self._described_apart or self.unread) and bool(self.channels) and all(c.agrees for c in self.channels)
         )
@@ -131,7 +131,7 @@ class Comparison:
 
 
 def compare(path_a: Path, path_b: Path, tolerance: float = TOLERANCE) -> tuple[Comparison, Log, Log]:
-    """Compare two logs, also truncated ones and ones of different versions; a tolerance as of `compare_channels`.
+    """Compare two logs, also truncated ones and ones of different versions, by a tolerance (`compare_channels`) [-].
 
     Returns:
         the comparison, and both logs.
@@ -178,16 +178,16 @@ def draw(found: Comparison, a: Log, b: Log, out: Path, replace: bool = False) ->
 
 
 def describe(channel: ChannelDifference) -> str:
-    """Say where a channel parts."""
+    """Describe the place where a channel parts."""
     at = channel.exact
     if at is None or (channel.only_one is not None and channel.only_one < at.time):
         if channel.only_one is None:
             return f"{channel.topic} does not part"
         return f"{channel.topic} at {channel.only_one:.3f} s: only one log has a message there"
-    return f"{channel.topic} {at.field} at {at.time:.3f} s: {' and '.join(told_apart(at.a, at.b))}"
+    return f"{channel.topic} {at.field} at {at.time:.3f} s: {' and '.join(distinct_texts(at.a, at.b))}"
 
 
-def told_apart(a: float, b: float) -> tuple[str, str]:
+def distinct_texts(a: float, b: float) -> tuple[str, str]:
     """Two numbers that differ, with five digits; where these are the same, by how much the second is more or less."""
     one, other = f"{a:.5g}", f"{b:.5g}"
     if one != other:
@@ -249,7 +249,7 @@ def _channels(channels: tuple[ChannelDifference, ...]) -> Iterator[tuple[str, ..
     """Times at which each channel parts, with the value that differs beyond the tolerance, or else by a bit."""
     for one in channels:
         shown = one.tolerated or one.exact
-        values = (shown.field, *told_apart(shown.a, shown.b)) if shown else ()
+        values = (shown.field, *distinct_texts(shown.a, shown.b)) if shown else ()
         counts = " / ".join(str(count) for count in dict.fromkeys(one.messages))
         times = ("identical", "-") if one.same else (_time(one.exact), _time(one.tolerated))
         yield one.topic, counts, *times, *values

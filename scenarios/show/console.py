@@ -1,4 +1,4 @@
-"""What a person sees: a progress line on standard error, tables on standard output, numbers in engineers' units."""
+"""Output for a person: a progress line on standard error, tables on standard output, numbers in engineers' units."""
 
 import sys
 import time
@@ -74,7 +74,7 @@ class TerminalLine:
 
 
 class ProgressLine(TerminalLine):
-    """How far a run is: simulated time, phase, real-time factor."""
+    """The progress of a run: simulated time, phase, real-time factor."""
 
     def __init__(self, title: str) -> None:
         def columns() -> "Iterable[ProgressColumn]":
@@ -130,7 +130,7 @@ def print_valueless(names: Collection[str]) -> None:
 
 def _health_lines(found: "Inspection") -> list[str]:
     """Every warning with its evidence, its relation to a fall and where to see it, and how many found nothing."""
-    lines, told, warnings = [], False, [one for one in found.health if one.status != "ok"]
+    lines, has_moment, warnings = [], False, [one for one in found.health if one.status != "ok"]
     for finding in warnings:
         when = "" if finding.time is None else f" from {finding.time:.3f} s on"
         value = "" if finding.value is None else f", value {finding.value:.4g}"
@@ -139,8 +139,8 @@ def _health_lines(found: "Inspection") -> list[str]:
         if finding.time is not None:
             moment = Moment(Path(found.log), finding.time)
             # The command that makes a replay is as long as the finding: that of the first one makes the replay of all.
-            lines += [f"  look at: {moment.link or moment.command}"] if moment.link or not told else []
-            told = True
+            lines += [f"  look at: {moment.link or moment.command}"] if moment.link or not has_moment else []
+            has_moment = True
     count = len(found.health)
     return [*lines, f"health: {count - len(warnings)} of {count} checks found nothing"]
 

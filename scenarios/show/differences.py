@@ -1,4 +1,4 @@
-"""Where two runs part, channel by channel, bit by bit and by a tolerance; and what their logs were made of."""
+"""Differences of two runs, channel by channel, bit by bit and by a tolerance; and of what their logs were made of."""
 
 from collections.abc import Callable, Collection, Iterator, Mapping, Sequence
 from dataclasses import dataclass
@@ -46,7 +46,7 @@ class FirstDifference:
 
 @dataclass(frozen=True, slots=True)
 class ChannelDifference:
-    """How one channel differs between two logs.
+    """The difference of one channel between two logs.
 
     Attributes:
         topic: of the channel.
@@ -66,12 +66,12 @@ class ChannelDifference:
 
     @property
     def same(self) -> bool:
-        """Whether the channels are the same to the last bit."""
+        """True if the channels are the same to the last bit."""
         return self.agrees and self.exact is None
 
     @property
     def agrees(self) -> bool:
-        """Whether they have the same messages, whose values are within the tolerance."""
+        """True if they have the same messages, whose values are within the tolerance."""
         parted = (self.tolerated, self.only_one)
         return parted == (None, None) and not self.layout and self.messages[0] == self.messages[1]
 
@@ -104,7 +104,7 @@ def compare_channels(a: Log, b: Log, tolerance: float) -> tuple[ChannelDifferenc
 
 
 def unreadable(log: Log, topics: tuple[str, ...]) -> tuple[str, ...]:
-    """Those of the topics whose messages are not of a fixed layout, so that they cannot be compared by field."""
+    """Topics whose messages are not of a fixed layout, so that they cannot be compared by field."""
     return tuple(topic for topic in topics if topic not in log.numeric)
 
 
@@ -163,7 +163,7 @@ class _Fold:
         self._exact, self._tolerated = self._exact or _earliest(exact), self._tolerated or _earliest(tolerated)
 
     def difference(self, topic: str, reach_ns: int) -> ChannelDifference:
-        """What was found, of logs that both reach up to a time [ns]."""
+        """The difference of logs that both reach up to a time [ns]."""
         alone = None if self._alone is None or self._alone >= reach_ns else self._alone * 1e-9
         counts = (self._messages[0], self._messages[1])
         return ChannelDifference(topic, counts, self._exact, self._tolerated, alone, self._layout)
@@ -193,7 +193,7 @@ def _numbered(times: NDArray[np.int64]) -> NDArray[np.void]:
 
 
 def _earliest(found: list[tuple[int, FirstDifference]]) -> FirstDifference | None:
-    """Of several fields that of the earliest row; of those that differ in one message the first one."""
+    """The difference of the earliest row among several fields; of those in one message the first one."""
     return min(found, key=itemgetter(0))[1] if found else None
 
 
@@ -219,7 +219,7 @@ def _bits_differ(a: NDArray[Any], b: NDArray[Any]) -> NDArray[np.bool_]:
 
 
 def _values_differ(a: NDArray[Any], b: NDArray[Any], tolerance: float) -> NDArray[np.bool_]:
-    """Where values are farther apart than the tolerance; what is no number agrees with itself alone."""
+    """Mark values that are farther apart than the tolerance; what is no number agrees with itself alone."""
     with np.errstate(invalid="ignore", over="ignore"):
         scale = np.maximum(1.0, np.maximum(np.abs(a), np.abs(b)))
         apart = ~(np.abs(a.astype(float) - b) <= tolerance * scale)

@@ -27,7 +27,7 @@ class Selection:
         log: that they are of.
         topic: theirs.
         start: time of the first ones, those of the log if None [s].
-        end: time of the last ones, likewise [s].
+        end: time of the last ones, those of the log if None [s].
         fields: that are asked for.
     """
 
@@ -57,7 +57,7 @@ class Joined:
 
     @property
     def fields(self) -> tuple[FieldSpec, ...]:
-        """Those of all topics."""
+        """Fields of all topics."""
         return tuple(field for one in self.selections for field in prefixed(one.topic, one.fields))
 
     def __iter__(self) -> Iterator[ChannelData]:

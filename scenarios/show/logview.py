@@ -47,7 +47,7 @@ PART = 60.0
 """Stretch of time of which the widest channels are held at once [s]."""
 
 FOOT_NAMES = ("left", "right")
-"""Of the feet, by their numbers."""
+"""Names of the feet, by their numbers."""
 
 LOADED = 0.05
 """Share of the weight from which a foot bears enough for its friction to tell something [-]."""
@@ -57,7 +57,7 @@ _GREATEST = 1e9
 
 
 class MissingError(Exception):
-    """What a figure needs and the log has not got; the message names it."""
+    """A part that a figure needs is missing in the log; the message names it."""
 
 
 class LogView:
@@ -109,7 +109,7 @@ class LogView:
             raise MissingError(f"{name} of the {RECORD}") from None
 
     def number(self, name: str) -> float:
-        """A constant that is a positive number; errors as of `constant`."""
+        """A constant that is a positive number; MissingError if the log does not carry it."""
         value = self.constant(name)
         if not isinstance(value, int | float) or not 0.0 < value < _GREATEST:
             raise MissingError(f"{name} of the {RECORD}")
@@ -140,7 +140,7 @@ class LogView:
         return values
 
     def at(self, topic: str, name: str, times: Array) -> Array:
-        """A scalar field interpolated to given times, shape (n,); errors as of `field`."""
+        """A scalar field interpolated to given times, shape (n,); MissingError if there is no such field."""
         return np.asarray(np.interp(times, self.time(topic), self.field(topic, name)))
 
     def from_stance(self, times: Array, points: Array) -> Array:
@@ -201,7 +201,7 @@ def _ends(time: Array, start: float | None, end: float | None) -> list[float]:
 
 
 def _nothing(log: Log, start: float | None, end: float | None) -> str:
-    """Say that a log, or a window of it, holds nothing to draw."""
+    """Message that a log, or a window of it, holds nothing to draw."""
     drawn = [topic for topic in DRAWN if topic in log.numeric and log.count(topic)]
     if not drawn or (start is None and end is None):
         return f"{log.path}: {_why(log)}; give a log that `surefoot run` has written"
@@ -227,7 +227,7 @@ _TOPICS_SAID = 5
 
 
 def _why(log: Log) -> str:
-    """Why nothing of a log can be drawn."""
+    """Reason why nothing of a log can be drawn."""
     filled = [topic for topic in log.topics if log.count(topic)]
     if not filled:
         return "holds no messages to draw"

@@ -1,4 +1,4 @@
-"""Where to look at a moment of a log: the replay beside it, opened at that time, or the command that makes one."""
+"""The way to a moment of a log: the replay beside it, opened at that time, or the command that makes one."""
 
 from dataclasses import dataclass
 from pathlib import Path
@@ -8,7 +8,7 @@ PAGE = "replay.html"
 """Name of a replay beside its log."""
 
 BEFORE, AFTER = 1.0, 0.5
-"""How much of the run a replay shows about a moment [s]."""
+"""Time that a replay shows about a moment [s]."""
 
 
 @dataclass(frozen=True, slots=True)
@@ -25,7 +25,7 @@ class Moment:
 
     @property
     def page(self) -> Path:
-        """Where the replay is, or would be."""
+        """Path of the replay, whether it is there or not."""
         return self.log.parent / PAGE
 
     @property

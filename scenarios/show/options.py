@@ -62,12 +62,12 @@ def settings(what: str) -> Any:
 
 
 def overrides(set_: list[str] | None, seed: int | None = None, policy: str | None = None) -> list[str]:
-    """What ``--policy``, ``--set`` and ``--seed`` say, as settings of keys."""
+    """Settings of keys by ``--policy``, ``--set`` and ``--seed``."""
     return [*seat(policy), *(set_ or ()), *([] if seed is None else [f"seed={seed}"])]
 
 
 def seat(policy: str | None) -> list[str]:
-    """What ``--policy`` says: the file or folder of a policy, or the name of a controller, that gets the seat."""
+    """Setting by ``--policy``: the file or folder of a policy, or the name of a controller, that gets the seat."""
     if policy is None:
         return []
     if not Path(policy).exists():

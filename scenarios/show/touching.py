@@ -1,4 +1,4 @@
-"""Which bodies of the robot touch each other in a run, by the states and the world of its log."""
+"""The bodies of the robot that touch each other in a run, by the states and the world of its log."""
 
 from typing import NamedTuple
 

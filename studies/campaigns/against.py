@@ -65,7 +65,7 @@ class Against:
 
     @property
     def worse(self) -> bool:
-        """Whether the mean has fallen by more than a twentieth, or the least by more than what the search tells.
+        """True if the mean has fallen by more than a twentieth, or the least by more than the search resolves.
 
         Worse is, too, what was above the whole range and is found within it or below: no mean has both.
         """
@@ -75,7 +75,7 @@ class Against:
         return mean[1] < (1.0 - FALLEN) * mean[0] or least[1] < least[0] - 1.5 * self.tolerance
 
     def lines(self) -> Iterator[str]:
-        """What has changed, for a person."""
+        """Lines on what has changed, for a person."""
         (mean, mean_now), (least, least_now) = self.means, self.worst
         yield f"mean {mean:.3f} -> {mean_now:.3f}, least {least:.3f} -> {least_now:.3f}"
         for one in self.moved:

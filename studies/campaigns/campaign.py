@@ -207,7 +207,7 @@ def _bases(campaign: Campaign, source: Source) -> dict[str, Base]:
 
 
 def _twice(campaign: Campaign) -> Iterator[Problem]:
-    """Tell keys that are varied in two ways, one of which would be lost."""
+    """Report keys that are varied in two ways, one of which would be lost."""
     spec, seen = campaign.spec, dict.fromkeys(("seed",), "seeds")
     varied = [("sample", tuple(spec.sample)), ("first", tuple(spec.first))]
     varied += [("grid", tuple({key for setting in axis for key in setting.keys})) for axis in campaign.axes.values()]
@@ -220,7 +220,7 @@ def _twice(campaign: Campaign) -> Iterator[Problem]:
 
 
 def _faults(campaign: Campaign) -> Iterator[Problem]:
-    """List what is wrong with keys or values alone; what several together cannot be is told by the run itself."""
+    """List what is wrong with keys or values alone; what several together cannot be is found by the run itself."""
     robots, origin = Robots(), campaign.spec.sized_for
     if origin is not None and not is_known(origin, robots):
         yield Problem(("sized_for",), f"unknown robot '{origin}' in sized_for", nearest(origin, robots.names()))
@@ -259,7 +259,7 @@ def _ends(spec: Spec, which: int) -> dict[str, Any]:
 
 
 def _searched(spec: Spec) -> dict[str, Key]:
-    """Where the keys that are drawn or searched stand."""
+    """Places of the keys that are drawn or searched."""
     places: dict[str, Key] = {key: ("sample", key) for key in spec.sample}
     places |= {key: ("first", key) for key in spec.first}
     if spec.bisect is not None:
@@ -296,7 +296,7 @@ def _of_point(
 
 
 def _concerns(setting: str, key: Key) -> bool:
-    """Whether a problem's key is what a setting sets, or a part of it, or the other way round."""
+    """Return true if a problem's key is what a setting sets, or a part of it, or the other way round."""
     path = tuple(setting.split("."))
     found = tuple(map(str, key))
     return path[: len(found)] == found or found[: len(path)] == path

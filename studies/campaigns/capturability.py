@@ -34,10 +34,10 @@ LIMIT_NOTE = (
     "in a run of the same kind, by its log. Turning the torso and a second step are not in it; a threshold beyond it "
     "uses one of these."
 )
-"""What a page says of the limit."""
+"""Note on the limit, for a page."""
 
 _TICK = 1e-6
-"""Of two times nearer than this, neither is earlier [s]."""
+"""Difference of times below which neither is earlier [s]."""
 
 _EVERY, _LATER = 0.02, 0.2
 """Spacing of the times at which a foot is tried to land, and by how much that may be after the clock's [s]."""
@@ -156,7 +156,7 @@ class Limits:
                 self._moments[name] = moment
 
     def __bool__(self) -> bool:
-        """Whether there is any."""
+        """Return true if there is any."""
         return bool(self._moments)
 
     def at(self, labels: Mapping[str, Any], direction: float | None) -> float | None:

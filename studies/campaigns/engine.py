@@ -1,4 +1,4 @@
-"""What makes the runs of a campaign: processes on this machine, or the machines of a dask.distributed cluster."""
+"""The engine of a campaign's runs: processes on this machine, or the machines of a dask.distributed cluster."""
 
 import asyncio
 import shutil
@@ -24,7 +24,7 @@ from surefoot.studies.campaigns.journal import LOGS, OF_A_MACHINE, SCRATCH, Made
 from surefoot.studies.campaigns.points import Point, Record
 
 TRIES = 2
-"""How often a run is begun whose process dies."""
+"""Number of times that a run whose process dies is begun."""
 
 
 class Worker(Protocol):
@@ -87,7 +87,7 @@ class LocalWorker:
         folder: the campaign's directory.
         keep_all: whether the logs of all runs are kept.
         make: makes an executor with one worker.
-        work: that it does, as `perform`.
+        work: that it does, with the arguments of `perform`.
     """
 
     def __init__(
@@ -121,17 +121,17 @@ class LocalWorker:
 
 
 def local_workers(folder: Path, jobs: int, keep_all: bool) -> list[Worker]:
-    """Processes on this machine; arguments as of `LocalWorker`."""
+    """Processes on this machine, so many, for a campaign's folder; `keep_all` keeps the logs of all runs."""
     with interrupts_ignored():
         return [LocalWorker(folder, keep_all) for _ in range(jobs)]
 
 
 PATIENCE = 10.0
-"""How long a cluster may take to answer [s]."""
+"""Time that a cluster may take to answer [s]."""
 
 
 class Away(NamedTuple):
-    """What comes back from another machine: what became of a run, what made it, and the files of its folder."""
+    """The result of a run on another machine: what became of it, what made it, and the files of its folder."""
 
     record: Record
     made_by: str
@@ -139,7 +139,7 @@ class Away(NamedTuple):
 
 
 def perform_away(point: Point, keep_all: bool) -> Away:
-    """Make a run on a machine that shares no disk with the one that asks; arguments as of `perform`."""
+    """Make a run on a machine that shares no disk with the one that asks; `keep_all` keeps the log of any run."""
     made_by = MadeOf().of(point, anywhere=True)
     with tempfile.TemporaryDirectory(prefix="surefoot-") as folder:
         record = perform(point, Path(folder) / "run", Path(folder) / LOGS, keep_all)

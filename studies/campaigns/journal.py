@@ -1,4 +1,4 @@
-"""What a campaign's directory holds: every result as soon as it is there, and the logs that are kept."""
+"""The directory of a campaign: every result as soon as it is there, and the logs that are kept."""
 
 import contextlib
 import fcntl
@@ -138,7 +138,7 @@ _RECORD = TypeAdapter(Record)
 
 
 class Journal:
-    """The results of a campaign, one line each, of which a killed process loses none that was told.
+    """The results of a campaign, one line each, of which a killed process loses none that was reported.
 
     Results of other versions, other code or another robot than those that run now are passed over, and made anew. So is
     one whose log is gone or cut.
@@ -253,7 +253,7 @@ class Journal:
 
 
 def outcome_of(cell: Searched, journal: Journal, made: Callable[[Point], bool] = lambda _: True) -> Outcome:
-    """What became of a cell by the results of a journal; ``made`` says of each run before whether to go on."""
+    """Outcome of a cell by the results of a journal; ``made`` says of each run before whether to go on."""
     runs: list[tuple[Point, Record]] = []
     search = cell.search()
     try:

@@ -51,7 +51,7 @@ class Point:
 
 @dataclass(frozen=True, slots=True)
 class Record:
-    """What became of a run.
+    """The result of a run.
 
     Attributes:
         id: of its point.
@@ -77,7 +77,7 @@ Side = Literal["inside", "below", "above"]
 
 @dataclass(frozen=True, slots=True)
 class Threshold:
-    """Where a search ended.
+    """The end of a search.
 
     Attributes:
         value: largest value up to which everything passed (ladder), or the end of the last range that passed (halving);
@@ -125,9 +125,9 @@ class Cell:
         own = {key: value for key, value in self.keys.items() if not key.startswith(SEARCH)}
         settings = {**own, **drawn, **searched}
         base = self.campaign.bases[str(settings.pop(SCENARIO, spec.scenario))]
-        told = {**self.labels, **searched, "seed": seed}
+        parts = {**self.labels, **searched, "seed": seed}
         labels = {**self.labels, **drawn, **searched, "seed": seed}
-        return Point(base, {**settings, "seed": seed}, labels, _folder(told))
+        return Point(base, {**settings, "seed": seed}, labels, _folder(parts))
 
 
 class Searched(Protocol):
@@ -152,7 +152,7 @@ class Single:
 
 @dataclass(frozen=True, slots=True)
 class Outcome:
-    """What became of a cell.
+    """The outcome of a cell.
 
     Attributes:
         cell: that was run.
@@ -189,7 +189,7 @@ def draw_value(draw: Draw, campaign_seed: int, key: str, seed: int) -> Any:
 
 
 def _passes(cell: Cell, bisect: Bisect, value: float) -> Generator[Point, Record, bool]:
-    """Whether every seed passes; the first that does not decides."""
+    """Return true if every seed passes; the first that does not decides."""
     for seed in cell.seeds:
         record = yield cell.point(seed, {bisect.key: value})
         if record.status != "pass":
@@ -208,7 +208,7 @@ def _climb(cell: Cell, bisect: Bisect) -> Search:
 
 
 def _halve(cell: Cell, bisect: Bisect) -> Search:
-    """Where passing turns into failing, or failing into passing."""
+    """Search where passing turns into failing, or failing into passing."""
     assert bisect.tolerance is not None
     low, high = bisect.low, bisect.high
     at_low = yield from _passes(cell, bisect, low)
@@ -233,12 +233,12 @@ def _yaml(value: Any) -> str:
 
 def _folder(labels: Mapping[str, Any]) -> str:
     """A name of a folder that every file system takes; where it does not tell all of the labels, their digest does."""
-    told = [(name.rpartition(".")[2], str(value)) for name, value in labels.items()]
-    safe = [(_safe(name), _safe(value)) for name, value in told]
+    parts = [(name.rpartition(".")[2], str(value)) for name, value in labels.items()]
+    safe = [(_safe(name), _safe(value)) for name, value in parts]
     text = ",".join(f"{name}={value}" for name, value in safe)
-    if safe == told and len(text) <= 120:
+    if safe == parts and len(text) <= 120:
         return text
-    return f"{text[:100]}-{hashlib.sha256(str(told).encode()).hexdigest()[:12]}"
+    return f"{text[:100]}-{hashlib.sha256(str(parts).encode()).hexdigest()[:12]}"
 
 
 def _safe(text: str) -> str:

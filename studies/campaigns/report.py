@@ -122,14 +122,14 @@ def _failures(swept: "Swept", runs: Runs, most: int) -> str:
 
 
 def kind_of(record: Record) -> str:
-    """What a run ended by: the metric of the first criterion that it missed, or its status."""
+    """Kind of a run's end: the metric of the first criterion that it missed, or its status."""
     if record.status != "fail" or not record.reasons:
         return record.status
     return record.reasons[0].split()[0].rstrip(":,;")
 
 
 def _again(swept: "Swept", point: Point, record: Record, most: int | None = None) -> str:
-    """Why a run did not pass, by at most so many reasons, its log, and how to make it again."""
+    """Reasons why a run did not pass, at most so many, its log, and how to make it again."""
     log = f" {tag('a', 'log', href=quote(record.log))}" if record.log and (swept.folder / record.log).exists() else ""
     command = details("command", tag("code", escape(point.command), kind="command"))
     return escape("; ".join(record.reasons[:most])) + log + command

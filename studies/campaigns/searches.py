@@ -1,4 +1,4 @@
-"""Where the searches of a campaign ended: their section of its page."""
+"""The ends of a campaign's searches: their section of its page."""
 
 from collections.abc import Sequence
 from typing import TYPE_CHECKING, Protocol
@@ -15,10 +15,10 @@ if TYPE_CHECKING:
 
 
 class Again(Protocol):
-    """Tells, as HTML, why a run did not pass, by so many reasons, and how to make it again."""
+    """A text in HTML on a run that did not pass: so many reasons, and the command that makes it again."""
 
     def __call__(self, swept: "Swept", point: Point, record: Record, most: int | None = None) -> str:
-        """Tell it."""
+        """Write the reasons of a run, and the command that makes it again."""
         ...
 
 
@@ -70,7 +70,7 @@ _BEYOND = " lie beyond the end of the searched range."
 
 
 def _searches(swept: "Swept") -> list[tuple[Found, Runs]]:
-    """Where every search ended that came to its end, with its runs."""
+    """The end of every search that came to its end, with its runs."""
     found: list[tuple[Found, Runs]] = []
     for outcome in swept.outcomes:
         cell = outcome.cell

@@ -3,10 +3,10 @@
 from pathlib import Path
 
 ENDING = ".yaml"
-"""Of specifications."""
+"""Ending of specifications."""
 
 
 def shipped() -> dict[str, Path]:
-    """Their files, by name."""
+    """Files of the specifications, by name."""
     folder = Path(__file__).parent / "campaigns"
     return {path.name.removesuffix(ENDING): path for path in sorted(folder.glob(f"*{ENDING}"))}

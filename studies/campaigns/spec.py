@@ -142,7 +142,7 @@ class Spec(Group):
 
 
 MOST_PANELS = 12
-"""Of a figure; the tables have all."""
+"""Most panels of a figure; the tables have all."""
 
 
 class Axis(NamedTuple):
@@ -153,7 +153,7 @@ class Axis(NamedTuple):
 
     @property
     def numeric(self) -> bool:
-        """Whether its values are numbers that an axis can have."""
+        """True if its values are numbers that an axis can have."""
         return all(is_number(value) and abs(value) <= MOST for value in self.values)
 
     @property
@@ -174,7 +174,7 @@ def angle_of(axes: Sequence[Axis]) -> Axis | None:
 
 
 def is_around(axes: Sequence[Axis]) -> bool:
-    """Whether thresholds are drawn around the compass."""
+    """Return true if thresholds are drawn around the compass."""
     angle = angle_of(axes)
     return angle is not None and len(angle.values) > 2
 

@@ -1,4 +1,4 @@
-"""Which runs of a campaign met their criteria: their rates, and how what was drawn and measured spread."""
+"""The success of a campaign's runs: rates of those that met their criteria, and spreads of what was measured."""
 
 from collections.abc import Callable, Iterable, Iterator, Sequence
 from itertools import pairwise
@@ -91,12 +91,12 @@ def rate_of(judged: Runs) -> SuccessRate:
 
 
 def passed_of(judged: Runs) -> int:
-    """How many met their criteria."""
+    """Number of runs that met their criteria."""
     return sum(record.status == "pass" for _, record in judged)
 
 
 def _drawn(key: str, choice: bool, judged: Runs) -> Histogram:
-    """What was drawn; of a choice by its words."""
+    """Histogram of what was drawn; of a choice by its words."""
     return _spread(with_unit(key), judged, lambda run: [text(run[0].labels[key]) if choice else run[0].labels[key]])
 
 

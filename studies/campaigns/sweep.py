@@ -21,8 +21,8 @@ from surefoot.studies.campaigns.points import Outcome, Point, Record, Runs, RunS
 from surefoot.studies.campaigns.table import (
     has_parquet,
     runs_table,
+    threshold_lines,
     thresholds_table,
-    thresholds_told,
     wilson,
     write_table,
 )
@@ -36,7 +36,7 @@ STATUSES: tuple[RunStatus, ...] = get_args(RunStatus)
 
 
 class CampaignBar(TerminalLine):
-    """How far a campaign is: how many are done, how many failed, how long the rest takes.
+    """The progress of a campaign: how many are done, how many failed, how long the rest takes.
 
     Args:
         total: number of cells.
@@ -85,27 +85,28 @@ def run_cells(
         cells: to run.
         journal: gets every result.
         workers: that make the runs.
-        on_run: is told each new result.
-        on_cell: is told that a cell is done.
+        on_run: called with each new result.
+        on_cell: called when a cell is done.
 
     Raises:
         InterruptedRunsError: Ctrl-C; runs under way were brought to their end first, unless it came twice.
         LogError: a result could not be written down.
     """
-    told: queue.SimpleQueue[_News] = queue.SimpleQueue()
+    news_queue: queue.SimpleQueue[_News] = queue.SimpleQueue()
     left: queue.SimpleQueue[Searched] = queue.SimpleQueue()
     for cell in cells:
         left.put(cell)
     stop = threading.Event()
     slots = [
-        threading.Thread(target=_slot, args=(worker, left, journal, told, stop), daemon=True) for worker in workers
+        threading.Thread(target=_slot, args=(worker, left, journal, news_queue, stop), daemon=True)
+        for worker in workers
     ]
     running = len(slots)
     try:
         for slot in slots:
             slot.start()
         while running:
-            news = told.get()
+            news = news_queue.get()
             if isinstance(news, Exception):
                 raise news
             if isinstance(news, Record):
@@ -128,14 +129,14 @@ def run_cells(
 
 
 _News = Record | Exception | Literal["cell", "end"]
-"""What a slot tells: a result, what went wrong, that a cell is done, that it has nothing more to do."""
+"""News of a slot: a result, what went wrong, that a cell is done, that it has nothing more to do."""
 
 
 def _slot(
     worker: Worker,
     left: "queue.SimpleQueue[Searched]",
     journal: Journal,
-    told: "queue.SimpleQueue[_News]",
+    news_queue: "queue.SimpleQueue[_News]",
     stop: threading.Event,
 ) -> None:
     """Take one cell after the other that is left, and have what has no result run."""
@@ -146,20 +147,20 @@ def _slot(
                 return False
             record = worker(point)
             journal.add(point, record)
-            told.put(record)
+            news_queue.put(record)
         found = journal.said(point)
         return found is not None and found.status != "broken"
 
     try:
         while not stop.is_set():
             outcome_of(left.get_nowait(), journal, made)
-            told.put("cell")
+            news_queue.put("cell")
     except queue.Empty:
         pass
     except Exception as error:
-        told.put(error)
+        news_queue.put(error)
     finally:
-        told.put("end")
+        news_queue.put("end")
 
 
 @dataclass(frozen=True, slots=True)
@@ -190,21 +191,21 @@ class Swept:
 
     @property
     def records(self) -> tuple[Record, ...]:
-        """What became of every run."""
+        """Results of every run."""
         return tuple(record for _, record in self.runs)
 
     def count(self, status: str) -> int:
-        """How many runs ended so."""
+        """Number of runs that ended so."""
         return sum(record.status == status for record in self.records)
 
     @property
     def complete(self) -> bool:
-        """Whether every cell has a result."""
+        """True if every cell has a result."""
         return all(outcome.complete for outcome in self.outcomes)
 
     @property
     def ran(self) -> bool:
-        """Whether any run was accepted."""
+        """True if any run was accepted."""
         return self.count("pass") + self.count("fail") > 0
 
     @property
@@ -214,7 +215,7 @@ class Swept:
         return tuple(path for path in (self.folder / name for name in (PAGE, *tables)) if path.exists())
 
     def repeats(self) -> Iterator[str]:
-        """What is to be known of runs that only repeat another, a sentence if there are any."""
+        """Note on runs that only repeat another, a sentence if there are any."""
         runs, facts = len(self.runs), len(self.facts)
         if facts < runs:
             then = "they count once" if self.campaign.spec.bisect is None else "more seeds find no other threshold"
@@ -222,7 +223,7 @@ class Swept:
             yield f"{alike}, since nothing in them is random; {then}"
 
     def notes(self) -> Iterator[str]:
-        """What is to be known beside the result, a sentence each."""
+        """Notes on the result, a sentence each."""
         yield from self.repeats()
         if self.stale:
             others = "of another robot, another code or other versions, or lacked their log"
@@ -244,7 +245,7 @@ class Swept:
             judged = [record.status for _, record in self.facts if record.status in ("pass", "fail")]
             rate = wilson(judged.count("pass"), len(judged))
             yield f"success rate {100 * rate.rate:.1f} %, 95 % interval {rate.between} %"
-        yield from thresholds_told(self.outcomes)
+        yield from threshold_lines(self.outcomes)
         yield from map(str, reversed(self.files))
 
     def to_json(self) -> dict[str, Any]:

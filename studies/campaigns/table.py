@@ -20,7 +20,7 @@ from surefoot.studies.campaigns.spec import described, text
 
 TableValue = bool | int | float | str | None
 _MOST_WHOLE = 2**63 - 1
-"""What a column of whole numbers can hold."""
+"""Greatest number that a column of whole numbers can hold."""
 
 
 @dataclass(frozen=True, slots=True)
@@ -135,7 +135,7 @@ MOST_THRESHOLDS = 48
 """Thresholds that are printed; the files have all."""
 
 
-def thresholds_told(outcomes: Sequence[Outcome]) -> Iterator[str]:
+def threshold_lines(outcomes: Sequence[Outcome]) -> Iterator[str]:
     """Lines of a table for a person: what varies and the threshold of each search, with units, if it searches."""
     table = thresholds_table(outcomes)
     if not table.columns:
@@ -208,7 +208,7 @@ def write_table(table: Table, path: Path) -> list[Path]:
 
 
 def has_parquet() -> bool:
-    """Whether parquet can be written here."""
+    """Return true if parquet can be written here."""
     return importlib.util.find_spec("pyarrow") is not None
 
 

@@ -27,12 +27,12 @@ from surefoot.studies.campaigns.spec import (
 )
 
 ROUND = {0.0: "forward", 0.25: "", 0.5: "left", 0.75: "", 1.0: "backward", 1.25: "", 1.5: "right", 1.75: ""}
-"""What directions are called, by their angle from the world's x axis [pi rad]."""
+"""Names of directions, by their angle from the world's x axis [pi rad]."""
 LIMIT_NAME = "one-step capturability limit"
 MOST_COLUMNS, ROW = 4, 2.3
 """Panels of bars beside each other, and the height of one [in]."""
 SHARE = 0.84
-"""Of the way from group to group that bars fill."""
+"""Share of the way from group to group that bars fill."""
 MARKS = "D^svPX"
 
 LimitOf = Callable[[Mapping[str, Any], float | None], float | None]
@@ -40,7 +40,7 @@ LimitOf = Callable[[Mapping[str, Any], float | None], float | None]
 
 
 class Found(NamedTuple):
-    """Where a search of some labels, by axis, ended in its range, low and high."""
+    """The end of a search of some labels, by axis, in its range, low and high."""
 
     labels: Mapping[str, Any]
     threshold: Threshold
@@ -55,7 +55,7 @@ class Found(NamedTuple):
 
     @property
     def beyond(self) -> bool:
-        """Whether it lies beyond an end of the range, so that its mark is hollow."""
+        """True if it lies beyond an end of the range, so that its mark is hollow."""
         return self.threshold.side != "inside"
 
 
@@ -142,7 +142,7 @@ def _grouped(found: Sequence[Found], axes: Sequence[Axis]) -> list[tuple[str, li
 
 
 def are_named(axes: Sequence[Axis]) -> bool:
-    """Whether thresholds are drawn as bars: no axis is of numbers."""
+    """Return true if thresholds are drawn as bars: no axis is of numbers."""
     return len(axes) > 1 and not any(axis.numeric for axis in axes)
 
 
@@ -172,7 +172,7 @@ def bars(
 
 
 def _is_of(labels: Mapping[str, Any], panel: Mapping[str, Any], partly: bool = False) -> bool:
-    """Whether labels are those of a panel; partly where what they do not name does not matter."""
+    """Return true if labels are those of a panel; partly where what they do not name does not matter."""
     return all(str(labels.get(name, value if partly else None)) == str(value) for name, value in panel.items())
 
 
@@ -186,7 +186,7 @@ def _width(shades: Axis) -> float:
 
 
 def _place(one: Found, shades: Axis, groups: Axis) -> float:
-    """Of the middle of a bar."""
+    """Middle of a bar."""
     shade = shades.values.index(one.labels[shades.name])
     group = groups.values.index(one.labels[groups.name])
     return float(group + _width(shades) * (shade - 0.5 * (len(shades.values) - 1)))
@@ -204,7 +204,7 @@ def _draw_searches(axes: Axes, found: Sequence[Found], shades: Axis, groups: Axi
 
 
 def _draw_limits(axes: Axes, top: float, limits: Sequence[tuple[float, float | None]], shades: Axis) -> None:
-    """Draw limits across their bars, in axes that end where all else does or not far above; beyond, they are told."""
+    """Draw limits across their bars, in axes that end with all else or not far above; those beyond are written."""
     known = [(at, most) for at, most in limits if most is not None]
     top = max([top, *(1.06 * most for _, most in known if most <= 1.5 * top)])
     beyond = [(at, most) for at, most in known if most > top]
@@ -230,7 +230,7 @@ def _draw_published(axes: Axes, records: Sequence[Published], groups: Axis, mark
 
 
 def _handles(every: Sequence[Axes], shades: Axis, marks: Mapping[str, str]) -> list[Any]:
-    """What the legend shows, of what is drawn."""
+    """Handles of the legend, of what is drawn."""
     drawn = {str(line.get_label()): line for one in every for line in one.lines}
     handles: list[Any] = [Patch(color=_shade(shades, value), label=text(value)) for value in shades.values]
     if LIMIT_NAME in drawn:

@@ -42,7 +42,7 @@ SAMPLE_TIME, _ROUNDING = 0.02, 1e-6
 
 
 class Assessment(NamedTuple):
-    """What the point-mass worlds and full physics show of a claim, in a sentence each, and the verdict by its rule."""
+    """The evidence of point-mass worlds and full physics on a claim, in a sentence each, with the verdict."""
 
     pendulum: str
     full: str
@@ -82,7 +82,7 @@ def grade(printed: bool | None, changed: bool | None, full: bool | None = None) 
 
 
 def stable(samples: Iterable[Sample], margin: float = FOOT_EDGE) -> bool | None:
-    """Whether no run fell and the ZMP stayed inside the planned support, in all runs.
+    """True if no run fell and the ZMP stayed inside the planned support, in all runs.
 
     Args:
         samples: of which every run counts.
@@ -100,14 +100,14 @@ def stable(samples: Iterable[Sample], margin: float = FOOT_EDGE) -> bool | None:
 
 
 def any_of(verdicts: Sequence[bool | None]) -> bool | None:
-    """Whether one of some holds; None when that is not known."""
+    """True if one of some holds; None when that is not known."""
     if any(verdicts):
         return True
     return None if None in verdicts else False
 
 
 def survival(results: Results, points: Sequence[Study], full: Sequence[Study], margin: float) -> Assessment:
-    """Whether the robot stays up and its ZMP inside, as printed, changed and in full physics."""
+    """Assess whether the robot stays up and its ZMP inside, as printed, changed and in full physics."""
     printed, *changed = ([results.sample(study, profile) for study in points] for profile in studies.CLAIMANTS)
     plant = [sample for study in points if (sample := results.sample(study, "paper", "cart-table")).outcomes]
     body = [results.sample(study, "default", "full") for study in full]
@@ -117,7 +117,7 @@ def survival(results: Results, points: Sequence[Study], full: Sequence[Study], m
 
 
 def hard_constraint(results: Results) -> Assessment:
-    """Whether the constrained problem had a solution at every plan."""
+    """Assess whether the constrained problem has a solution at every plan."""
     samples, body = (results.of(studies.WALK, "paper", "repaired", world=world) for world in _POINT_AND_BODY)
     printed, changed = (
         None if share is None or not sample.complete else share.least >= 1.0
@@ -129,12 +129,12 @@ def hard_constraint(results: Results) -> Assessment:
 
 def _feasible_text(samples: Iterable[Sample]) -> str:
     shares = {sample.profile: sample.feasible for sample in samples}
-    told = {name: f"{spread_text(share, PERCENT)} % of plans feasible" for name, share in shares.items() if share}
-    return "; ".join(f"{name}: {told.get(name, 'not measured')}" for name in shares)
+    texts = {name: f"{spread_text(share, PERCENT)} % of plans feasible" for name, share in shares.items() if share}
+    return "; ".join(f"{name}: {texts.get(name, 'not measured')}" for name in shares)
 
 
 def zmp_filter(results: Results) -> Assessment:
-    """Whether a Kalman filter that sees the ZMP alone gives a state that can be walked with."""
+    """Assess whether a Kalman filter that sees the ZMP alone gives a state that can be walked with."""
     alone, both = (results.of(study, "repaired", "default") for study in (studies.ZMP_ONLY, studies.NOISE_ALONE))
     rows = [f"ZMP alone, {balance_text([sample])}" for sample in alone]
     rows += [f"with the CoM, {balance_text([sample])}" for sample in both]
@@ -144,7 +144,7 @@ def zmp_filter(results: Results) -> Assessment:
 
 
 def frontal_effect(results: Results) -> Assessment:
-    """Whether a wrong CoM height moves the ZMP more in the frontal than in the sagittal plane."""
+    """Assess whether a wrong CoM height moves the ZMP more in the frontal than in the sagittal plane."""
     points = {profile: _height_effect(results, profile, "pendulum") for profile in ("repaired", "default")}
     body = _height_effect(results, "default", "full")
     known = [effect for effect in points.values() if effect is not None]
@@ -177,7 +177,7 @@ def _effect_text(name: str, effect: tuple[float, float] | None) -> str:
 
 
 def preview(results: Results) -> Assessment:
-    """Whether previewing the changing dynamics lowers the ZMP error."""
+    """Assess whether previewing the changing dynamics lowers the ZMP error."""
     points = {study: _gain(results, study, "pendulum") for study in (studies.WALK, *studies.STAIRS)}
     body = {study: _gain(results, study, "full") for study in (studies.WALK, *studies.STAIRS[:2])}
     verdict: Grade = "not measured"
@@ -189,7 +189,7 @@ def preview(results: Results) -> Assessment:
 
 
 def _gain(results: Results, study: Study, world: PaperWorld) -> tuple[float, bool] | None:
-    """How many times lower the ZMP error is with preview, and whether the ranges over seeds lie apart."""
+    """Factor by which preview lowers the ZMP error, and true if the ranges over seeds lie apart."""
     samples = results.of(study, "lti", "default", world=world)
     without, previewed = (sample.error_norms for sample in samples)
     if not without or not previewed or not all(sample.complete for sample in samples):
@@ -203,7 +203,7 @@ def _gains_text(gains: Mapping[Study, tuple[float, bool] | None]) -> str:
 
 
 def adaptation(results: Results) -> Assessment:
-    """Whether moving the next footstep lets the robot survive stronger pushes; by the printed law, whether it walks."""
+    """Assess whether moving the next footstep lets the robot survive stronger pushes; and by the printed law, walk."""
     law = results.sample(studies.STEP_LAW, "paper")
     fixed, moved = (_largest_mean(results, kind) for kind in ("none", "location"))
     if fixed is None or moved is None:
@@ -225,7 +225,7 @@ def _largest_mean(results: Results, kind: str) -> float | None:
 
 
 def online(results: Results) -> Assessment:
-    """Whether a plan is made within a sample time."""
+    """Assess whether a plan is made within a sample time."""
     points, body = results.of(studies.WALK, *studies.CLAIMANTS), results.sample(studies.WALK, "default", "full")
     medians = [sample.greatest("planner_time", "median") for sample in (points[0], body)]
     known = [median for median in medians if median is not None]
@@ -243,7 +243,7 @@ def _plan_time_text(sample: Sample) -> str:
 
 
 def saving(results: Results, metric: str, name: str) -> Assessment:
-    """Whether stretched knees take less effort, by a metric and its name, than bent ones at the same speed."""
+    """Assess whether stretched knees take less effort, by a metric and its name, than bent ones at the same speed."""
     found = {gait: _saving(results, gait, metric) for gait in studies.GAITS}
     parts = [f"{gait} gait {_share_text(saved)}" for gait, saved in found.items()]
     text = f"{name}, stretched against bent knees: {', '.join(parts)}"
@@ -270,7 +270,7 @@ def _share_text(saved: float | None) -> str:
 
 
 def stretched_knees(results: Results) -> Assessment:
-    """Whether the robot walks with mostly stretched knees."""
+    """Assess whether the robot walks with mostly stretched knees."""
     samples = {gait: results.sample(knee_study(gait, "stretched"), "default", "full") for gait in studies.GAITS}
     angles = {gait: sample.median("knee_angle_mean") for gait, sample in samples.items() if sample.complete}
     found = {gait: angle for gait, angle in angles.items() if angle is not None}
@@ -300,7 +300,7 @@ JUDGES: Mapping[str, Callable[[Results], Assessment]] = {
     "torque": partial(saving, metric="knee_torque_rms", name="knee torque RMS"),
     "energy": partial(saving, metric="cost_of_transport", name="cost of transport"),
 }
-"""Those of knees and energy, which stand last, are judged in full physics: a pendulum has no knees."""
+"""Claims, of which those of knees and energy, which stand last, are judged in full physics: a pendulum has no knees."""
 
 
 def claims() -> tuple[Claim, ...]:

@@ -146,7 +146,7 @@ def zmp_of_several(axes: Axes, views: Views, axis: int) -> None:
 def _along(
     axes: Axes, view: LogView, field: tuple[str, str], axis: int, label: str, color: palette.Color, **style: Any
 ) -> None:
-    """Draw an axis of a field of three, which is told by its topic and its name."""
+    """Draw an axis of a field of three, given by its topic and its name."""
     kit.curve(axes, view.time(field[0]), view.field(*field, 3)[:, axis], label, color, POINTS, **style)
 
 
@@ -265,4 +265,4 @@ PLATES: Mapping[str, Callable[[Results], Figure]] = {
     "figure-height": _heights,
     **{f"figure-push-{run[0]}": partial(_pushes, run=run) for run in SIDE_BY_SIDE},
 }
-"""What draws each figure, by its anchor; where it stands and what is said of it, `sections.yaml` tells."""
+"""Functions that draw each figure, by its anchor; `sections.yaml` has its place and its text."""

@@ -78,7 +78,7 @@ def judged(results: Results) -> Judged:
 
 
 Columns = tuple[tuple[str, str, int | None, float], ...]
-"""Of a table that shows metrics: heading, metric, element of it, None for the whole, and factor of what is shown."""
+"""Columns of a table of metrics: heading, metric, element of it, None for the whole, and factor of what is shown."""
 
 _BALANCE: Columns = (
     ("ZMP error RMS x [mm]", "zmp_error_rms", 0, MM),
@@ -137,7 +137,7 @@ def knee_table(results: Results) -> PageTable:
 
 
 def shove_table(results: Results) -> PageTable:
-    """What was survived of strong pushes, with and without adaptation of the footsteps."""
+    """Table of strong pushes that were survived, with and without adaptation of the footsteps."""
     head = ("adaptation of footsteps", *(f"{direction} [N s]" for direction in studies.SHOVE_DIRECTIONS))
     rows = [
         (
@@ -198,7 +198,7 @@ _BALANCES: dict[str, tuple[str, tuple[Study, ...]]] = {
 
 
 Plates = Mapping[str, Callable[[Results], Figure]]
-"""What draws figures, by their anchors; those that it has not got are left out."""
+"""Functions that draw figures, by their anchors; those that it has not got are left out."""
 
 
 def page(results: Results, plates: Plates = PLATES) -> str:
@@ -216,7 +216,7 @@ def page(results: Results, plates: Plates = PLATES) -> str:
 
 
 def tally(claims: Judged) -> dict[Grade, int]:
-    """How many claims have which verdict."""
+    """Number of claims for each verdict."""
     counts = Counter(finding.verdict for _, finding in claims)
     return {verdict: counts[verdict] for verdict in _KINDS}
 

@@ -1,4 +1,4 @@
-"""What the logs of the experiments say, run by run and over seeds, in numbers and in phrases."""
+"""The results of the experiments by their logs, run by run and over seeds, in numbers and in phrases."""
 
 import math
 import statistics
@@ -24,12 +24,12 @@ from surefoot.studies.paper import studies
 from surefoot.studies.paper.studies import Experiment, PaperWorld, Study
 
 ENDED = ("completed", "fall")
-"""How a run ends that is a result; a fall is one."""
+"""Ends of a run that are a result; a fall is one."""
 
 
 @dataclass(frozen=True, slots=True)
 class ExperimentResult:
-    """What became of an experiment.
+    """The result of an experiment.
 
     Attributes:
         experiment: that was run.
@@ -49,12 +49,12 @@ class ExperimentResult:
 
     @property
     def fell(self) -> bool:
-        """Whether the robot did."""
+        """True if the robot fell."""
         return bool(self.metrics.get("fell"))
 
     @property
     def end(self) -> str:
-        """How it ended, in a phrase."""
+        """End of the run, in a phrase."""
         if self.failure:
             return "could not run"
         if self.fell:
@@ -75,9 +75,9 @@ def run_experiments(
         InterruptedRunsError: Ctrl-C; what was run is kept.
     """
     points = {one: _point(one) for one in experiments}
-    told = (bar.run, bar.cell) if bar is not None else ()
+    callbacks = (bar.run, bar.cell) if bar is not None else ()
     with Journal(folder, keep_all=True) as journal:
-        run_cells(map(Single, points.values()), journal, workers, *told)
+        run_cells(map(Single, points.values()), journal, workers, *callbacks)
         records = {one: journal.said(point) for one, point in points.items()}
     return tuple(_outcome(one, record, folder) for one, record in records.items() if record is not None)
 
@@ -88,7 +88,7 @@ def _point(experiment: Experiment) -> Point:
 
 
 def _outcome(experiment: Experiment, record: Record, folder: Path) -> ExperimentResult:
-    """What became of an experiment, by the result of its run and by its log in a folder."""
+    """Outcome of an experiment, by the result of its run and by its log in a folder."""
     if not record.log:
         return ExperimentResult(experiment, failure="; ".join(record.reasons))
     path = folder / record.log
@@ -129,12 +129,12 @@ class Sample:
 
     @property
     def complete(self) -> bool:
-        """Whether there is a run, and none failed."""
+        """True if there is a run, and none failed."""
         return bool(self.outcomes) and len(self.runs) == len(self.outcomes)
 
     @property
     def falls(self) -> int:
-        """How many runs fell."""
+        """Number of runs that fell."""
         return sum(outcome.fell for outcome in self.runs)
 
     def values(self, metric: str, element: int | str | None = None) -> list[float]:
@@ -206,7 +206,7 @@ class Results:
 
     @property
     def falls(self) -> int:
-        """How many runs fell."""
+        """Number of runs that fell."""
         return sum(outcome.fell for outcome in self.outcomes)
 
     @property
@@ -243,12 +243,12 @@ def _range(spread: Spread, scale: float, digits: int = 3) -> str:
 
 
 def first_fall(sample: Sample) -> str:
-    """When the first of those that fell did, in a phrase; empty when none fell."""
+    """Time of the first fall among some runs, in a phrase; empty when none fell."""
     return f"from {number(min(sample.values('fall_time')))} s on" if sample.falls else ""
 
 
 def fell_text(sample: Sample) -> str:
-    """How many of how many fell, and when the first of them."""
+    """Number of falls among the runs, and the time of the first one."""
     return ", ".join(filter(None, (f"{sample.falls} of {len(sample.runs)}", first_fall(sample))))
 
 
@@ -266,7 +266,7 @@ def balance_text(samples: Sequence[Sample]) -> str:
 
 
 def _excursion_text(excursion: float | None) -> str:
-    """How far the ZMP came out of the 90 % box, in a phrase."""
+    """Excursion of the ZMP out of the 90 % box, in a phrase."""
     if excursion is None:
         return "no ZMP"
     if excursion <= 0.0:

@@ -31,8 +31,8 @@ JOURNAL, RESULT, PAGE = "tours.jsonl", "result.json", "result.md"
 @lru_cache(maxsize=1)
 def published() -> dict[str, Any]:
     """Rows that others have published with their source, and what is different here."""
-    told: dict[str, Any] = yaml.safe_load(_text("published.yaml"))
-    return told
+    found: dict[str, Any] = yaml.safe_load(_text("published.yaml"))
+    return found
 
 
 def _text(name: str) -> str:
@@ -70,7 +70,7 @@ class Bench:
 
         Args:
             workers: processes.
-            on_tour: is told each new result.
+            on_tour: called with each new result.
 
         Raises:
             LogError: a result cannot be written.
@@ -83,7 +83,7 @@ class Bench:
             on_tour(result)
 
     def rows(self) -> list[RowResult]:
-        """What the tours of each row say together."""
+        """Results of the tours of each row together."""
         found = []
         for row in self._rows:
             results = [self._results[row, seed] for seed in range(self._seeds) if (row, seed) in self._results]
@@ -110,8 +110,8 @@ class Bench:
         Returns:
             path of the former.
         """
-        told = self.to_json()
-        texts = {RESULT: json.dumps(told, indent=1, allow_nan=False) + "\n", PAGE: markdown(told)}
+        record = self.to_json()
+        texts = {RESULT: json.dumps(record, indent=1, allow_nan=False) + "\n", PAGE: markdown(record)}
         for name, text in texts.items():
             with write_whole(self._folder / name, replace=True) as temporary:
                 temporary.write_text(text, encoding="utf-8")
@@ -124,9 +124,9 @@ class Bench:
             return
         for line in path.read_text(encoding="utf-8").splitlines():
             try:
-                told = json.loads(line)
-                if told.pop("made_by") == self._made_by:
-                    result = _result(told)
+                record = json.loads(line)
+                if record.pop("made_by") == self._made_by:
+                    result = _result(record)
                     self._results[result.row, result.seed] = result
             except (ValueError, TypeError, KeyError):  # the last line of a process that was killed
                 continue
@@ -143,43 +143,43 @@ class Bench:
 _LOST = "lost"
 
 
-def _lost(row: str, seed: int, duration: float, told: str) -> TourResult:
+def _lost(row: str, seed: int, duration: float, record: str) -> TourResult:
     """In place of a tour whose process ended unexpectedly, which is run again when the command is given again."""
     return TourResult(row, seed, 0.0, False, (), (), (), (), _LOST, 0, None)
 
 
-def _digest(told: dict[str, Any]) -> str:
-    return hashlib.sha256(json.dumps(told, sort_keys=True).encode()).hexdigest()[:16]
+def _digest(record: dict[str, Any]) -> str:
+    return hashlib.sha256(json.dumps(record, sort_keys=True).encode()).hexdigest()[:16]
 
 
-def _result(told: dict[str, Any]) -> TourResult:
-    punches = (PunchTaken(**{**punch, "direction": tuple(punch["direction"])}) for punch in told["punches"])
-    lists: dict[str, Any] = {name: tuple(told[name]) for name in ("position_errors", "heading_errors", "energy")}
-    return TourResult(**{**told, **lists, "punches": tuple(punches)})
+def _result(record: dict[str, Any]) -> TourResult:
+    punches = (PunchTaken(**{**punch, "direction": tuple(punch["direction"])}) for punch in record["punches"])
+    lists: dict[str, Any] = {name: tuple(record[name]) for name in ("position_errors", "heading_errors", "energy")}
+    return TourResult(**{**record, **lists, "punches": tuple(punches)})
 
 
-def lines(told: dict[str, Any]) -> Iterator[str]:
+def lines(record: dict[str, Any]) -> Iterator[str]:
     """The table, as `Bench.to_json` says it, for a terminal."""
     yield f"{'row':<26} {'tours':>5}  {'survival s':<19} {'completed':<12} {'cm':>5} {'deg':>5} {'kJ':>5}"
-    for row in told["rows"]:
+    for row in record["rows"]:
         yield " ".join(_line(row))
-    yield f"published, {told['source']}:"
-    for row in told["published"]:
+    yield f"published, {record['source']}:"
+    for row in record["published"]:
         energy = f"{row['energy']:5.1f}" if "energy" in row else "     "
         yield (
             f"{row['name']:<26} {'':>5}  {row['survival']:<19.1f} {str(row['completed']) + ' %':<12}"
             f" {row['position']:5.0f} {row['heading']:5.0f} {energy}"
         )
-    for row in told["rows"]:
+    for row in record["rows"]:
         yield ""
         yield f"{row['row']}: punches survived"
         for kind, shares in row["punches"].items():
-            told_of = ", ".join(f"{share['of']} {share['kept']}/{share['count']}" for share in shares)
-            yield f"  by {kind}: {told_of}"
+            shares_text = ", ".join(f"{share['of']} {share['kept']}/{share['count']}" for share in shares)
+            yield f"  by {kind}: {shares_text}"
         yield "  falls: " + (", ".join(f"{cause} {count}" for cause, count in row["falls"]) or "none")
     yield ""
-    yield told["note"]
-    yield from (f"- {difference}" for difference in told["differences"])
+    yield record["note"]
+    yield from (f"- {difference}" for difference in record["differences"])
 
 
 def _line(row: dict[str, Any]) -> Iterator[str]:

@@ -1,4 +1,4 @@
-"""The state of a robot that is told its attitude, its turning and its joints alone, by the feet that it stands on."""
+"""The state of a robot that knows its attitude, its turning and its joints alone, by the feet that it stands on."""
 
 import math
 
@@ -16,7 +16,7 @@ from surefoot.wbc.types import RobotState
 Array = NDArray[np.float64]
 
 STANDING = 0.002
-"""How much higher than the lowest corner of the soles one is that counts e times less [m]."""
+"""Height over the lowest corner of the soles at which one counts e times less [m]."""
 
 LEAST = 0.02
 """Share of the weight that a foot is taken to bear at least, so that it never counts for nothing [-]."""
@@ -25,7 +25,7 @@ LEAST = 0.02
 class LegOdometry:
     """Estimates where the base is and how it moves, on level ground.
 
-    The corners of the soles that are lowest, by the attitude that is told, stand still: the base moves against them.
+    The corners of the soles that are lowest, by the attitude that is given, stand still: the base moves against them.
     Each corner counts by how low it is, so that a foot that tips over stands on its edge. It counts by what its foot
     bears, too, by the torques of the joints a tick ago, so that a foot that comes down moving counts for little. The
     place drifts as feet slip, and is of no meaning but for how it changes.

@@ -4,20 +4,20 @@ import math
 from collections.abc import Iterator, Mapping, Sequence
 from typing import Any
 
-Told = Mapping[str, Any]
+Record = Mapping[str, Any]
 
 
-def markdown(told: Told) -> str:
+def markdown(record: Record) -> str:
     """Tables of a result.
 
     Args:
-        told: as `surefoot bench` writes it into ``result.json``.
+        record: as `surefoot bench` writes it into ``result.json``.
     """
-    parts = (_rows(told), _published(told), *_punches(told["rows"]), _falls(told["rows"]), _differences(told))
+    parts = (_rows(record), _published(record), *_punches(record["rows"]), _falls(record["rows"]), _differences(record))
     return "\n".join(line for part in parts for line in (*part, "")).rstrip("\n") + "\n"
 
 
-def _rows(told: Told) -> Iterator[str]:
+def _rows(record: Record) -> Iterator[str]:
     yield from _table(
         ("row", "tours", "survival [s]", "median", "completed", "place [cm]", "heading [deg]", "energy [kJ]"),
         (
@@ -31,15 +31,15 @@ def _rows(told: Told) -> Iterator[str]:
                 _mean(row["heading_error"], math.degrees(1.0), 1),
                 _mean(row["energy"], 1.0, 1),
             )
-            for row in told["rows"]
+            for row in record["rows"]
         ),
     )
     yield ""
-    yield from _table(("row", "what goes in and out"), ((f"`{row['row']}`", row["meaning"]) for row in told["rows"]))
+    yield from _table(("row", "what goes in and out"), ((f"`{row['row']}`", row["meaning"]) for row in record["rows"]))
 
 
-def _published(told: Told) -> Iterator[str]:
-    yield f"Published of learned policies: {told['source']}."
+def _published(record: Record) -> Iterator[str]:
+    yield f"Published of learned policies: {record['source']}."
     yield ""
     yield from _table(
         ("policy", "survival [s]", "completed", "place [cm]", "heading [deg]", "energy [kJ]"),
@@ -52,17 +52,17 @@ def _published(told: Told) -> Iterator[str]:
                 row["heading"],
                 row.get("energy", ""),
             )
-            for row in told["published"]
+            for row in record["published"]
         ),
     )
 
 
-def _punches(rows: Sequence[Told]) -> Iterator[Iterator[str]]:
+def _punches(rows: Sequence[Record]) -> Iterator[Iterator[str]]:
     for kind in rows[0]["punches"] if rows else ():
         yield _curve(kind, rows)
 
 
-def _curve(kind: str, rows: Sequence[Told]) -> Iterator[str]:
+def _curve(kind: str, rows: Sequence[Record]) -> Iterator[str]:
     """Punches survived by one kind, a row of the table each, a column for each row of the bench."""
     found = {row["row"]: {share["of"]: share for share in row["punches"][kind]} for row in rows}
     every = sorted({of for shares in found.values() for of in shares})
@@ -73,7 +73,7 @@ def _curve(kind: str, rows: Sequence[Told]) -> Iterator[str]:
     )
 
 
-def _falls(rows: Sequence[Told]) -> Iterator[str]:
+def _falls(rows: Sequence[Record]) -> Iterator[str]:
     counts = {row["row"]: dict(map(tuple, row["falls"])) for row in rows}
     every = sorted({cause for falls in counts.values() for cause in falls})
     yield from _table(
@@ -82,13 +82,13 @@ def _falls(rows: Sequence[Told]) -> Iterator[str]:
     )
 
 
-def _differences(told: Told) -> Iterator[str]:
-    yield told["note"] + " What else is different from the benchmark:"
+def _differences(record: Record) -> Iterator[str]:
+    yield record["note"] + " What else is different from the benchmark:"
     yield ""
-    yield from (f"- {difference}" for difference in told["differences"])
+    yield from (f"- {difference}" for difference in record["differences"])
     yield ""
     names = ("surefoot", "mujoco", "pin", "proxsuite", "numpy", "python", "source_digest")
-    known = (f"{name} {told['versions'][name]}" for name in names if name in told["versions"])
+    known = (f"{name} {record['versions'][name]}" for name in names if name in record["versions"])
     yield f"Made with {', '.join(known)}."
 
 
@@ -98,12 +98,12 @@ def _table(head: Sequence[str], rows: Iterator[Sequence[Any]]) -> Iterator[str]:
     yield from (f"| {' | '.join(map(str, row))} |" for row in rows)
 
 
-def _mean(mean: Told, factor: float, digits: int) -> str:
+def _mean(mean: Record, factor: float, digits: int) -> str:
     if mean["value"] is None:
         return ""
     value, low, high = (f"{factor * mean[name]:.{digits}f}" for name in ("value", "low", "high"))
     return f"{value} ({low} to {high})"
 
 
-def _share(share: Told) -> str:
+def _share(share: Record) -> str:
     return f"{100 * share['kept'] / share['count']:.0f} % of {share['count']}"

@@ -1,4 +1,4 @@
-"""What many tours say together: survival and errors with intervals, the curve of punches, and what falls came of."""
+"""The results of many tours: survival and errors with intervals, the curve of punches, and causes of falls."""
 
 import math
 from collections.abc import Callable, Sequence
@@ -13,10 +13,10 @@ from surefoot.studies.tour.ride import PunchTaken, TourResult
 from surefoot.studies.tour.rules import DURATION, SLOT
 
 RESAMPLES = 4000
-"""Of the tours, from which the interval of a mean is read [-]."""
+"""Samples of the tours, from which the interval of a mean is read [-]."""
 
 WIDTH = 0.1
-"""Of a bin of the punches' impulse [N·s/kg]."""
+"""Width of a bin of the punches' impulse [N·s/kg]."""
 
 SOON = 2.5
 """After a punch, within which a fall is one from it [s]."""
@@ -46,7 +46,7 @@ class Mean:
 
     @classmethod
     def of(cls, values: Sequence[float]) -> "Mean":
-        """Of values; the same ones have the same interval each time."""
+        """The mean of values; the same ones have the same interval each time."""
         given = np.array(values, dtype=np.float64)
         if not len(given):
             return cls(math.nan, math.nan, math.nan, 0)
@@ -57,7 +57,7 @@ class Mean:
 
 @dataclass(frozen=True, slots=True)
 class Share:
-    """How many of how many, with the 95 % interval of the share by Wilson's score.
+    """A share, with its 95 % interval by Wilson's score.
 
     Attributes:
         of: what is counted.
@@ -75,14 +75,14 @@ class Share:
 
     @classmethod
     def counted(cls, name: str, kept: int, count: int) -> "Share":
-        """Of counts, the second of which is greater than 0."""
+        """The share of counts, the second of which is greater than 0."""
         rate = wilson(kept, count)
         return cls(name, kept, count, rate.low, rate.high)
 
 
 @dataclass(frozen=True, slots=True)
 class RowResult:
-    """What the tours of a row say together.
+    """The result of the tours of a row.
 
     Attributes:
         row: its name.
@@ -92,7 +92,7 @@ class RowResult:
         survival_median: [s].
         completed: tours without a fall.
         position_error: at the places when their time is over [m].
-        heading_error: likewise [rad].
+        heading_error: at the places when their time is over [rad].
         energy: of a whole tour at the power of the slots that were brought to their end [kJ].
         punches: survived, by the level impulse, by link, by phase and by direction.
         falls: what they came of, with how many.
@@ -114,7 +114,7 @@ class RowResult:
 
     @classmethod
     def of(cls, results: Sequence[TourResult], seconds: float = DURATION) -> "RowResult":
-        """Of the tours of one row, at least one."""
+        """The result of the tours of one row, at least one."""
         falls: dict[str, int] = {}
         for one in results:
             if not one.completed:
@@ -137,7 +137,7 @@ class RowResult:
 
 
 def survived(punches: Sequence[PunchTaken], kind: Callable[[PunchTaken], str]) -> tuple[Share, ...]:
-    """How many punches of each kind were survived."""
+    """Shares of the punches of each kind that were survived."""
     kinds = sorted({kind(punch) for punch in punches})
     sorted_in = {name: [punch.survived for punch in punches if kind(punch) == name] for name in kinds}
     return tuple(Share.counted(name, sum(kept), len(kept)) for name, kept in sorted_in.items())
@@ -150,18 +150,18 @@ def strength(punch: PunchTaken) -> str:
 
 
 def link(punch: PunchTaken) -> str:
-    """What it hits."""
+    """Link that it hits."""
     return next(name for name in LINKS if name in punch.joint)
 
 
 def phase(punch: PunchTaken) -> str:
-    """When in the gait it comes: double support, or which third of single support."""
+    """Phase of the gait at which it comes: double support, or a third of single support."""
     third = min(int(3.0 * punch.fraction), 2)
     return "double" if punch.phase == "double" else f"single, {('first', 'middle', 'last')[third]} third"
 
 
 def direction(punch: PunchTaken) -> str:
-    """Where it goes, as the gait sees it."""
+    """Direction of the punch, as the gait sees it."""
     x, y, z = punch.direction
     if abs(z) > STEEP:
         return "upward" if z > 0.0 else "downward"
@@ -181,7 +181,7 @@ KINDS: dict[str, Callable[[PunchTaken], str]] = {
 
 
 def cause(result: TourResult) -> str:
-    """What the fall of a tour came of."""
+    """Cause of the fall of a tour."""
     last = result.punches[-1] if result.punches else None
     if last is None or result.survival - last.time > SOON:
         return "no punch"
@@ -190,6 +190,6 @@ def cause(result: TourResult) -> str:
 
 
 def to_json(result: RowResult) -> dict[str, Any]:
-    """For `json`, what is nothing as None."""
-    told: dict[str, Any] = plain(asdict(result))
-    return told
+    """Object for `json`, what is nothing as None."""
+    record: dict[str, Any] = plain(asdict(result))
+    return record

@@ -20,7 +20,7 @@ Array = NDArray[np.float64]
 
 @dataclass(frozen=True, slots=True)
 class PunchTaken:
-    """What was so when a punch began, and what became of it.
+    """The state at the beginning of a punch, and its result.
 
     Attributes:
         time: of its beginning [s].
@@ -47,7 +47,7 @@ class PunchTaken:
 
 @dataclass(frozen=True, slots=True)
 class TourResult:
-    """What became of a tour.
+    """The result of a tour.
 
     Attributes:
         row: whose it was.
@@ -55,7 +55,7 @@ class TourResult:
         survival: until the fall, or of the whole tour [s].
         completed: whether there was none.
         position_errors: distance from each place when its time was over [m].
-        heading_errors: likewise of the heading [rad].
+        heading_errors: difference from the heading of each place when its time was over [rad].
         energy: magnitude of the joints' power over the slots that were brought to their end, each [J].
         punches: in order; the one that came last before a fall was not survived.
         fault: what ended the controller's work, in words; else empty.
@@ -146,7 +146,7 @@ class Ride:
         self._tick += 1
 
     def _controlled(self, time: float, arms: JointCommand | None) -> JointCommand:
-        """What the joints are given; nothing but damping once the controller has given up."""
+        """Command of the joints; nothing but damping once the controller has given up."""
         controller, joints = self.controller, len(self._names)
         if self._fault:
             return JointCommand(-self.world.data.qvel[6:].copy())
@@ -167,14 +167,14 @@ class Ride:
         return command if arms is None or self._arms is None else command.with_joints(self._arms.joints, arms)
 
     def _place(self, time: float) -> tuple[float, float, float]:
-        """Where to go at an instant, in the world [m, m, rad]."""
+        """Place to go to at an instant, in the world [m, m, rad]."""
         x, y, yaw = self.tour.places[self.tour.slot(time)].tolist()
         x0, y0, yaw0 = self._anchor
         cos, sin = math.cos(yaw0), math.sin(yaw0)
         return x0 + cos * x - sin * y, y0 + sin * x + cos * y, yaw0 + yaw
 
     def _way(self, time: float) -> tuple[tuple[float, float], float]:
-        """To that place, in the frame of the pelvis' heading [m], and to its heading [rad]."""
+        """Way to that place, in the frame of the pelvis' heading [m], and to its heading [rad]."""
         x, y, yaw = self._place(time)
         dx, dy = (np.array([x, y]) - self.world.pelvis[:2]).tolist()
         heading = self.world.heading
@@ -190,7 +190,7 @@ class Ride:
             self._energy.append(float(self.world.energy.sum()) - sum(self._energy))
 
     def _described(self, punch: Punch) -> PunchTaken:
-        """What is so as a punch begins, which counts as survived until the robot falls."""
+        """The state as a punch begins, which counts as survived until the robot falls."""
         heading, phase = self.world.heading, self.controller.planning.plan.phase
         cos, sin = math.cos(heading), math.sin(heading)
         x, y, z = self.world.direction(punch).tolist()
@@ -232,7 +232,7 @@ class _Arms:
         return self._target.copy()
 
     def command(self, time: float) -> JointCommand:
-        """What they are given at an instant [s]."""
+        """Command of the arms at an instant [s]."""
         target = self._both(self._walk.angles(time))
         still = np.zeros_like(target)
         return JointCommand(still, Servo(target, still, self._stiffness, self._damping))

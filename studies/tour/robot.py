@@ -29,7 +29,7 @@ _OF_ROBOT = ("name", "feet", "licence", "source", "torque_limit", "armature")
 
 
 class Inertia(BaseModel):
-    """Of a body.
+    """The inertia of a body.
 
     Attributes:
         mass: [kg].
@@ -46,7 +46,7 @@ class Inertia(BaseModel):
 
 
 class TourRobot(BaseModel):
-    """What the harness of the tour says of its robot, see ``g1.yaml``.
+    """The robot by the harness of the tour, see ``g1.yaml``.
 
     Attributes:
         model: URDF that it differs from.
@@ -55,11 +55,11 @@ class TourRobot(BaseModel):
         raised: by what joints are higher than in that URDF [m].
         drawn_raised: by what the shapes of bodies are [m].
         damping: of every joint [N·m·s/rad].
-        friction_loss: likewise [N·m].
+        friction_loss: of every joint [N·m].
         contact_radius: of the balls that a foot touches the ground with [m].
         contact_points: where they are in the frame of the foot's link [m].
         arm_frequency: natural frequency that the arms' drives would have on their armature alone [Hz].
-        arm_damping: likewise their damping ratio [-].
+        arm_damping: damping ratio that they would have on their armature alone [-].
         arm_stance: angles of the left arm at the start [rad].
         arm_mirror: signs with which the right arm mirrors the left one.
         hand_box: lowest and highest corner of the left hand in the frame of its link [m].
@@ -102,14 +102,14 @@ class TourRobot(BaseModel):
         """
         root = ElementTree.fromstring(content(resolve(self.model, folder), MODEL))
         _change(root, self)
-        told: dict[str, Any] = {**self.model_dump(include=set(_OF_ROBOT)), "model": _FILE[1]}
-        texts = (yaml.safe_dump(told, sort_keys=False), ElementTree.tostring(root, encoding="unicode"))
+        keys: dict[str, Any] = {**self.model_dump(include=set(_OF_ROBOT)), "model": _FILE[1]}
+        texts = (yaml.safe_dump(keys, sort_keys=False), ElementTree.tostring(root, encoding="unicode"))
         return dict(zip(_FILE, texts, strict=True))
 
 
 @lru_cache(maxsize=1)
 def tour_robot() -> TourRobot:
-    """What the harness says of its robot."""
+    """The robot by the harness."""
     text = resources.files(__package__).joinpath("g1.yaml").read_text(encoding="utf-8")
     return TourRobot.model_validate(yaml.safe_load(text))
 

@@ -17,13 +17,13 @@ from surefoot.studies.tour.odometry import LegOdometry
 from surefoot.studies.tour.robot import robot_file
 
 GAIN = 1.0
-"""Of the velocity towards a place over the distance from it, and of the yaw rate over the angle [1/s]."""
+"""Gains of the velocity towards a place over the distance from it, and of the yaw rate over the angle [1/s]."""
 
 FASTEST = (0.4, 0.3, 0.8)
 """Forward, sideways [m/s], and yaw rate [rad/s]. By 0.2 m/s sideways far places take longer than 5 s."""
 
 COMMAND_RATE = 10
-"""At which the walk is told its velocity [Hz]."""
+"""Rate at which the walk is given its velocity [Hz]."""
 
 
 @dataclass(frozen=True, slots=True)
@@ -61,7 +61,7 @@ DRIVES = {".*_(shoulder_.*|elbow|wrist_roll)_joint": (14.2506, 0.9072), ".*_wris
 """Stiffness and damping of the arms' drives, by regular expressions of the joints' names [N·m/rad, N·m·s/rad]."""
 
 GAINS = {".*": (100.0, 6.0), ".*_knee_joint": (150.0, 6.0), ".*_ankle_.*": (40.0, 6.0)}
-"""Likewise of legs and waist, where the controller gives positions."""
+"""Stiffness and damping of legs and waist, where the controller gives positions [N·m/rad, N·m·s/rad]."""
 
 ARMS = (("control.driven_joints", DRIVES),)
 TARGETS = (

@@ -1,4 +1,4 @@
-"""What a tour asks of a walker: places to go to, punches on the way, and arms that somebody else moves."""
+"""The rules of a tour: places to go to, punches on the way, and arms that somebody else moves."""
 
 import math
 from collections.abc import Callable
@@ -12,10 +12,10 @@ from surefoot.streams import Stream, generator
 Array = NDArray[np.float64]
 
 DURATION, SLOT = 90.0, 5.0
-"""Of a tour, and of the time for each of its places [s]."""
+"""Durations of a tour, and of the time for each of its places [s]."""
 
 CENTRE, RADIUS = (0.3, 0.0), 0.75
-"""Of the disc from which places are drawn, in the frame of the pelvis at the start [m]."""
+"""Disc from which places are drawn, in the frame of the pelvis at the start [m]."""
 
 DELAY, PUNCH_TIME = 0.1, 0.08
 """From the beginning of a slot to its punch, and how long that lasts [s]."""
@@ -24,7 +24,7 @@ STRONGEST, WEAKEST, RAMP = 500.0, 1.0 / 3.0, 60.0
 """Greatest force of a punch [N], the share of it that is the greatest at the start [-], and until when it grows [s]."""
 
 LEAST = 0.5
-"""Of the greatest force of its time, that a punch has at least [-]."""
+"""Least share of the greatest force of its time that a punch has [-]."""
 
 LOWEST = 0.20
 """Height of the pelvis below which the robot has fallen [m]."""
@@ -56,7 +56,7 @@ class Punch:
         return self.force * PUNCH_TIME
 
     def acts(self, time: float) -> bool:
-        """Whether it acts at an instant [s]."""
+        """Return true if it acts at an instant [s]."""
         return self.time <= time + _ROUNDING < self.time + PUNCH_TIME
 
 
@@ -79,7 +79,7 @@ class Tour:
     punches: tuple[Punch, ...]
 
     def slot(self, time: float) -> int:
-        """Which place is to be gone to at an instant [s]."""
+        """Number of the place to go to at an instant [s]."""
         return min(int((time + _ROUNDING) / SLOT), len(self.places) - 1)
 
     def punch(self, time: float) -> Punch | None:
@@ -115,8 +115,8 @@ class ArmWalk:
     Args:
         seed: of the tour.
         start: angles at the start, shape (7,) [rad].
-        lower: of the joints' limits, likewise.
-        upper: likewise.
+        lower: lower limits of the joints, shape (7,) [rad].
+        upper: upper limits of the joints, shape (7,) [rad].
         allowed: whether both hands may be where these angles put them.
     """
 

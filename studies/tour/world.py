@@ -77,7 +77,7 @@ class TourWorld:
         return Measurement.of_state(self.time, self._q.copy(), self._v.copy(), self.torque.copy(), self._wrenches())
 
     def contracted(self) -> Measurement:
-        """What the benchmark hands over: joints, attitude and turning of the pelvis; nothing else of it is a number.
+        """Measurement that the benchmark hands over: joints, attitude and turning of the pelvis; all else is no number.
 
         The torques of the joints are those of the drives, whose targets and gains a walker knows.
         """
@@ -106,16 +106,16 @@ class TourWorld:
             self.energy += np.abs(self.torque * data.qvel[6:]) * h
 
     def direction(self, punch: Punch) -> Array:
-        """Where a punch points in the world, shape (3,)."""
+        """Direction of a punch in the world, shape (3,)."""
         return np.array(self.data.xmat[self._links[punch.joint]]).reshape(3, 3) @ punch.direction
 
     def hands_allowed(self, robot: TourRobot, left: NDArray[np.intp], right: NDArray[np.intp]) -> "Hands":
-        """Whether hands are where the harness lets arms put them.
+        """Limits of the hands, within which the harness lets arms put them.
 
         Args:
             robot: what the harness says of it.
             left: indices of the left arm's joints.
-            right: likewise.
+            right: indices of the right arm's joints.
         """
         return Hands(self.model, robot, (left, right))
 
@@ -127,7 +127,7 @@ class TourWorld:
         data.xfrc_applied[body] = (*force, *np.cross(arm, force))
 
     def _wrenches(self) -> Array:
-        """That the soles are touched with, at their centres in their frames, shape (2, 6) [N, N·m]."""
+        """Wrenches on the soles, at their centres in their frames, shape (2, 6) [N, N·m]."""
         data = self.data
         mujoco.mj_rnePostConstraint(self.model, data)  # of contacts alone, since no punch is written down any more
         com = data.subtree_com[self._pelvis].tolist()
@@ -142,7 +142,7 @@ class TourWorld:
 
 
 class Hands:
-    """Tells of angles of the left arm, shape (7,) [rad], whether both hands stay before the body and below the head.
+    """A check that angles of the left arm, shape (7,) [rad], keep both hands before the body and below the head.
 
     Boxes around the hands may reach no farther back, in the frame of the torso, than at the start.
 
@@ -165,7 +165,7 @@ class Hands:
         self._back = min(low.item(0) for low, _ in self._boxes(np.array(robot.arm_stance)))
 
     def __call__(self, left: Array) -> bool:
-        """See the class."""
+        """Return true if the angles do so."""
         boxes = self._boxes(left)
         back, top = min(low.item(0) for low, _ in boxes), max(high.item(2) for _, high in boxes)
         return back >= self._back and top <= self._robot.head_bottom

@@ -27,7 +27,7 @@ def names_of(model: pin.Model) -> tuple[str, ...]:
 
 
 def has_followers(model: pin.Model) -> bool:
-    """Whether a joint follows another one."""
+    """Return true if a joint follows another one."""
     return bool(model.nvExtended > model.nv)
 
 
@@ -48,7 +48,7 @@ def moving_columns(model: pin.Model, joint: int) -> list[int]:
 
 
 def joined(model: pin.Model) -> Array:
-    """Which columns of `data.J` belong to a velocity, shape (columns, nv): 1 or 0, since they have the factor k."""
+    """Mark the columns of `data.J` that belong to a velocity, shape (columns, nv): 1 or 0, since they hold k."""
     found = np.zeros((model.nvExtended, model.nv))
     for joint in range(1, model.njoints):
         first, into = model.idx_vExtendeds[joint], model.idx_vs[joint]
@@ -79,7 +79,7 @@ class JointColumns:
 
 
 class Dynamics:
-    """What of the dynamics Pinocchio's own algorithms do not give for a model in which joints follow others.
+    """The terms of the dynamics that Pinocchio's own algorithms do not give for a model in which joints follow others.
 
     Args:
         model: the robot.
@@ -97,7 +97,7 @@ class Dynamics:
         self.C: Array = data.C if self._tree is None else np.zeros((model.nv, model.nv), order="F")
 
     def all_terms(self, q: Array, v: Array) -> None:
-        """As `pin.computeAllTerms`, with q, shape (nq,), and v, shape (nv,)."""
+        """Compute what `pin.computeAllTerms` does, with q, shape (nq,), and v, shape (nv,)."""
         model, data = self._model, self.data
         if self._tree is None:
             pin.computeAllTerms(model, data, q, v)
@@ -111,7 +111,7 @@ class Dynamics:
         pin.forwardKinematics(model, data, q, v, self._still)
 
     def mass_matrix(self, q: Array) -> None:
-        """As `pin.crba`, both triangles, in `data.M`."""
+        """Compute what `pin.crba` does, both triangles, in `data.M`."""
         tree = self._tree
         if tree is None:
             pin.crba(self._model, self.data, q)
@@ -121,7 +121,7 @@ class Dynamics:
         self.data.M[:] = G.T @ M @ G + np.diag(self._model.armature)
 
     def coriolis(self, q: Array, v: Array) -> None:
-        """As `pin.computeCoriolisMatrix`: C of h = C v + g for which M' = C + Cᵀ, and so Cᵀ v of the momentum M v."""
+        """Compute C of `pin.computeCoriolisMatrix`: h = C v + g with M' = C + Cᵀ, and so Cᵀ v of the momentum M v."""
         tree = self._tree
         if tree is None:
             pin.computeCoriolisMatrix(self._model, self.data, q, v)
@@ -158,7 +158,7 @@ class Tree:
         self.data = tree.createData()
 
     def configuration(self, q: Array) -> Array:
-        """Of the tree, shape (nq of the tree,), from that of the independent joints, shape (nq,) [m, -, rad]."""
+        """Configuration of the tree, shape (nq of it,), from the independent joints' one, shape (nq,) [m, -, rad]."""
         found: Array = np.concatenate((q[:7], self.G[6:, 6:] @ q[7:] + self._offset[7:]))
         return found
 

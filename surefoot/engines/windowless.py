@@ -17,7 +17,7 @@ _DRAWN = {"GLContext": "gl_context", "Renderer": "renderer"}
 
 
 def _drawn(name: str) -> Any:
-    """What of the engine draws, loaded when it is asked for (PEP 562)."""
+    """The engine's part that draws, loaded when it is asked for (PEP 562)."""
     if name not in _DRAWN:
         raise AttributeError(f"module 'mujoco' has no attribute '{name}'")
     return getattr(import_module(f"{_DRAWING}.{_DRAWN[name]}"), name)

@@ -126,7 +126,7 @@ def compose(A: Array, B: Array, out: Array) -> None:
 
 
 def compose_back(A: Array, B: Array, out: Array) -> None:
-    """A' B, likewise."""
+    """A' B, of two rotations, neither of which is `out`."""
     for i in range(3):
         for j in range(3):
             out[i, j] = A[0, i] * B[0, j] + A[1, i] * B[1, j] + A[2, i] * B[2, j]

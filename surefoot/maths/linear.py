@@ -201,7 +201,7 @@ def add_multiple(S: Array, a: float, A: Array) -> None:
 
 
 def add_multiples(S: Array, a: float, A: Array, b: float, B: Array) -> None:
-    """S += a A + b B, likewise."""
+    """S += a A + b B, of any shape; axes may lie in any order."""
     S += a * A + b * B
 
 
@@ -272,7 +272,7 @@ def rotate_rows(A: Array, i: int, a: float, b: float) -> None:
 
 
 def is_zero(A: Array) -> bool:
-    """Whether a matrix is zero."""
+    """Return true if a matrix is zero."""
     return not A.any()
 
 

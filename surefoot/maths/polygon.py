@@ -6,7 +6,7 @@ from numpy.typing import NDArray
 Array = NDArray[np.float64]
 
 FLAT, ROUNDING = 1e-12, 16.0 * float(np.finfo(np.float64).eps)
-"""Which part of the extent a vertex stands out at least, and what rounding of the coordinates may feign [-]."""
+"""Least share of the extent by which a vertex stands out, and the share that rounding may feign [-]."""
 
 
 def convex_hull(points: Array) -> Array:
@@ -35,7 +35,10 @@ def flatness(points: Array, count: int) -> float:
     left, right, below, above = points[0, 0], points[0, 0], points[0, 1], points[0, 1]
     for k in range(1, count):
         x, y = points[k, 0], points[k, 1]
-        left, right, below, above = min(left, x), max(right, x), min(below, y), max(above, y)
+        left = min(left, x)
+        right = max(right, x)
+        below = min(below, y)
+        above = max(above, y)
     extent: float = max(right - left, above - below)
     most: float = max(max(abs(right), abs(left)), max(abs(above), abs(below)))
     return extent * (FLAT * extent + ROUNDING * most)

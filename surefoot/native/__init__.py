@@ -1,1 +1,1 @@
-"""How modules are compiled: which, when, and what they run as where they are not."""
+"""The compiling of modules: which, when, and what they run as where they are not."""

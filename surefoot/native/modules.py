@@ -26,7 +26,7 @@ SUFFIX = EXTENSION_SUFFIXES[0]
 """End of the name of an extension module, which tells the version of Python and the platform."""
 
 STAMP = Path(__file__).with_name(f"built{SUFFIX}.json")
-"""What the extension modules were made of, and how."""
+"""Record of the build of the extension modules: of what, and how."""
 
 SHARED = "surefoot.native.shared"
 """Module with what all compiled ones have in common, which Cython writes."""
@@ -38,7 +38,7 @@ DIRECTIVES = {
     "cdivision": "True",
     "initializedcheck": "False",
 }
-"""How Cython reads the modules: types by the `.pxd` and by inference, divisors unchecked."""
+"""Directives for Cython: types by the `.pxd` and by inference, divisors unchecked."""
 
 UNCHECKED = {"boundscheck": "False", "wraparound": "False"}
 """The same of modules that have arrays of C: no index is looked at, nor counted from the end, of lists either."""
@@ -60,7 +60,7 @@ SLOWER = 13
 """About how many times as long as a compiled walk an interpreted one takes."""
 
 MOST_LINES = 30
-"""Of what Cython or the compiler says."""
+"""Most lines that are shown of what Cython or the compiler says."""
 
 
 class BuildError(Exception):
@@ -86,17 +86,17 @@ def sources() -> Mapping[str, Path]:
 
 
 def has_arrays(path: Path) -> bool:
-    """Whether a source, relative to `ROOT`, has arrays of C, so that its indices are not looked at."""
+    """Return true if a source, relative to `ROOT`, has arrays of C, so that its indices are not looked at."""
     return "[:" in (ROOT / path).with_suffix(".pxd").read_text(encoding="utf-8")
 
 
 def target(path: Path) -> Path:
-    """Where the extension module of a source is, relative to `ROOT`."""
+    """Path of the extension module of a source, relative to `ROOT`."""
     return path.with_name(path.stem + SUFFIX)
 
 
 def shared_path() -> Path:
-    """Where the module with what all have in common is, relative to `ROOT`."""
+    """Path of the module with what all have in common, relative to `ROOT`."""
     return target(Path(*SHARED.split(".")).with_suffix(".py"))
 
 
@@ -132,7 +132,7 @@ def _cimported(text: str) -> set[str]:
 
 
 def stamp() -> Mapping[str, str]:
-    """What was built: digest of each module, and under ``made`` how; empty where nothing was."""
+    """Record of the build: digest of each module, and under ``made`` how; empty where nothing was built."""
     try:
         kept: dict[str, str] = json.loads(STAMP.read_text(encoding="utf-8"))
     except (OSError, ValueError):
@@ -152,7 +152,7 @@ def stale() -> list[str]:
 
 
 def made() -> str:
-    """How the extension modules were made: Cython, compiler and flags; empty where they are interpreted."""
+    """Cython, compiler and flags that made the extension modules; empty where they are interpreted."""
     return stamp().get("made", "")
 
 
@@ -184,7 +184,7 @@ def platform_tag(contents: Iterable[bytes]) -> str:
 
 
 def missing() -> str:
-    """Why the modules run interpreted; empty where they are compiled."""
+    """Reason why the modules run interpreted; empty where they are compiled."""
     kept = stamp()
     return (
         ""
@@ -246,7 +246,9 @@ def build(names: Iterable[str] | None = None) -> None:
         if asked == []:
             return
         raise
-    found, fresh, kept = sources(), digests(), stamp()
+    found = sources()
+    fresh = digests()
+    kept = stamp()
     wanted = list(found) if asked is None or kept.get("made") != how else [name for name in asked if name in found]
     for gone in kept.keys() - found.keys():
         (ROOT / target(Path(*gone.split(".")).with_suffix(".py"))).unlink(missing_ok=True)
@@ -264,7 +266,7 @@ def build(names: Iterable[str] | None = None) -> None:
 
 
 def has_compiler() -> bool:
-    """Whether this machine has the C compiler that is asked for."""
+    """Return true if this machine has the C compiler that is asked for."""
     import shlex
     import shutil
 

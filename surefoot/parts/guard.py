@@ -1,4 +1,4 @@
-"""What stands around the calls of parts that are not Surefoot's own, so that their faults are named."""
+"""A guard around the calls of parts that are not Surefoot's own, so that their faults are named."""
 
 import sys
 from collections.abc import Callable, Mapping
@@ -14,34 +14,34 @@ OWN_PACKAGE = "surefoot"
 
 
 class MisfitError(Exception):
-    """What a part gave is not what its protocol says; the message goes on after the part's name."""
+    """A value from a part is not what its protocol says; the message goes on after the part's name."""
 
 
 LONGEST_SAID = 300
-"""Characters of what a part says of itself that are told."""
+"""Characters of what a part says of itself that are shown."""
 
 
 def said(error: BaseException) -> str:
     """Type and message of what a part raised, in one line, whatever its message is made of."""
-    return error.args[0] if isinstance(error, MisfitError) else _told(error, str, f"{type(error).__name__}: ")
+    return error.args[0] if isinstance(error, MisfitError) else _line(error, str, f"{type(error).__name__}: ")
 
 
 def shown(thing: object) -> str:
-    """How an object shows itself, in one line, whatever it does instead."""
-    return _told(thing, repr, "")
+    """The text by which an object shows itself, in one line, whatever it does instead."""
+    return _line(thing, repr, "")
 
 
-def _told(thing: object, text: Callable[[Any], str], before: str) -> str:
+def _line(thing: object, text: Callable[[Any], str], before: str) -> str:
     """A text that an object of others makes of itself, or its type alone."""
     try:
-        told = " ".join(text(thing).split())
+        line = " ".join(text(thing).split())
     except KeyboardInterrupt:
         raise
     except BaseException:
-        told = "" if before else f"<{type(thing).__name__} that cannot be shown>"
-    if len(told) > LONGEST_SAID:
-        told = f"{told[:LONGEST_SAID]} ..."
-    return f"{before}{told}".removesuffix(": ")
+        line = "" if before else f"<{type(thing).__name__} that cannot be shown>"
+    if len(line) > LONGEST_SAID:
+        line = f"{line[:LONGEST_SAID]} ..."
+    return f"{before}{line}".removesuffix(": ")
 
 
 def _as_given(answer: Any, *_: Any, **__: Any) -> Any:
@@ -99,7 +99,7 @@ class Guard:
         return call
 
     def __enter__(self) -> None:
-        """Nothing is to be done."""
+        """Enter; nothing is to be done."""
 
     def __exit__(self, kind: type[BaseException] | None, error: BaseException | None, _: TracebackType | None) -> None:
         """Name the part in what it raised.
@@ -144,7 +144,7 @@ class Guarded:
         self._part, self._guard, self._take = part, guard, take or {}
 
     def __getattr__(self, name: str) -> Any:
-        """What the part has."""
+        """An attribute of the part."""
         if name.startswith("_"):
             raise AttributeError(name)
         with self._guard:
@@ -156,7 +156,7 @@ class Guarded:
 
 
 def taken_for(kind: type) -> Callable[..., Any]:
-    """What is taken for an answer that must be of a class; see `Guard.function`."""
+    """Classes that are taken for an answer that must be of a class; see `Guard.function`."""
 
     def take(answer: Any, *_: Any) -> Any:
         if not isinstance(answer, kind):
@@ -183,6 +183,6 @@ _NOT_AUTHORS = {OWN_PACKAGE, *sys.stdlib_module_names}
 
 
 def _definition(function: Callable[..., Any] | None) -> str:
-    """Where a function is written, as far as that is known."""
+    """File and line of a function, as far as they are known."""
     code = getattr(function, "__code__", None)
     return "" if code is None else f"{code.co_filename}:{code.co_firstlineno}"

@@ -1,4 +1,4 @@
-"""What other packages bring: objects found by entry point, and registered in the running process.
+"""Plug-ins of other packages: objects found by entry point, and registered in the running process.
 
 A package says in its ``pyproject.toml`` what it has, and every command finds it:
 
@@ -25,7 +25,7 @@ if TYPE_CHECKING:
 __all__ = ["OWN_PACKAGE", "Declared", "PluginError", "Registry", "entry_points", "package_of"]
 
 AFRESH = "install its package again where entry points have changed"
-"""What makes entry points known that were added or renamed in a package which is installed already."""
+"""Command that makes known what entry points have been added or renamed in a package which is installed already."""
 
 T = TypeVar("T")
 S = TypeVar("S")
@@ -66,7 +66,7 @@ class Registry(Mapping[str, T]):
 
     @property
     def hint(self) -> str:
-        """What may be wrong with a name that there is not, to be said after the names; empty where no package is."""
+        """Hint for a name that there is not, to be said after the names; empty where no package is."""
         return f"; if a package brings it, {AFRESH}" if self.others() else ""
 
     def add(self, name: str, thing: T) -> T:
@@ -115,13 +115,13 @@ class Registry(Mapping[str, T]):
         return any(name in known for known in (self._names, self._added, self._loaded)) or name in list(self)
 
     def package(self, name: str) -> str:
-        """Which package brings a name; empty for what was registered by code, both where two bring it."""
+        """Package that brings a name; empty for what was registered by code, both where two bring it."""
         if name in self._names:
             return OWN_PACKAGE
         return "" if name in self._added else " and ".join(map(package_of, self._entries(name)))
 
     def guard(self, name: str) -> Guard:
-        """What stands around the calls of the object of a name, which is one of those that there are."""
+        """A guard for the calls of the object of a name, which is one of those that there are."""
         if name in self._names:
             return OWN_GUARD
         package = self.package(name)
@@ -131,11 +131,11 @@ class Registry(Mapping[str, T]):
         return Guard(f"{kind} '{name}' of {f'package {package}' if package else 'this program'}")
 
     def owns(self, thing: object) -> bool:
-        """Whether an object is one of this package's own."""
+        """Return true if an object is one of this package's own."""
         return any(thing is one for one in self._own.values())
 
     def clashes(self) -> dict[str, PluginError]:
-        """What to say of each name of surefoot's own under which another package has something too.
+        """Messages for each name of surefoot's own under which another package has something too.
 
         The name goes on meaning surefoot's; the other thing is never looked at.
         """
@@ -151,7 +151,7 @@ class Registry(Mapping[str, T]):
         }
 
     def refusal(self, name: str) -> PluginError | None:
-        """Why a name cannot be used as it is; None where nothing is wrong with it, or there is none.
+        """Reason why a name cannot be used as it is; None where nothing is wrong with it, or there is none.
 
         Its package cannot be used, or has something else under a name of surefoot's own.
         """
@@ -195,7 +195,7 @@ class Declared(Registry[T]):
 
     @property
     def said(self) -> Mapping[str, str]:
-        """What is said of each of its own, by name."""
+        """Texts on each of its own, by name."""
         if self._said is None:
             self._come_home()
         return self._said or {}
@@ -243,7 +243,7 @@ def entry_points(group: str) -> "EntryPoints":
 
 @lru_cache(maxsize=1)
 def _entry_points(_places: tuple[tuple[str, int], ...]) -> Any:
-    """Those of any group, found once, and again when a package was installed since, which alters one of the places."""
+    """Entry points of any group, found once, and again when a package was installed since, which alters a place."""
     from importlib import metadata  # which imports what reads letters, and a command may need no package
 
     return metadata.entry_points()
@@ -262,7 +262,7 @@ def package_of(entry: "EntryPoint") -> str:
 
 
 def _load(entry: "EntryPoint") -> object:
-    """What an entry point leads to; what its package prints meanwhile goes to where messages go.
+    """Load what an entry point leads to; what its package prints meanwhile goes to where messages go.
 
     Raises:
         PluginError: it cannot be loaded, whatever the reason.

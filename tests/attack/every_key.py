@@ -161,4 +161,4 @@ SCENARIOS: dict[str, dict[str, Any]] = {
     "recovery": {"duration": 0.06, "fidelity": "pendulum", "planner": {"recovery": RECOVERY}},
     **{f"wbc-{name}": {"duration": 0.06, "wbc": {name: value}} for name, value in WBC.items()},
 }
-"""By name, as plain values."""
+"""Keys by name, as plain values."""

@@ -1,4 +1,4 @@
-"""What becomes of a scenario key that is set: refused, failed, told in a note, felt by the run, or nothing at all."""
+"""The fate of a scenario key that is set: refused, failed, told in a note, felt by the run, or nothing at all."""
 
 import hashlib
 from collections.abc import Iterator
@@ -73,7 +73,7 @@ BODIES = {
     + "errors: {ground: [{x: 0.35, length: 0.3, height: 0.005}]}\n",
     "body-fault": BODY + STAND + "duration: 0.5\nfaults: [{kind: qp_failure, time: 0.2, duration: 0.01}]\n",
 }
-"""Likewise in full physics."""
+"""Bases in full physics."""
 
 VALUES: dict[str, tuple[Any, ...]] = {
     "robot": ("g1",),

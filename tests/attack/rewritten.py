@@ -12,7 +12,7 @@ from mcap.writer import CompressionType, IndexType, Writer
 from surefoot.scenarios.log.encoding import MAGIC, encoded
 
 Change = Callable[["Records", "Records"], None]
-"""What is done to the records of a log; the second are those of another run."""
+"""A change of the records of a log; the second are those of another run."""
 
 
 @dataclass
@@ -158,7 +158,7 @@ def filtered() -> Iterator[tuple[str, Change | None, dict[str, object]]]:
 
 
 def of_two_runs() -> Iterator[tuple[str, Change]]:
-    """What is not the log of one run."""
+    """Changes after which a file is not the log of one run."""
     yield "merged", _merge
     yield "merged into its channels", lambda log, other: _merge(log, other, True)
     yield "merged with itself", lambda log, _: _merge(log, Records.of(log.bytes()), True)
@@ -184,7 +184,7 @@ def of_two_runs() -> Iterator[tuple[str, Change]]:
 
 
 def left_out() -> Iterator[tuple[str, Change]]:
-    """What the verdict must not call a pass: something is missing, moved in time or of another run."""
+    """Changes that the verdict must not call a pass: something is missing, moved in time or of another run."""
     for topic in ("/truth", "/plan", "/contact", "/footstep"):
         middle = lambda log, _, topic=topic: log.without(log.of_topic(topic)[len(log.of_topic(topic)) // 2])  # noqa: E731
         yield f"one of {topic} left out", middle

@@ -231,7 +231,7 @@ def _replace(rng: random.Random, file: Path) -> None:
 
 
 def outcome(path: Path) -> dict[str, object]:
-    """What a robot file comes to, and what that took."""
+    """Outcome of a robot file, and its cost."""
     from surefoot.models import RobotError, RobotOptions, describe
 
     begin, said, kind = time.process_time(), "", "robot"

@@ -14,7 +14,7 @@ LONGEST = 2100
 
 
 def attack(folder, first, count):
-    """What the robots of some seeds come to, in a process of their own."""
+    """Outcomes of the robots of some seeds, in a process of their own."""
     command = [sys.executable, PROGRAM, str(first), str(count), folder / "files"]
     environment = {**os.environ, "XDG_CACHE_HOME": str(folder / "cache")}
     told = subprocess.run(command, capture_output=True, text=True, timeout=1200, env=environment)

@@ -27,7 +27,7 @@ from surefoot.scenarios.show.differences import WALL_CLOCK
 
 TRIALS = int(os.environ.get("SUREFOOT_TRIALS", "2000"))
 SLOWEST, MOST = 10.0, 300 << 10
-"""What one log may take, on a busy machine [s, KiB]."""
+"""Most that one log may take, on a busy machine [s, KiB]."""
 
 STAND = {"fidelity": "pendulum", "duration": 0.6, "criteria.standing_time_final": {"min": 0.1}}
 
@@ -53,7 +53,7 @@ def content(log):
 
 
 def passes(path):
-    """Whether a log is judged a pass, in time and memory; refusing it in a sentence is no pass."""
+    """Return true if a log is judged a pass, in time and memory; refusing it in a sentence is no pass."""
     begin, peak = time.perf_counter(), resource.getrusage(resource.RUSAGE_SELF).ru_maxrss
     try:
         found = inspect(read(path))

@@ -20,7 +20,7 @@ MOST_LINES = 25
 
 
 def outcome(make, seed):
-    """What a trial ends as, after a look at what a person would be told."""
+    """Outcome of a trial, after a look at what a person would read."""
     begin = time.process_time()
     try:
         scenario = make()

@@ -27,7 +27,8 @@ def validator():
 
 
 def accepted(data):
-    """Whether the reader accepts the shape of a scenario: what it finds before it looks at robot, gait and ground."""
+    """Return true if the reader accepts the shape of a scenario: what it finds before it looks at robot, gait and
+    ground."""
     if not isinstance(data, dict) or unknown_metrics(data.get("criteria")):
         return False
     try:

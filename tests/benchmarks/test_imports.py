@@ -1,4 +1,4 @@
-"""What commands import, in counts, which no busy machine changes; the numbers are those of `benchmarks/limits.json`."""
+"""Imports of commands, in counts, which no busy machine changes; the numbers are those of `benchmarks/limits.json`."""
 
 import json
 import sys
@@ -62,7 +62,7 @@ UNUSED = {
     ),
     "sensing={source: ekf, preset: good}": (),
 }
-"""What a walk with a setting does not use, beside what none uses."""
+"""Modules that a walk with a setting does not use, beside what none uses."""
 
 OF_NO_WALK = ("surefoot.studies", "surefoot.apps", "surefoot.models.robot_file", "surefoot.scenarios.run.processes")
 

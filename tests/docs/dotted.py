@@ -4,7 +4,7 @@ import importlib
 
 
 def named(name):
-    """What a dotted name below surefoot leads to: a module, or something in one; None when there is no such thing."""
+    """The thing that a dotted name below surefoot leads to: a module, or something in one; None when there is none."""
     module, parts = "surefoot", name.removeprefix("surefoot.").split(".")
     while parts:
         try:

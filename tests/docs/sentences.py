@@ -44,7 +44,7 @@ def sentences(text: str) -> Iterator[str]:
 
 
 def words(sentence: str) -> int:
-    """How many words a sentence has: what has a letter or a digit in it and stands between spaces."""
+    """Number of words of a sentence: what has a letter or a digit in it and stands between spaces."""
     return sum(any(letter.isalnum() for letter in word) for word in sentence.split())
 
 

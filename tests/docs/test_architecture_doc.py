@@ -126,7 +126,7 @@ def test_the_push_of_the_page_becomes_what_the_page_says():
 
 
 def anchors(page):
-    """What a link may point to in a page: its headings as GitHub names them."""
+    """Anchors to which a link may point in a page: its headings as GitHub names them."""
     heads = re.findall(r"(?m)^#+ (.*)$", page.read_text(encoding="utf-8"))
     return {re.sub(r"[^\w\- ]", "", head.lower()).replace(" ", "-") for head in heads}
 

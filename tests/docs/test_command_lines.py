@@ -30,7 +30,7 @@ COMMANDS = typer.main.get_command(app)
 
 @cache
 def axes(campaign):
-    """Of a campaign that comes along, which --set can fix too."""
+    """Axes of a campaign that comes along, which --set can fix too."""
     return set(read_campaign(campaign).axes) if campaign in shipped() else set()
 
 
@@ -39,7 +39,7 @@ def options(command):
 
 
 def faults(line):
-    """What of a command line is not there."""
+    """Parts of a command line that are not there."""
     _, *words = shlex.split(line)
     command = COMMANDS if not words or words[0].startswith("-") else COMMANDS.commands.get(words[0])
     if isinstance(command, typer.core.TyperGroup) and command is not COMMANDS and words[1:]:

@@ -35,7 +35,7 @@ def files_of(folder):
 
 
 def imported(text):
-    """What a module imports: folders of the code by name, others by their first name; None for Python's own."""
+    """Imports of a module: folders of the code by name, others by their first name; None for Python's own."""
     for node in ast.walk(ast.parse(text)):
         if isinstance(node, ast.Import):
             names = [one.name for one in node.names]

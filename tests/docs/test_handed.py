@@ -1,4 +1,4 @@
-"""What the documentation says of the shapes that parts get and give is what they are in a walk."""
+"""Shapes that the documentation gives for what parts get and give are those of a walk."""
 
 import importlib.util
 import re
@@ -26,7 +26,7 @@ def handing():
 
 @pytest.fixture(scope="module")
 def crossed():
-    """What crosses the border in a tick, by its class; arguments of a task by name."""
+    """Values that pass to parts in a tick, by their class; arguments of a task by name."""
     seen = {}
 
     def note(*things):

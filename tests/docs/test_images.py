@@ -71,7 +71,11 @@ def test_the_digest_follows_the_sources(sources, tmp_path, monkeypatch):
         (tmp_path / source).write_bytes((ROOT / source).read_bytes())
     monkeypatch.setattr(sources, "ROOT", tmp_path)
     assert sources.digest("figures.png") == before
-    (tmp_path / sources.PALETTE).write_text("ZMP = (0.0, 0.0, 0.0)\n")
+    palette = tmp_path / sources.PALETTE
+    told = palette.read_text(encoding="utf-8").replace('"""', '"""Another sentence. ', 1) + "\n# And a comment.\n"
+    palette.write_text(told, encoding="utf-8")
+    assert sources.digest("figures.png") == before
+    palette.write_text("ZMP = (0.0, 0.0, 0.0)\n", encoding="utf-8")
     assert sources.digest("figures.png") != before
 
 

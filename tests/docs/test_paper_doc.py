@@ -52,7 +52,7 @@ def rows_of(number):
 
 @pytest.mark.parametrize("number", EQUATIONS)
 def test_every_equation_is_on_the_page_and_at_its_code(number):
-    """Of the code that a row names, something says in its docstring which equation it is."""
+    """Code that a row names says in a docstring which equation it is."""
     rows = rows_of(number)
     assert rows
     for names in rows:

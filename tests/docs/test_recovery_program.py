@@ -175,7 +175,7 @@ def drawn(rng):
 
 
 def code(case, numbers=N):
-    """What the code makes of a case, with its numbers of recovery."""
+    """Results of the code on a case, with its numbers of recovery."""
     adaptation = StepAdaptation.CROSSING if case.timing else StepAdaptation.LOCATION
     authority = tuple(case.authority.tolist())
     parameters = replace(P, cop_authority=authority, step_adaptation=adaptation, recovery=numbers)
@@ -183,7 +183,7 @@ def code(case, numbers=N):
 
 
 def agree(found, told):
-    """Whether they are the same, but for what the code sums up by samples and the page integrates."""
+    """Assert that they are the same, but for what the code sums up by samples and the page integrates."""
     if found is None or told is None:
         return found is told
     time, low, high, more, cost = told

@@ -1,4 +1,4 @@
-"""What docs/how-to/robot-refused.md quotes is what refusals say."""
+"""Quotes in docs/how-to/robot-refused.md are what refusals say."""
 
 import re
 from pathlib import Path
@@ -18,7 +18,7 @@ def quoted(rows):
 
 
 def said(words):
-    """Whether words stand in a source, one after another, also where its line ends in between."""
+    """Return true if words stand in a source, one after another, also where its line ends in between."""
     pattern = re.compile(r"(?:\s|\"\s*f?\")+".join(map(re.escape, words.split())))
     return any(
         pattern.search(path.read_text(encoding="utf-8")) for place in PLACES for path in (ROOT / place).rglob("*.py")

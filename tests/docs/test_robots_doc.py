@@ -1,4 +1,4 @@
-"""What docs/robots.md says of the robots that come along is true of them."""
+"""Statements of docs/robots.md about the robots that come along are true of them."""
 
 import re
 from pathlib import Path

@@ -15,7 +15,7 @@ pytestmark = [pytest.mark.unit, pytest.mark.long]
 
 ROOT = Path(__file__).parents[2]
 WIDTHS = (390, 1280)
-"""Of a phone and of a desktop [px]."""
+"""Widths of a phone and of a desktop [px]."""
 
 
 @pytest.fixture(scope="module")

@@ -35,7 +35,7 @@ def _yaml(path):
 
 
 def _gaits():
-    """Of the push map."""
+    """Gaits of the push map."""
     natural = _yaml("studies/campaigns/campaigns/push-map")["grid"]["gait"]["natural"]
     feet = [100 * _yaml("scenarios/catalogue/walk")["robot_options"][f"foot_{side}"] for side in ("length", "width")]
     paper, small = (
@@ -55,7 +55,7 @@ def _rigid():
 
 
 def _size():
-    """Of an installation [GB]."""
+    """Size of an installation [GB]."""
     kept = (ROOT / "docs" / "results" / "pythons.csv").read_text(encoding="utf-8").splitlines()
     return round(max(float(row["MB"]) for row in csv.DictReader(kept[2:]) if row["MB"]) / 1e3, 1)
 
@@ -149,7 +149,7 @@ CODED = {
         "/scene/forces": (1, 1 / drawing.METRES_PER_NEWTON, 20),
     },
 }
-"""By the page and the beginning of the row: its numbers, in order, as the code has them."""
+"""Rows by the page and the beginning of the row: its numbers, in order, as the code has them."""
 
 HELD = {
     ("README.md", "What walks"): "test_readme.py",
@@ -160,7 +160,7 @@ HELD = {
     ("docs/robots.md", "How a scenario fits every robot"): "test_robots_doc.py",
     ("docs/whole-body.md", "Numbers"): "test_whole_body_doc.py",
 }
-"""By the page and the heading: the module of tests that reads its tables."""
+"""Tables by the page and the heading: the module of tests that reads its tables."""
 
 TYPED = {
     ("README.md", "Limits"): (1, "the speed is a range over machines"),
@@ -186,7 +186,7 @@ TYPED = {
     ("docs/sensors.md", "Presets"): (2, "data sheets and models of others"),
     ("docs/sensors.md", "Motors"): (1, "a model of others"),
 }
-"""By the page and the heading: how many rows, and why they are typed."""
+"""Exceptions by the page and the heading: how many rows, and why they are typed."""
 
 
 def rows(page: str) -> list[Row]:
@@ -194,7 +194,7 @@ def rows(page: str) -> list[Row]:
 
 
 def begins(row: Row, name: str) -> bool:
-    """Whether the first cell of a row begins so."""
+    """Return true if the first cell of a row begins so."""
     return row.text.lstrip("| `").startswith(name)
 
 

@@ -135,7 +135,7 @@ def test_the_body_as_the_imu_sees_it_is_that_of_the_tree(models):
 
 
 def _of_sole(body, joint):
-    """How a joint moves the right sole against the base [m/rad]."""
+    """Motion of the right sole against the base by a joint [m/rad]."""
     return np.multiply(body.carries(joint, 1), body.moved_by(joint, body.in_base(1)))
 
 
@@ -196,7 +196,7 @@ def ends_of_legs(model):
 
 
 def test_what_pinocchio_itself_gives_is_refused_or_wrong(models):
-    """Where one of these fails, Pinocchio has learnt it, and `surefoot.engines.mimic` can do without it."""
+    """If one of these fails, Pinocchio has learnt it, and `surefoot.engines.mimic` can do without it."""
     short, whole = models
     data, tree_data = short.createData(), whole.createData()
     (q, v), (later, _), *_ = states(short)

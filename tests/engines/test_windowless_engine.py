@@ -14,7 +14,7 @@ pytestmark = pytest.mark.unit
 
 
 def said(code, **environment):
-    """What a program prints."""
+    """Output of a program."""
     done = subprocess.run(
         [sys.executable, "-c", code], capture_output=True, text=True, check=True, env={**os.environ, **environment}
     )

@@ -39,7 +39,7 @@ def test_examples_are_typed_as_a_users_script_is():
 
 
 SOON = ("run_and_read", "planner_alone", "controller_alone", "own_loop", "own_plant")
-"""Those that run at every change; the others with the long tests."""
+"""Examples that run at every change; the others with the long tests."""
 
 
 @pytest.mark.physics

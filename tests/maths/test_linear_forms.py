@@ -26,7 +26,7 @@ def forms(by_numpy):
 
 
 def both(forms, name, *given):
-    """What both forms write or return, of copies of what is given."""
+    """Results that both forms write or return, of copies of what is given."""
     found = []
     for form in forms:
         copies = [value.copy() if isinstance(value, np.ndarray) else value for value in given]

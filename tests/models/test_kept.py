@@ -1,4 +1,4 @@
-"""What is kept in the user's cache folder: found again as it was stored, and nothing else."""
+"""The store in the user's cache folder: entries are found again as they were stored, and nothing else."""
 
 import os
 import subprocess
@@ -31,7 +31,7 @@ def found():
 
 @pytest.fixture
 def entry(cache):
-    """Of a text that is kept."""
+    """The entry of a text that is kept."""
     kept.store("texts", KEY, b"text", most=16)
     assert found() == b"text"
     return cache / f"{KEY}.json"

@@ -42,7 +42,7 @@ def test_legs_are_the_chains_from_the_pelvis_to_the_soles() -> None:
 
 
 def test_a_knee_is_the_joint_that_shortens_its_leg() -> None:
-    """By the law of cosines; no other joint of the leg changes the distance of hip and ankle."""
+    """The law of cosines gives it; no other joint of the leg changes the distance of hip and ankle."""
     thigh, shank = 0.43, 0.43
     for side, knee, leg in zip(
         ("left", "right"), ROBOT.roles.knees, (ROBOT.roles.left_leg, ROBOT.roles.right_leg), strict=True

@@ -59,7 +59,7 @@ def test_states_of_both_agree_for_two_seconds(tree, tmp_path):
 
 
 def test_a_reading_that_is_rounded_shows_no_difference_below_a_bit_and_so_lets_it_grow(tree, tmp_path):
-    """Why a preset's noise has the rounding of its encoders in it: a walk is then the same on every machine."""
+    """A preset's noise has the rounding of its encoders in it: a walk is then the same on every machine."""
     COMPILED.or_skip()
     keys = '{"sensing.encoder_bits": 19, "sensing.encoder_noise": 1e-5}'
     (one, _), (other, _) = walked(tree, tmp_path, keys), walked(modules.ROOT, tmp_path, keys)

@@ -45,7 +45,7 @@ def checkout(bare):
 
 
 def python(folder: Path, *command: str, code: int = 0, **changed: str) -> str:
-    """What a program says there: its output, and then its errors."""
+    """Output of a program there, and then its errors."""
     environment = {**os.environ, "PYTHONPATH": str(folder), **changed}
     done = subprocess.run(
         [sys.executable, *command], env=environment, cwd=folder, capture_output=True, text=True, timeout=120

@@ -62,7 +62,7 @@ def wheel_from_sdist(distributions: tuple[Path, Path], tmp_path_factory: pytest.
 
 @pytest.fixture(scope="session")
 def wheel_without_compiler(distributions: tuple[Path, Path], tmp_path_factory: pytest.TempPathFactory) -> Path:
-    """Likewise on a machine whose compiler fails."""
+    """The wheel of a machine whose compiler fails."""
     with pytest.MonkeyPatch.context() as patch:
         patch.setenv("CC", "false")
         return _wheel_of(distributions[1], tmp_path_factory, compiled=False)

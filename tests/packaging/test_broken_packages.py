@@ -1,4 +1,4 @@
-"""What is wrong with another package is one sentence that names it, said to those alone who ask for what it brings."""
+"""Faults of another package are one sentence that names it, said to those alone who ask for what it brings."""
 
 import json
 

@@ -1,4 +1,4 @@
-"""What the package needs of others: declared, pinned, free of the GPL, and told if missing."""
+"""Dependencies of the package: declared, pinned, free of the GPL, and named if missing."""
 
 import re
 import shlex
@@ -70,13 +70,13 @@ def declared(name, installed):
 
 
 def licences(metadata):
-    """What a package says of its licence; of a text only the first line, since texts quote the licences of others."""
+    """Licence that a package declares; of a text only the first line, since texts quote the licences of others."""
     texts = (metadata.get(key, "").strip().split("\n")[0] for key in ("License-Expression", "License"))
     return [text for text in (*texts, *(metadata.get_all("Classifier") or ())) if not text.startswith("Topic")]
 
 
 def copyleft(licence):
-    """Whether a licence leaves no choice but the GPL."""
+    """Return true if a licence leaves no choice but the GPL."""
     return all(COPYLEFT.search(choice) for choice in re.split(r"\bOR\b", licence))
 
 

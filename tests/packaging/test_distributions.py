@@ -1,4 +1,4 @@
-"""What is installed: one import name, whole, wherever it is built from, and no name that can get in a user's way."""
+"""Installed distributions: one import name, whole, wherever it is built from, and no name in a user's way."""
 
 import os
 import re

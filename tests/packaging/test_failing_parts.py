@@ -212,7 +212,7 @@ RAISED = {
     "short": "gave ",
     "nan": "gave ",
 }
-"""What is said of each way to fail."""
+"""Messages for each way to fail."""
 
 
 @pytest.mark.unit

@@ -1,4 +1,4 @@
-"""What another package brings: found by its entry point alone, and as good as our own."""
+"""Parts of another package are found by its entry point alone, and as good as our own."""
 
 import json
 import sys

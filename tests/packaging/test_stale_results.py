@@ -12,7 +12,7 @@ MODULE = "my_package/parts.py"
 
 @pytest.fixture
 def now(monkeypatch):
-    """What is found of the packages of some sites, asked anew."""
+    """The packages of some sites, found anew."""
 
     def found(names, *sites):
         for made in sites:

@@ -1,4 +1,4 @@
-"""What a type checker says of programs that use the installed package: nothing if they are right, else every fault."""
+"""Findings of a type checker on programs that use the installed package: none if they are right, else every fault."""
 
 import subprocess
 import sys
@@ -69,7 +69,7 @@ FAULTS = {
     "fell: bool": "fell: Path",
     "judge(surefoot.read(path))": "judge(path)",
 }
-"""What is wrong in place of what is right, each once in the program."""
+"""Faults in place of what is right, each once in the program."""
 
 
 def test_a_program_with_the_whole_face_and_the_package_of_the_documentation(tmp_path, checked, documented):

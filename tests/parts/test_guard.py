@@ -16,7 +16,7 @@ GUARD = Guard(WHO)
 
 
 class Own(BaseException):
-    """Of an author who derives from the root of all."""
+    """An error of an author who derives from the root of all."""
 
 
 class MuteError(Exception):
@@ -77,7 +77,7 @@ def test_a_part_without_a_bottom_is_named():
 
 
 def test_the_authors_line_is_the_innermost_of_the_authors_own_package():
-    """Of a part that asks numpy and fails there, and of one that is called through Python's own library."""
+    """One part asks numpy and fails there, and one is called through Python's own library."""
     from functools import singledispatch
 
     import numpy as np

@@ -23,7 +23,7 @@ GROUP = "surefoot.lengths"
 
 
 class Length(float):
-    """What the registry of these tests is of."""
+    """The class that the registry of these tests is of."""
 
 
 LOADS: list[str] = []

@@ -1,4 +1,4 @@
-"""What the planner refuses is named by key, in its own words: scenario keys are not for it to spell."""
+"""Refusals of the planner are named by key, in its own words: scenario keys are not for it to spell."""
 
 import re
 from dataclasses import fields

@@ -1,4 +1,4 @@
-"""What `from surefoot.planner import ...` gives, and strangers behind it: a law and a whole planner from outside."""
+"""The names that `from surefoot.planner import ...` gives, and what strangers bring: a law and a planner."""
 
 import inspect
 import subprocess

@@ -105,7 +105,7 @@ UNNOTICED = {
     "steps.gait.WEIGHT_SHIFT",
     "flight._SAME_GROUND",
     "flight._SAME_TARGET",
-    "flight._TOLD",
+    "flight._IN_PLAN",
     "state._SAME_TIME",
     "track._LEAST_LEFT",
     "steps.schedule._MORE_STEPS",
@@ -192,7 +192,7 @@ def bare(node: ast.AST, inside: bool = False) -> Iterator[float]:
 
 
 def is_number(value: ast.expr) -> bool:
-    """Whether an expression is made of numbers alone."""
+    """Return true if an expression is made of numbers alone."""
     if isinstance(value, ast.Constant):
         return isinstance(value.value, int | float) and not isinstance(value.value, bool)
     if isinstance(value, ast.Tuple | ast.List):
@@ -221,7 +221,7 @@ CONSTANTS = dict(constants())
 
 
 def wanting(told: str) -> str:
-    """What a constant's text lacks."""
+    """Part that a constant's text lacks."""
     return "a unit" if not re.search(r"\[[^\]]+\]", told) else "" if REASON.search(told) else "a reason"
 
 
@@ -259,7 +259,7 @@ def test_every_constant_has_a_witness():
 
 
 def test_every_number_of_recovery_is_measured():
-    """By the campaign, halved and doubled, whose result the page shows; what moves nothing is noticed otherwise."""
+    """The campaign halves and doubles each, and the page shows the result; what moves nothing is noticed otherwise."""
     lines = (ROOT / "docs" / "results" / "recovery-numbers.csv").read_text().splitlines()
     kept = list(csv.DictReader(line for line in lines if not line.startswith("#")))
     names = [entry.name for entry in fields(RecoveryParameters)]

@@ -280,7 +280,7 @@ def about_to_land(disturb, adaptation=StepAdaptation.CROSSING, count=DECIDED + 2
 
 
 def moved(plans):
-    """How far the next footstep moves after it has been decided [m]."""
+    """Way of the next footstep after it has been decided [m]."""
     return float(np.hypot(*(plans[-1].footsteps[0].position - plans[DECIDED - 1].footsteps[0].position)[:2]))
 
 

@@ -39,7 +39,7 @@ CASES = {
 
 @pytest.fixture(scope="module")
 def acted(request):
-    """What each rule was shown and made of it, in walks that are pushed, where that was something."""
+    """Views that each rule was given and made, in walks that are pushed, where it changed something."""
     stand = request.getfixturevalue("stand")
     found = {rule: [] for rule in RULES}
 

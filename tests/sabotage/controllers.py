@@ -81,7 +81,7 @@ SABOTAGES = {
     "torque 4 ms late": LateTorque,
     "friction cone too wide": wide_cone,
 }
-"""Those that walks show."""
+"""Sabotages that walks show."""
 
 CONTROLLERS = {**SABOTAGES, "DCM gain 2.4 in place of 3": loose_balance, "orientation gains halved": loose_trunk}
 """With those that no walk shows, since it is planned anew from where the robot is 50 times a second."""

@@ -26,7 +26,7 @@ CODE = ("planner", "wbc", "sim", "models", "scenarios", "studies", "apps", "sure
 FOLDERS = (*CODE, "tests", "docs", "examples", "benchmarks")
 FILES = ("pyproject.toml", "Makefile", "README.md", "CHANGELOG.md", "CONTRIBUTING.md", "constraints.txt")
 LONGEST = 1800.0
-"""Of the tests of one mutant [s]; a mutant that takes longer runs without end and counts as found."""
+"""Longest time of the tests of one mutant [s]; a mutant that takes longer runs without end and counts as found."""
 
 SWAPS: dict[type, type] = {
     ast.Lt: ast.LtE, ast.LtE: ast.Lt, ast.Gt: ast.GtE, ast.GtE: ast.Gt, ast.Eq: ast.NotEq, ast.NotEq: ast.Eq,
@@ -34,7 +34,7 @@ SWAPS: dict[type, type] = {
     ast.Add: ast.Sub, ast.Sub: ast.Add, ast.Mult: ast.Div, ast.Div: ast.Mult, ast.And: ast.Or, ast.Or: ast.And,
     ast.USub: ast.UAdd,
 }  # fmt: skip
-"""What an operator becomes."""
+"""Replacements of an operator."""
 
 
 @dataclass(frozen=True, slots=True)

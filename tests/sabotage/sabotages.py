@@ -194,7 +194,7 @@ def _sensors(made: type) -> Sabotage:
 
 
 SLIPS = ("scenarios.judge.feet.stance_slips", "scenarios.check.signs.stance_slips")
-"""Where slips are looked at."""
+"""Places where slips are looked at."""
 
 
 WORLDS: Mapping[str, Sabotage] = {

@@ -27,11 +27,11 @@ EXPECTED = {
     "motors at once": ("control-motors", "failed", "foot_slip_max is 0.0009"),
     "joints without friction": ("control-motors", "failed", "foot_slip_max is 0.0028"),
 }
-"""What a control says of a kinder world and of a blunt judge: which, how, and its first words."""
+"""Reasons of a control in a kinder world and with a blunt judge: which, how, and its first words."""
 
 
 def reasons(name: str, sabotage: str | None, folder: Path) -> tuple[str, ...]:
-    """Why a scenario fails with a controller that was made worse, or with the sound one."""
+    """Reasons why a scenario fails with a controller that was made worse, or with the sound one."""
     parts = surefoot.Parts(controller=SABOTAGES[sabotage]) if sabotage else None
     return surefoot.run(name, out=folder, parts=parts).verdict.reasons
 

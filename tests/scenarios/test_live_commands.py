@@ -109,7 +109,7 @@ def test_a_walk_that_ends_before_its_place_fails_though_it_was_asked_for_nothing
     keys = {**STANDING, "gait.waypoints": WAYPOINTS, "duration": 4.0}
     bare = surefoot.load("walk", keys).model_copy(update={"criteria": {}})
     reasons = surefoot.run(bare, out=tmp_path / "short").verdict.reasons
-    assert "m from where it was told to go last" in reasons[0]
+    assert "m from where it was commanded to go last" in reasons[0]
     assert "never came to" in reasons[-1]
     bounds = {name: Bound(max=9.0) for name in ("place_error", "heading_error", "waypoints_missed")}
     far = surefoot.load("walk", keys).model_copy(update={"criteria": bounds})

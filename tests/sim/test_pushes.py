@@ -65,7 +65,7 @@ def test_measurement_reports_the_force_of_the_last_step() -> None:
 @pytest.mark.parametrize("control_steps", [1, 2, 7])
 @pytest.mark.parametrize(("time", "duration"), [(0.0, 0.01), (0.0005, 0.0004), (0.0103, 0.0042), (0.0017, 0.0013)])
 def test_the_measured_forces_add_up_to_the_impulse(control_steps: int, time: float, duration: float) -> None:
-    """Of pushes shorter than a tick, too, and of one that comes on the way; `measure` may be asked twice."""
+    """Some pushes are shorter than a tick, and one comes on the way; `measure` may be asked twice."""
     world, total = _floating((Push(time, duration, FORCE, "torso"),)), np.zeros(3)
     while world.tick < 40:
         if world.tick == 14:

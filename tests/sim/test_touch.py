@@ -1,4 +1,4 @@
-"""What touches what, by MuJoCo's contacts."""
+"""Contacts by MuJoCo: of the ground, and of the robot with itself."""
 
 import mujoco
 import numpy as np
@@ -26,7 +26,7 @@ def world(robot: RobotDescription) -> World:
 
 
 def _posed(world: World, robot: RobotDescription, **angles: float) -> bool:
-    """Whether the floating robot touches itself with these joint angles [rad] on top of its mild crouch."""
+    """Return true if the floating robot touches itself with these joint angles [rad] on top of its mild crouch."""
     q = np.concatenate(([0.0, 0.0, FLOATING, 0.0, 0.0, 0.0, 1.0], robot.nominal_joint_positions))
     for name, angle in angles.items():
         q[7 + robot.joint_names.index(name)] += angle

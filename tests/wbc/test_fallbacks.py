@@ -1,4 +1,4 @@
-"""What the controller does when solvers fail or its input is no number."""
+"""Fallbacks of the controller when solvers fail or its input is no number."""
 
 import numpy as np
 import pytest

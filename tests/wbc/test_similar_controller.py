@@ -1,4 +1,4 @@
-"""Of a robot of another size in a similar state, the controller asks for the torques of the reference robot, scaled."""
+"""A robot of another size in a similar state gets the torques of the reference robot, scaled."""
 
 from dataclasses import replace
 

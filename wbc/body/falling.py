@@ -1,8 +1,8 @@
 """Torques of a robot that falls: its joints give way, so that nothing stiff meets the ground.
 
 A whole-body controller that still tries to balance drives joints into their stops and saturates torques on the way
-down. Dampers at all joints let gravity fold the legs, at rates far below the joints' limits, and take the energy of the
-fall out; soft stops before the ends of the ranges keep joints inside.
+down. Dampers at all joints let gravity fold the legs at rates far below the joints' limits, and take the energy of the
+fall out. Soft stops before the ends of the ranges keep joints inside.
 """
 
 import numpy as np
@@ -15,8 +15,10 @@ DAMPING = 0.05
 """Torque of a damper at 1 rad/s over the largest torque of its joint, of the reference robot [s/rad]."""
 
 STOP, STIFFNESS = 0.15, 2.0
-"""How far before the end of its range a joint is turned back [rad], a quarter of the range at most, and by how much of
-its torque per radian [1/rad]."""
+"""Distance from the end of its range at which a joint is turned back, at most a quarter of the range [rad].
+
+The second is the torque that turns it back for each radian, over the joint's largest torque [1/rad].
+"""
 
 
 class GivingWay:
@@ -33,7 +35,7 @@ class GivingWay:
         self._most, self._lower, self._upper = limits.torque, limits.lower + before, limits.upper - before
 
     def torque(self, position: Array, velocity: Array) -> Array:
-        """Joint torques within their limits, shape (nj,) [N·m]; positions and velocities likewise [rad, rad/s]."""
+        """Joint torques within their limits, shape (nj,) [N·m]; of position and velocity, shape (nj,) [rad, rad/s]."""
         inside = np.clip(position, self._lower, self._upper)
         share = STIFFNESS * (inside - position) - self._damping * velocity
         return np.asarray(self._most * np.clip(share, -1.0, 1.0))

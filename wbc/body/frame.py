@@ -18,10 +18,10 @@ class Frame:
         model: Pinocchio's.
         data: Pinocchio's; what is here reads and writes its memory.
         frame: its number.
-        joints: columns of the joints' Jacobian, as of `JointColumns`, shape (6, nv).
+        joints: columns of the joints' Jacobian, the values of `JointColumns`, shape (6, nv).
         jacobian: to be written, from v to linear and angular velocity, shape (6, nv).
         velocity: to be written, linear and angular, shape (6,) [m/s, rad/s].
-        bias: to be written, likewise, shape (6,) [m/s^2, rad/s^2].
+        bias: to be written, linear and angular, shape (6,) [m/s^2, rad/s^2].
     """
 
     def __init__(

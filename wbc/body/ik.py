@@ -14,7 +14,7 @@ from surefoot.wbc.types import Array
 
 @dataclass(frozen=True, slots=True)
 class PostureTarget:
-    """What the posture shall fulfil; world frame.
+    """The targets of the posture; world frame.
 
     Attributes:
         sole_position: sole centres, or centres of the lines on which leaning soles stand, shape (2, 3) [m].

@@ -1,10 +1,10 @@
 """Feet that lean sideways with their shanks: legs without a joint that rolls the foot, which stands on a side edge.
 
 Such a leg has five joints. Its sole moves in five directions at will; how it rolls about its long axis follows from
-where the hip is. So it touches the ground along one of its long edges, a line about which it is free to turn, and is
-seen from a frame on that line, turned back to level: of a wrench there the moment about the line is zero, and five of
-the six motions are the leg's. It is the outer edge, since the body comes over a foot from the inner side, but for a leg
-that leans far the other way.
+where the hip is. So it touches the ground along one of its long edges, a line about which it is free to turn. It is
+seen from a frame on that line, turned back to level. There the moment about the line is zero, and five of the six
+motions are the leg's. It is the outer edge, since the body comes over a foot from the inner side, but for a leg that
+leans far the other way.
 """
 
 import math

@@ -38,7 +38,7 @@ class RobotTerms:
     """Dynamics, centroidal quantities and frame kinematics of the current state.
 
     The pelvis is the floating base. Frame Jacobians, velocities and bias accelerations are local to their frame and
-    classical (what an accelerometer at the frame would add to gravity), so that one sole Jacobian serves the contact
+    classical: what an accelerometer at the frame would add to gravity. So one sole Jacobian serves the contact
     constraint, the swing task and the map from sole wrenches to generalised forces. Every array is a buffer that
     ``update`` overwrites.
 
@@ -151,7 +151,10 @@ class RobotTerms:
 
     def _name(self) -> None:
         """Name the same memory for compiled laws."""
-        self._q, self._v, self._c, self._c_dot = self.q, self.v, self.com, self.com_velocity
+        self._q = self.q
+        self._v = self.v
+        self._c = self.com
+        self._c_dot = self.com_velocity
         self._L, self._h = self.angular_momentum, self.bias
         self._M, self._J, self._W = self.mass_matrix, self.contact_jacobian, self.sole_wrench_map
         self._R_base, self._w_base = self.base_rotation, self.base_angular_velocity
@@ -174,7 +177,7 @@ class RobotTerms:
         self._update()
 
     def _update(self) -> None:
-        """What follows from Pinocchio's terms."""
+        """Work out what follows from Pinocchio's terms."""
         total = 0.0
         for i in range(self._q.shape[0]):
             total += self._q[i] * self._q[i]
@@ -206,7 +209,7 @@ class RobotTerms:
         self._place()
 
     def _place(self) -> None:
-        """What follows: the momentum of the one about the CoM of the other."""
+        """Work out what follows: the momentum of the one about the CoM of the other."""
         h = self._momentum
         p = (h[0], h[1], h[2])
         turn = algebra.cross(p, algebra.vector(self._c))
@@ -258,7 +261,7 @@ class RobotTerms:
         algebra.see_wrench(self._R_sole[k], algebra.vector(self._p_sole[k]), self._W[:, 6 * k : 6 * k + 6])
 
     def _place_sole(self, k: int) -> None:
-        """Where a sole is, of a frame that is in its place."""
+        """Place a sole, of a frame that is in its place."""
         frame, pose = self._sole(k), self._pose[k]
         self._R_sole[k, :, :] = frame.rotation
         self._p_sole[k, :] = frame.position
@@ -266,7 +269,7 @@ class RobotTerms:
         algebra.quaternion(self._R_sole[k], pose[3:])
 
     def level_soles(self, toe: float) -> Array:
-        """Where the soles' centres would be if each foot turned level about its toe edge, shape (2, 3) [m].
+        """Centres of the soles if each foot turned level about its toe edge, shape (2, 3) [m].
 
         Of leaning soles, the centres of the lines on which they stand.
 

@@ -119,7 +119,7 @@ class Pair:
     Args:
         model: the robot.
         data: where Pinocchio places its joints.
-        jacobian: columns of the joints, as of `JointColumns`, shape (6, nv).
+        jacobian: columns of the joints, the values of `JointColumns`, shape (6, nv).
         geometry: the shapes.
         pair: their numbers.
 
@@ -145,7 +145,7 @@ class Pair:
         self._R, self._p = np.zeros((3, 3)), (0.0, 0.0, 0.0)
 
     def is_due(self, attention: float) -> bool:
-        """Whether the distance may be less than that [m]; what is due is taken as measured in this place."""
+        """Return true if the distance may be less than that [m]; what is due is taken as measured in this place."""
         turned = linear.distance_squared(self._R_1, self._R_2, self._R)
         now = self._seen()
         moved = algebra.subtract(now, self._p)
@@ -177,7 +177,7 @@ class Pair:
         Args:
             direction: from the nearest point of the first shape to that of the second one, shape (3,).
             first: nearest point of the first shape, in the world, shape (3,) [m].
-            second: that of the second one, likewise.
+            second: nearest point of the second shape, in the world, shape (3,) [m].
             v: generalised velocity, shape (nv,).
             rows: shape (slots, nv).
             slot: number of the row.

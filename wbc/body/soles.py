@@ -1,4 +1,4 @@
-"""Soles turned level, and where they point: what a planner, to which feet are flat, is told of them."""
+"""Soles turned level, and where they point: the feet that a planner, to which they are flat, is given."""
 
 import math
 
@@ -8,7 +8,7 @@ from surefoot.wbc.types import Array
 
 
 def level(position: Array, rotation: Array, toe: float) -> Array:
-    """Where the soles' centres would be if each foot turned level about its toe edge, shape (2, 3) [m].
+    """Centres of the soles if each foot turned level about its toe edge, shape (2, 3) [m].
 
     Args:
         position: of the soles' centres in the world, shape (2, 3) [m].

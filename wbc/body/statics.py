@@ -8,7 +8,7 @@ from surefoot.wbc.body.model import BodyFrames
 from surefoot.wbc.types import Array
 
 LEVER = 0.1
-"""At which the reference robot's sole moments count as forces [m]."""
+"""Lever at which the reference robot's sole moments count as forces [m]."""
 
 
 def standing_torque(
@@ -57,8 +57,8 @@ def standing_torque(
 def bearing_torque(model: pin.Model, frames: BodyFrames, q: Array, foot: int) -> Array:
     """Joint torques, shape (nj,) [N·m], at a configuration q, shape (nq,), whose weight one foot bears alone.
 
-    The CoM need not be over that foot: as on a linear inverted pendulum, all of the robot is accelerated alike,
-    horizontally, so that the force f from the sole's centre goes through the CoM; τ = M a + g(q) - Jᵀ f.
+    The CoM need not be over that foot. As on a linear inverted pendulum, all of the robot is accelerated alike,
+    horizontally, so that the force f from the sole's centre goes through the CoM: τ = M a + g(q) - Jᵀ f.
 
     Args:
         model: the robot.

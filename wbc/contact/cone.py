@@ -38,7 +38,7 @@ class Sole:
             depth: half length of the strip that stands for the edge [m].
 
         Returns:
-            As of `wrench_cone`, shape (16, 6) each [-, m].
+            C of both, shape (16, 6) each [-, m], see `wrench_cone`.
 
         Raises:
             ValueError: the sole has no extent or no friction.

@@ -25,4 +25,4 @@ cdef class ContactSchedule:
     @cython.locals(cap=double, remaining=double, share=double)
     cdef double _cap(self, Py_ssize_t k, WbcReference reference) noexcept
     @cython.locals(last=ContactState)
-    cdef ContactState _told(self, (double, double) cap, int rolling, (bint, bint) landing)
+    cdef ContactState _contacts(self, (double, double) cap, int rolling, (bint, bint) landing)

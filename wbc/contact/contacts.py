@@ -1,4 +1,4 @@
-"""Which contacts the whole-body QP holds, and how much load each may take: plan and feeling combined."""
+"""The contacts that the whole-body QP holds, and the load that each may take: plan and feeling combined."""
 
 from dataclasses import dataclass
 
@@ -30,9 +30,9 @@ class ContactSchedule:
     """Follows the plan, but never against the feet.
 
     - A planned contact becomes active when the foot feels the ground: a late foot goes on searching downwards.
-    - A swing foot that feels the ground after ``early_progress`` becomes active at once and stays so, with a small load
-      until its planned touchdown, whether or not it feels it: lifting and landing again would only shake the ZMP. The
-      plan's clock does not move, but for a step that catches the body.
+    - A swing foot that feels the ground after ``early_progress`` becomes active at once and stays so. It gets a small
+      load until its planned touchdown, whether or not it feels the ground: to lift it again would only shake the ZMP.
+      The plan's clock does not move, but for a step that catches the body.
     - A foot that comes to the ground before the next tick counts as one that feels it, lest a command swings on a foot
       that stands. So does one with which the planner has ended a single support.
     - A foot is released when the plan lifts it, unless it would be the last contact.
@@ -69,8 +69,8 @@ class ContactSchedule:
         most = 3.0 * self.weight
         if self._active[0] and self._active[1]:
             caps, awaited = (self._cap(0, reference), self._cap(1, reference)), (self._awaited[0], self._awaited[1])
-            return self._told(caps, reference.rolling_foot, awaited)
-        return self._told((most, 0.0) if self._active[0] else (0.0, most), -1, (False, False))
+            return self._contacts(caps, reference.rolling_foot, awaited)
+        return self._contacts((most, 0.0) if self._active[0] else (0.0, most), -1, (False, False))
 
     def _feel(self, k: int, force: float, contact: tuple[bool, bool] | None, touches: bool) -> None:
         """Note whether a foot counts as loaded, and whether it does so before anything is felt of it."""
@@ -105,7 +105,7 @@ class ContactSchedule:
             cap = min(cap, self.weight * (share + self._share_margin * remaining))
         return cap
 
-    def _told(self, cap: tuple[float, float], rolling: int, landing: tuple[bool, bool]) -> ContactState:
+    def _contacts(self, cap: tuple[float, float], rolling: int, landing: tuple[bool, bool]) -> ContactState:
         """The contacts, which are the same object where they are those of the tick before."""
         last = self._last
         if not (

@@ -24,7 +24,7 @@ cdef class LoadObserver:
     @cython.locals(i=Py_ssize_t, j=Py_ssize_t, felt=double)
     cdef void _feel(self, RobotTerms terms)
     @cython.locals(is_found=cython.bint, is_known=cython.bint, i=Py_ssize_t)
-    cdef void _end(self, double unsure, double turning)
+    cdef void _end(self, double deviation, double turning)
     @cython.locals(late=double)
     cdef double _late(self) noexcept
     @cython.locals(i=Py_ssize_t, is_pressed=cython.bint, turning=algebra.vector3)
@@ -37,7 +37,7 @@ cdef class LoadObserver:
         i=Py_ssize_t, calm=double, lasting=double, latest=double, deviation=double, least=double, kept=double,
         sudden=double, share=double, most=double,
     )
-    cdef void _follow(self, double unsure)
+    cdef void _follow(self, double deviation)
     @cython.locals(k=Py_ssize_t, hardest=double)
     cdef double _calm(self) noexcept
     @cython.locals(k=Py_ssize_t, place=Py_ssize_t, value=double, middle=double)

@@ -1,4 +1,4 @@
-"""What acts on the robot beside gravity and the ground, and how heavy it is, from what its soles feel.
+"""External forces beside gravity and the ground, and the robot's weight, from what its soles feel.
 
 Momentum changes by forces alone: over a span T the contact forces F and moments M about the origin, a force f and a
 moment about the CoM n from elsewhere, and the weight give, with the momentum p and the moment of momentum L about the
@@ -7,11 +7,11 @@ origin (of which masses all are the model's times one factor s)
     s m (g + Δv_z / T) = mean F_z,    f = s Δp / T - mean F,    n + c x f = s ΔL / T - mean M - s m c x g.
 
 No acceleration is measured for that, and how the robot moves and stands does not matter. It is the momentum observer
-of De Luca and Mattone (ICRA 2003), with means over spans and their medians in place of its low-pass. What lasts is told
-from a push, which has done what it does when it is over and may be hard: of what is new only little counts.
+of De Luca and Mattone (ICRA 2003), with means over spans and their medians in place of its low-pass. A lasting force
+is distinguished from a push, which is over once it has acted and may be hard: of what is new only little counts.
 
 Forces that sensors tell are late, and a low pass makes them later. They are held against momentum and CoM of the time
-when they acted. Held against the momentum of now, forces of 4 ms ago told a moment of 8 N·m that nobody exerted, on a
+when they acted. Held against the momentum of now, forces of 4 ms ago showed a moment of 8 N·m that nobody exerted, on a
 robot of 33 kg at 0.8 m/s: what the feet push is far below the CoM.
 
 Forces, moments and their rates below are the reference robot's (see `surefoot.similarity`). The span is that of
@@ -42,24 +42,31 @@ KEPT = (4.0, 8.0)
 walks leave 1.2 N and 1.2 N·m."""
 
 SUDDEN = (10.0, 20.0)
-"""Likewise of what acts now; walking at 1 m/s leaves 8 N and 6 N·m."""
+"""Force [N] and moment [N·m] of what acts now that are none, and from which on all of it counts.
+
+Walking at 1 m/s leaves 8 N and 6 N·m.
+"""
 
 LASTING, ACTING = (1.0, 2.0), (4.0, 7.0)
-"""Deviations of one span by which the limits of what lasts and of what acts now are wider, by the root of the sum
-of squares, where the state is estimated; a median of 13 spans has a third of it, one of three two thirds [-]."""
+"""Deviations of one span that widen the limits of what lasts and of what acts now, where the state is estimated [-].
+They are added by the root of the sum of squares. A median of 13 spans has a third of one span's deviation, a median of
+three has two thirds."""
 
 BOUND = (40.0, 12.0)
 """No more force and moment counts of what acts now and has not lasted: it may be a push, soon over [N, N·m]."""
 
 PUSH = (50.0, 60.0)
-"""Force of the hardest of the latest spans which is still taken for one that will last, and which is a push, of which
-nothing counts [N]: to lean into a push that is soon over felled small feet."""
+"""Force of the hardest of the latest spans up to which it counts as lasting, and from which on it is a push and does
+not count [N]. A robot with small feet fell when it leaned into a push that was soon over."""
 
 WEIGHT = (0.01, 0.02)
-"""Likewise of what the robot weighs more or less than its model, as a share of that; these leave 0.001 [-]."""
+"""Share by which the robot weighs more or less than its model that is none, and from which on all of it counts [-].
+
+Undisturbed walks leave 0.001.
+"""
 
 RATES = (1000.0, 1000.0, 2.0)
-"""How fast force, moment and share of the weight may change [N/s, N·m/s, 1/s]."""
+"""Fastest change of force, moment and share of the weight [N/s, N·m/s, 1/s]."""
 
 MOST = 0.8
 """Largest share of the weight by which the model's is set right [-]."""
@@ -161,16 +168,16 @@ class LoadObserver:
         for i in range(3):
             self._com[i] += terms._c[i]
 
-    def _end(self, unsure: float, turning: float) -> None:
+    def _end(self, deviation: float, turning: float) -> None:
         """End a span, whose load has that deviation of its force and moment [N, N·m]."""
-        is_found, is_known = self._balance(self._late()), math.isfinite(unsure + turning)
+        is_found, is_known = self._balance(self._late()), math.isfinite(deviation + turning)
         # What comes before it is known would say least, and must not count.
         if not is_known:
             self._waits, self._filled = True, 0
         if is_found and is_known and not (self._waits and self._filled < SPANS):
             for i in range(_PULLS):
-                self._deviation[i] = unsure if i < 2 else turning
-            self._follow(unsure / self._weight)
+                self._deviation[i] = deviation if i < 2 else turning
+            self._follow(deviation / self._weight)
             self._tell()
 
     def _late(self) -> float:
@@ -182,7 +189,10 @@ class LoadObserver:
     def _balance(self, late: float) -> bool:
         """Hold the forces of a span, late by so many ticks, against its change of momentum; whether it found a load."""
         self._see(late)
-        now, before, change, found = self._now, self._momentum, self._change, self._found
+        now = self._now
+        before = self._momentum
+        change = self._change
+        found = self._found
         # By how much the CoM was farther back when the forces acted, in the time of a momentum.
         back = 0.5 * late * self._span / (self._ticks * self._mass)
         for i in range(3):
@@ -226,7 +236,7 @@ class LoadObserver:
             self._filled += 1
         self._spans[self._filled - 1] = self._found
 
-    def _follow(self, unsure: float) -> None:
+    def _follow(self, deviation: float) -> None:
         """Let the load follow what lasts, where the share of the weight has that deviation."""
         calm, wanted = self._calm(), self._wanted
         wanted[:] = 0.0
@@ -238,13 +248,13 @@ class LoadObserver:
             sudden = algebra.clamp(sudden, -self._bound[i], self._bound[i]) * calm
             wanted[i] = sudden if abs(sudden) > abs(kept) else kept
         share = algebra.clamp(self._median(_PULLS, SPANS), -MOST, MOST)
-        wanted[_PULLS] = _ramp(share, self._share, unsure, self._lasting_wide)
+        wanted[_PULLS] = _ramp(share, self._share, deviation, self._lasting_wide)
         for i in range(len(wanted)):
             most = self._most_change[i]
             self._estimate[i] += algebra.clamp(wanted[i] - self._estimate[i], -most, most)
 
     def _calm(self) -> float:
-        """How far the latest spans are from a push: of the one in which a push ends only a part is in it."""
+        """Distance of the latest spans from a push: of the one in which a push ends only a part is in it."""
         none, full, hardest = self._push[0], self._push[1], 0.0
         for k in range(max(self._filled - LATEST, 0), self._filled):
             hardest = max(hardest, math.hypot(self._spans[k, 0], self._spans[k, 1]))

@@ -27,7 +27,7 @@ class FloatingBase:
     Args:
         stand: state of the filter, whose arrays stay where they are.
         body: kinematics of the robot.
-        rate: angular velocity of the IMU with its bias, in an array that stays likewise, shape (3,) [rad/s].
+        rate: angular velocity of the IMU with its bias, in an array that stays where it is, shape (3,) [rad/s].
 
     Attributes:
         q: configuration, shape (7 + nj,) [m, -, rad].
@@ -35,7 +35,10 @@ class FloatingBase:
     """
 
     def __init__(self, stand: Stand, body: SensedBody, rate: Array) -> None:
-        self._stand, self._body, self._chain, self._rate = stand, body, body.chain, rate
+        self._stand = stand
+        self._body = body
+        self._chain = body.chain
+        self._rate = rate
         self._R, self._turn, self._half = np.zeros((3, 3)), np.zeros((3, 3)), np.zeros((3, 3))
         joints = body.model.nv - 6
         self.q, self.v = np.zeros(7 + joints), np.zeros(6 + joints)
@@ -61,8 +64,8 @@ class FloatingBase:
         """State of the robot at another time, with what the filter knows of places.
 
         Args:
-            position: as of `state`.
-            velocity: likewise.
+            position: of the joints by their encoders, shape (nj,) [rad].
+            velocity: of the joints, shape (nj,) [rad/s].
             v: velocity of the IMU in the world [m/s].
             rate: its angular velocity with its bias, in its own axes [rad/s].
         """
@@ -101,6 +104,6 @@ class FloatingBase:
         algebra.put(self._v[3:], algebra.add(spin, turned))
 
     def _is_near(self) -> bool:
-        """Whether place and speed are those of a robot; nothing that is not finite is less than a number."""
+        """Return true if place and speed are those of a robot; nothing that is not finite is less than a number."""
         place = self._q[:7]
         return linear.dot(place, place) < self._farthest and linear.dot(self._v, self._v) < self._fastest

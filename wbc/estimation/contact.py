@@ -1,4 +1,4 @@
-"""Which soles the ground carries, by their wrenches, and the wrenches freed of what the sensors add."""
+"""The soles that the ground carries, by their wrenches, and the wrenches freed of what the sensors add."""
 
 import math
 from collections.abc import Sequence
@@ -15,7 +15,7 @@ CUT, QUIET = 100.0, 5.0
 """Highest cut-off of the wrenches' low pass, and the force noise up to which it holds [Hz, N]."""
 
 SLOW_CUT = 15.0
-"""Of a slower one, in which a light touch rises out of the noise that hides it from the other [Hz]."""
+"""Cut-off of a slower one, in which a light touch rises out of the noise that hides it from the other [Hz]."""
 
 CARRIES = 0.4
 """Share of the weight above which the other foot carries, while one is tared [-]."""
@@ -149,7 +149,7 @@ class SoleContact:
             self.felt[k], self._count[k] = bool(touches), 0
 
     def _flat(self, k: int) -> bool:
-        """Whether a sole that is felt lies flat: its CoP is well inside it, or it is all that carries."""
+        """Return true if a sole that is felt lies flat: its CoP is well inside it, or it is all that carries."""
         load = self._force(k)
         if self._force(1 - k) < self.threshold:
             return True
@@ -174,7 +174,7 @@ class SoleContact:
 
 
 def sprung(changed: Array, half_size: tuple[float, float], give: float) -> Array:
-    """How soles on springs under their corners move under a change of their wrenches.
+    """Motion of soles on springs under their corners under a change of their wrenches.
 
     Springs that give by a depth g under a force of 1 N turn under a moment M by M g / h², with h the half size across
     its axis: the corners are at plus and minus h.

@@ -1,4 +1,4 @@
-"""How unsure the invariant filter is of its state: covariance of its error over time, and the gain that follows.
+"""The uncertainty of the invariant filter: covariance of its error over time, and the gain that follows.
 
 An error is after a time t (Hartley et al. 2020, eq. 28 and 37; see `surefoot.wbc.estimation.invariant_filter`)
 
@@ -23,7 +23,7 @@ from surefoot.wbc.estimation.stand import AXES, Stand
 from surefoot.wbc.types import Array
 
 LEANING = 3.0
-"""By how much a sole that leans turns about its line in a second, as a deviation: it tells of nothing else [rad/√s]."""
+"""Deviation of a second's turn of a sole that leans, about its line, which says nothing of its attitude [rad/√s]."""
 
 UNSURE = 0.5
 """Deviation of what springs under a sole do, over what they are believed to do [-]."""
@@ -47,7 +47,7 @@ class Covariance:
     Attributes:
         P: covariance, shape (n, n) with n = 30 + m, in an array that stays where it is.
         gain: K, of which as many columns count as numbers are seen, shape (n, 12).
-        weights: S⁻¹ likewise, shape (12, 12).
+        weights: S⁻¹, of which as many rows and columns count, shape (12, 12).
     """
 
     def __init__(self, state: Stand, sensors: SensorNoise, ground: GroundNoise, leaning: bool) -> None:
@@ -150,14 +150,17 @@ class Covariance:
 
         Args:
             feet: that stand, shape (1,) or (2,).
-            J: Jacobians of both soles as of `SensedBody.offset_jacobians`, shape (2, 6, m + 3).
+            J: Jacobians of both soles, by `SensedBody.offset_jacobians`, shape (2, 6, m + 3).
             ticks: of which the kinematics were taken.
 
         Returns:
             Whether the covariance of what is seen is positive. Where it is not, nothing is done.
         """
         rows = POSE * len(feet)
-        PH, HP, weights, U = self._PH[:, :rows], self._HP[:rows], self._weights[:rows, :rows], self._U[:rows, :rows]
+        PH = self._PH[:, :rows]
+        HP = self._HP[:rows]
+        weights = self._weights[:rows, :rows]
+        U = self._U[:rows, :rows]
         for i in range(len(feet)):
             self._look(POSE * i, feet[i], J[feet[i]])
         self._project(rows)
@@ -187,7 +190,10 @@ class Covariance:
 
     def _project(self, rows: int) -> None:
         """P Hᵀ and H P Hᵀ, shapes (n, rows) and (rows, rows)."""
-        P, PH, S, RJ = self._P, self._PH[:, :rows], self._S[:rows, :rows], self._RJ[:rows]
+        P = self._P
+        PH = self._PH[:, :rows]
+        S = self._S[:rows, :rows]
+        RJ = self._RJ[:rows]
         apart, at, from_ = self._apart[:, :rows], self._at[:rows], self._from[:rows]
         linear.row_products(P[:, stand.OFFSETS_AT :], RJ, PH)
         linear.differences(P, at, from_, apart)

@@ -1,4 +1,4 @@
-"""How sure an estimate is: standard deviations of what planner and controller use, by the covariance of the filter."""
+"""Standard deviations of the estimates that planner and controller use, by the covariance of the filter."""
 
 import math
 
@@ -16,13 +16,13 @@ from surefoot.wbc.estimation.stand import Stand
 from surefoot.wbc.types import GRAVITY, Array
 
 LASTS = 3.0
-"""By how much more counts what does not change from span to span: no median takes it out, as it does noise [-]."""
+"""Weight of what does not change from span to span: no median takes it out, as it does noise [-]."""
 
 
 class Doubt:
     """Standard deviations of an estimate.
 
-    What is told is linear in the error ξ of the filter, whose covariance is P: it has the variance r' P r for the row r
+    An estimate is linear in the error ξ of the filter, whose covariance is P: it has the variance r' P r for the row r
     that it makes of ξ. A turn ξ_R moves a point x by ξ_R x, and an offset moves it as its joint does, the other way.
 
     Args:
@@ -30,7 +30,7 @@ class Doubt:
         sensors: noise of the sensors.
         rate_noise: standard deviation of a joint's velocity [rad/s].
         state: of the filter, whose arrays stay where they are.
-        P: covariance of its error, which stays likewise, shape (n, n).
+        P: covariance of its error, in an array that stays where it is, shape (n, n).
 
     Attributes:
         lever: the CoM from the stance sole's centre, in axes of the IMU, as last looked at [m].
@@ -56,7 +56,10 @@ class Doubt:
         """
         self.look(1 if contact.wrench[1, 2] > contact.wrench[0, 2] else 0, gyro)
         deviation = np.sqrt(self._variances)
-        com, heights, apart, tilt = deviation[:3], deviation[3:5], deviation.item(5), deviation[6:8]
+        com = deviation[:3]
+        heights = deviation[3:5]
+        apart = deviation.item(5)
+        tilt = deviation[6:8]
         speed, up = deviation[8:], algebra.inner(self.lever, algebra.row(self._R, 2))
         load = self._of_load(float(speed[:2].max()), float(com[:2].max()), float(tilt.max()), up, gyro, contact)
         return Deviation(com, speed, tilt, heights, apart, *load)

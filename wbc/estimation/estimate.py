@@ -1,4 +1,4 @@
-"""What an estimator says, how sure it is of that, and what it is told back."""
+"""The answer of an estimator with its uncertainty, and the plan that the controller gives back to it."""
 
 from collections.abc import Mapping
 from dataclasses import dataclass, field
@@ -31,7 +31,7 @@ class Deviation:
 
 @dataclass(frozen=True)
 class Estimate:
-    """What an estimator makes of the readings of a tick.
+    """The estimate from the readings of a tick.
 
     Attributes:
         state: of the robot now.
@@ -53,7 +53,7 @@ class Estimate:
 
 @dataclass(frozen=True)
 class Planned:
-    """What the controller has decided at a tick: what an estimator is told back after it.
+    """The decisions of the controller at a tick, which an estimator is given after it.
 
     Attributes:
         acceleration: generalised acceleration q'' of the whole-body QP, shape (nv,) [m/s^2, rad/s^2].

@@ -16,7 +16,7 @@ cdef class SensedState:
     cdef readonly object parameters
     cdef object _footing, _model, _sole_names, _torques, _encoders, _load, _state, _deviation
     cdef double _period, _weight, _from
-    cdef Py_ssize_t _count, _every, _tick, _imu_at, _torques_at, _told_count
+    cdef Py_ssize_t _count, _every, _tick, _imu_at, _torques_at, _accelerated
     cdef bint _begun, _lost
     cdef list _still
     cdef tuple _shapes
@@ -28,7 +28,7 @@ cdef class SensedState:
     cdef Stand _stand
     cdef Doubt _doubt
     cdef FloatingBase _base
-    cdef double[:, ::1] _told
+    cdef double[:, ::1] _accelerations
     cdef double[::1] _gained, _turned, _unmoved, _above
 
     @cython.locals(slot=Py_ssize_t, i=Py_ssize_t)
@@ -46,7 +46,7 @@ cdef class SensedState:
     @cython.locals(back=Py_ssize_t)
     cdef bint _hears(self, Py_ssize_t at)
     @cython.locals(step=Py_ssize_t, i=Py_ssize_t, back=Py_ssize_t, gained=double)
-    cdef void _add_told(self, Py_ssize_t first, Py_ssize_t last) noexcept
+    cdef void _add_accelerations(self, Py_ssize_t first, Py_ssize_t last) noexcept
     @cython.locals(filter_=InvariantFilter, body=SensedBody)
     cdef _renew(self, bint changed)
     cdef double _share(self, Py_ssize_t k) noexcept

@@ -24,7 +24,7 @@ from surefoot.wbc.estimation.torques import TorqueWrench
 from surefoot.wbc.types import GRAVITY, Array, RobotState
 
 ATTITUDE = 0.1
-"""How far off the attitude may be before the soles are taken for level [rad]."""
+"""Error of the attitude up to which the soles are not taken for level [rad]."""
 
 
 class SensedState:
@@ -62,7 +62,7 @@ class SensedState:
         self._torques_at, self._encoders = 0, np.zeros(0)
         self._begun, self._lost, self._still = False, False, [True, True]
         self._tick, self._imu_at, self._from = -1, 0, 0.0
-        self._told, self._told_count = np.zeros((KEPT, 6)), 0
+        self._accelerations, self._accelerated = np.zeros((KEPT, 6)), 0
         self._gained, self._turned, self._unmoved = np.zeros(6), np.zeros(3), np.zeros(self._count)
         self._above = np.zeros(2)
         self._load = np.zeros((2, 6))
@@ -86,13 +86,13 @@ class SensedState:
         """Generalised accelerations until the next tick, shape (6 + nj,)."""
         if self._lost:
             # What is planned for a state that is lost is no motion of the robot.
-            self._joints.told(self._unmoved)
+            self._joints.drive(self._unmoved)
         else:
-            self._joints.told(acceleration[6:])
-        slot = self._told_count % len(self._told)
+            self._joints.drive(acceleration[6:])
+        slot = self._accelerated % len(self._accelerations)
         for i in range(6):
-            self._told[slot, i] = acceleration[i]
-        self._told_count += 1
+            self._accelerations[slot, i] = acceleration[i]
+        self._accelerated += 1
 
     def sense(self, readings: Readings) -> Estimate:
         """The estimate of a tick, by the time of its readings, which may come at any.
@@ -178,7 +178,7 @@ class SensedState:
         )
 
     def _wrench(self, readings: Readings) -> Reading:
-        """Of the feet, by their sensors or by the torques of the joints."""
+        """Wrenches of the feet, by their sensors or by the torques of the joints."""
         if readings.wrench is not None:
             return readings.wrench
         torques, torque = self._torques, readings.joint_torque
@@ -208,7 +208,10 @@ class SensedState:
 
     def _step(self, readings: Readings) -> None:
         """Take the readings of a tick: the IMU, then the feet, then the encoders."""
-        filter_, contact, body, encoders = self._filter, self._contact, self._body, readings.joint_position
+        filter_ = self._filter
+        contact = self._contact
+        body = self._body
+        encoders = readings.joint_position
         self._turn(readings)
         contact.update(self._wrench(readings), self._still, self._above)
         body.update(encoders.values, self._stand.R, self._stand._offsets)
@@ -239,19 +242,19 @@ class SensedState:
     def _hears(self, at: int) -> bool:
         """Find by what the IMU was planned to turn faster from its last reading to that of a tick, if somebody said."""
         back = self._tick - self._imu_at
-        if back > min(self._told_count, len(self._told)) or self._body.behind:
+        if back > min(self._accelerated, len(self._accelerations)) or self._body.behind:
             return False
-        self._add_told(back, self._tick - at + 1)
+        self._add_accelerations(back, self._tick - at + 1)
         algebra.put(self._turned, self._body.turned_to_imu(algebra.vector(self._gained[3:])))
         return True
 
-    def _add_told(self, first: int, last: int) -> None:
+    def _add_accelerations(self, first: int, last: int) -> None:
         """Set what the base was planned to gain from a tick to another one, so many ticks ago."""
         step = -1 if first > last else 1
         for i in range(6):
             gained, back = 0.0, first
             while back != last + step:
-                gained += self._told[(self._told_count - back) % len(self._told), i]
+                gained += self._accelerations[(self._accelerated - back) % len(self._accelerations), i]
                 back += step
             self._gained[i] = self._period * gained
 
@@ -270,7 +273,7 @@ class SensedState:
         return share
 
     def _sprung(self) -> Array | None:
-        """How each sole moved on the springs of the ground since this was asked last, as of `sprung`.
+        """Motion of each sole on the springs of the ground since this was asked last; see `sprung`.
 
         None of soles that lean: which springs bear them changes with how they do.
         """
@@ -291,7 +294,7 @@ class SensedState:
                 self._land(k, J, self._height(k))
 
     def _height(self, k: int) -> tuple[float, float] | None:
-        """Of the ground under a sole, and its deviation; None where nothing is known of it [m]."""
+        """Height of the ground under a sole, and its deviation; None where nothing is known of it [m]."""
         deviation = self.parameters.ground.height
         if deviation <= 0.0:
             return None
@@ -299,7 +302,7 @@ class SensedState:
         return self._footing.height(x, y), deviation
 
     def _land(self, k: int, J: Array, height: tuple[float, float] | None) -> None:
-        """A foot stands anew, on ground of that height; one that slipped is on ground that has told its own before."""
+        """A foot stands anew, on ground of that height; one that slipped is on ground that has given its own before."""
         body, noise = self._body, self.parameters.ground
         self._filter.land(k, body.position[k], body.rotation[k], J[k], height, noise.landing, noise.landing_turn)
 
@@ -329,9 +332,9 @@ class SensedState:
         """The state now, which is older by the age of the IMU's readings; None of one that has diverged."""
         late = self._tick - self._imu_at
         gained = None
-        if late and self._told_count:
+        if late and self._accelerated:
             # What the controller has planned since; its velocity is that of the base in its own axes.
-            self._add_told(1, max(1, min(late, self._told_count, len(self._told))))
+            self._add_accelerations(1, max(1, min(late, self._accelerated, len(self._accelerations))))
             gained = self._gained
         return self._base.state(self._joints._q_now, self._joints._v_now, gained, late * self._period)
 
@@ -342,7 +345,7 @@ class SensedState:
 
 
 def _fits(reading: Reading, shape: tuple[int, ...]) -> bool:
-    """Whether the values of a reading are an array of doubles of a shape."""
+    """Return true if the values of a reading are an array of doubles of a shape."""
     values = reading.values
     return isinstance(values, np.ndarray) and values.dtype == np.float64 and values.shape == shape
 

@@ -1,4 +1,4 @@
-"""Where the IMU of a robot is, and how the robot stands on its soles at first."""
+"""The place of a robot's IMU, and its stance on its soles at first."""
 
 import math
 from collections.abc import Callable
@@ -19,7 +19,7 @@ ROUNDS = 4
 
 @dataclass(frozen=True, slots=True)
 class ImuMount:
-    """Where the IMU is; the default is the frame of the floating base.
+    """The place of the IMU; the default is the frame of the floating base.
 
     Attributes:
         body: frame of the model that carries it; None for the floating base.
@@ -54,7 +54,7 @@ class Footing:
     leaning: float | None = None
 
     def normals(self) -> Array:
-        """Of the ground under the soles, shape (2, 3)."""
+        """Normals of the ground under the soles, shape (2, 3)."""
         return np.stack([self.normal(*place[:2].tolist()) for place in self.position])
 
     def attitude(self, body: "SensedBody", joints: Array) -> Array:

@@ -67,7 +67,10 @@ class InvariantFilter:
     """
 
     def __init__(self, stand: Stand, sensors: SensorNoise, ground: GroundNoise, leaning: bool = False) -> None:
-        self.stand, self._ground, self._leaning, self._gravity = stand, ground, leaning, GRAVITY
+        self.stand = stand
+        self._ground = ground
+        self._leaning = leaning
+        self._gravity = GRAVITY
         self.covariance = Covariance(stand, sensors, ground, leaning)
         self.P = self.covariance.P
         self.acceleration = np.zeros(3)
@@ -92,7 +95,7 @@ class InvariantFilter:
         Args:
             y: sole centres in the frame of the IMU, shape (2, 3) [m].
             Y: their orientations, shape (2, 3, 3).
-            J: Jacobians of both as of `SensedBody.offset_jacobians`, shape (2, 6, m + 3).
+            J: Jacobians of both, by `SensedBody.offset_jacobians`, shape (2, 6, m + 3).
             normals: of the ground under them, shape (2, 3).
             tilt: how far the attitude may be off before [rad].
         """
@@ -196,11 +199,11 @@ class InvariantFilter:
             k: foot.
             y: its sole's centre in the frame of the IMU, shape (3,) [m].
             Y: its orientation, shape (3, 3).
-            J: Jacobian of both as of `SensedBody.offset_jacobians`, shape (6, m + 3).
+            J: Jacobian of both, by `SensedBody.offset_jacobians`, shape (6, m + 3).
             height: of the ground there, as it is believed, and its deviation; None where that is not known. A foot
                 that cannot have landed on that by all that is known has found a step of the ground [m].
             place: deviation of where it comes to rest [m].
-            turn: likewise of how it is turned [rad].
+            turn: deviation of how it is turned [rad].
         """
         s, n = self.stand, len(self.P)
         s.columns[2 + k], s.Z[k] = s.p + s.R @ y, s.R @ Y
@@ -259,9 +262,10 @@ class InvariantFilter:
         """Take the kinematics of a tick.
 
         Args:
-            y: as of `begin`.
-            Y: likewise.
-            gates: as of `GATES`; infinite where standing feet are known to stand still.
+            y: sole centres in the frame of the IMU, shape (2, 3) [m].
+            Y: their orientations, shape (2, 3, 3).
+            gates: square of the residual of one foot and of two from which on one has slipped; infinite
+                where standing feet are known to stand still [-].
 
         Returns:
             the feet that have slipped. Nothing of the tick is taken then, also of the other foot: they are to land
@@ -286,5 +290,5 @@ class InvariantFilter:
 
     @property
     def finite(self) -> bool:
-        """Whether state and covariance are numbers."""
+        """Return true if state and covariance are numbers."""
         return bool(np.isfinite(self.stand.columns.sum() + np.trace(self.P)))

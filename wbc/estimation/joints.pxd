@@ -8,10 +8,10 @@ cdef class JointObserver:
     cdef readonly double bandwidth, rate_noise
     cdef double _period, _moved, _sped
     cdef Py_ssize_t _tick, _at, _count
-    cdef double[:, ::1] _told
+    cdef double[:, ::1] _accelerations
     cdef double[::1] _still, _q, _v, _q_now, _v_now
 
-    cpdef void told(self, const double[:] acceleration)
+    cpdef void drive(self, const double[:] acceleration)
     @cython.locals(at=Py_ssize_t, tick=Py_ssize_t)
     cpdef update(self, Readings readings)
     cdef void _take(self, Py_ssize_t at, const double[:] position, const double[:] velocity)

@@ -12,19 +12,19 @@ SHARPEST = 0.12
 """Highest bandwidth of the observer times the control period [-]."""
 
 FINE = 1.1e-5
-"""Encoder noise for which the bandwidth is told [rad]."""
+"""Encoder noise for which the bandwidth is given [rad]."""
 
 KEPT = 64
 """Accelerations that are remembered [ticks]."""
 
 
 class JointObserver:
-    """Luenberger observer of a double integrator for each joint, critically damped, driven by told accelerations.
+    """Luenberger observer of a double integrator for each joint, critically damped, driven by decided accelerations.
 
-    Between two readings the joints go on as told, q' = q + v T + u T²/2 and v' = v + u T; a reading moves them by
+    Between two readings the joints go on as decided, q' = q + v T + u T²/2 and v' = v + u T; a reading moves them by
     1 - θ² and (1 - θ)²/T of its difference, whose error has both poles at θ = exp(-2π f T) (Brammer and Siffling,
     "Kalman-Bucy filters", 1989, the α-β filter). A late reading corrects the state of its own instant, from which the
-    state of now follows by what was told since. Where encoders say a velocity, that is taken.
+    state of now follows by what was decided since. Where encoders say a velocity, that is taken.
 
     Args:
         joints: number of joints.
@@ -34,7 +34,7 @@ class JointObserver:
 
     Attributes:
         position: now, in an array that stays where it is, shape (nj,) [rad].
-        velocity: likewise [rad/s].
+        velocity: now, in an array that stays where it is, shape (nj,) [rad/s].
         bandwidth: that it has [Hz].
         rate_noise: standard deviation of a velocity by the encoders' noise, an α-β filter's of coefficients 1 - θ² and
             (1 - θ)² [rad/s].
@@ -48,16 +48,16 @@ class JointObserver:
         self._period, self._moved, self._sped = period, 1.0 - theta * theta, (1.0 - theta) ** 2 / period
         a, b = self._moved, self._sped * period
         self.rate_noise = noise / period * math.sqrt(2.0 * b * b / (a * (4.0 - 2.0 * a - b)))
-        self._told, self._still = np.zeros((KEPT, joints)), np.zeros(joints)
+        self._accelerations, self._still = np.zeros((KEPT, joints)), np.zeros(joints)
         # The state at the instant of the last reading, and that of now.
         self._q, self._v = np.zeros(joints), np.zeros(joints)
         self._tick, self._at, self._count = -1, 0, 0
         self.position, self.velocity = np.zeros(joints), np.zeros(joints)
         self._q_now, self._v_now = self.position, self.velocity
 
-    def told(self, acceleration: Array) -> None:
+    def drive(self, acceleration: Array) -> None:
         """Remember the joints' accelerations from this tick to the next, shape (nj,) [rad/s^2]."""
-        self._told[self._count % len(self._told), :] = acceleration
+        self._accelerations[self._count % len(self._accelerations), :] = acceleration
         self._count += 1
 
     def update(self, readings: Readings) -> tuple[Array, Array]:
@@ -94,10 +94,10 @@ class JointObserver:
                 self._v[i] += self._sped * miss
 
     def _go_on(self, tick: int, q: Array, v: Array) -> None:
-        """By one period from a tick on, as told."""
-        back, T, kept = self._tick - tick, self._period, len(self._told)
+        """Go on by one period from a tick, with the decided accelerations."""
+        back, T, kept = self._tick - tick, self._period, len(self._accelerations)
         known = back <= self._count and back <= kept
-        u = self._told[(self._count - back) % kept] if known else self._still
+        u = self._accelerations[(self._count - back) % kept] if known else self._still
         linear.add_scaled(q, T, v)
         linear.add_scaled(q, 0.5 * T * T, u)
         linear.add_scaled(v, T, u)

@@ -1,4 +1,4 @@
-"""Where the soles are from the IMU, how encoder zeros move them, and where the base is.
+"""The places of the soles from the IMU, their motion by encoder zeros, and the place of the base.
 
 Of soles that lean (see `surefoot.wbc.body.leaning`) the place is that of the line on which they stand: it stays where
 it is while they turn about it.
@@ -26,7 +26,7 @@ class Sole:
 
     Attributes:
         rotation: to the base's axes, as last placed, shape (3, 3).
-        position: of its centre likewise [m].
+        position: of its centre, as last placed [m].
     """
 
     def __init__(self, model: pin.Model, data: pin.Data, frame: int) -> None:
@@ -60,9 +60,9 @@ class SensedBody:
         rotation: of the soles to the frame of the IMU, shape (2, 3, 3).
         jacobian: as last asked for, see `offset_jacobians`.
         behind: whether joints are between the base and the IMU.
-        carried: orientation of the IMU in the base, as of `carry`, shape (3, 3).
+        carried: orientation of the IMU in the base, by `carry`, shape (3, 3).
         lever: its place there [m].
-        turning: its angular velocity against the base likewise, in axes of the base [rad/s].
+        turning: its angular velocity against the base by `carry`, in axes of the base [rad/s].
         moving: its velocity [m/s].
 
     Raises:
@@ -191,13 +191,13 @@ class SensedBody:
         return algebra.add(algebra.rotate(self._imu_rotation, algebra.row(self._position, k)), self._imu_position)
 
     def moved_by(self, joint: int, at: Vector) -> Vector:
-        """How a joint moves a point of the base's frame [m] that is fixed to what it carries [m/rad]."""
+        """Velocity by a joint of a point of the base's frame [m] that is fixed to what the joint carries [m/rad]."""
         c = 6 + joint
         along = self._joint_jacobian[0, c], self._joint_jacobian[1, c], self._joint_jacobian[2, c]
         return algebra.add(algebra.cross(self._axis(joint), at), along)
 
     def _axis(self, joint: int) -> Vector:
-        """How a joint turns what it carries."""
+        """Axis of a joint, about which it turns what it carries."""
         c = 6 + joint
         return self._joint_jacobian[3, c], self._joint_jacobian[4, c], self._joint_jacobian[5, c]
 
@@ -215,7 +215,7 @@ class SensedBody:
         return algebra.rotate_back(self._imu_rotation, apart)
 
     def com_by(self, joint: int) -> Vector:
-        """How a joint moves the CoM against the base, as last placed [m/rad]."""
+        """Velocity of the CoM against the base by a joint, as last placed [m/rad]."""
         return algebra.column(self._com_jacobian, 6 + joint)
 
     def carries(self, joint: int, k: int) -> float:
@@ -230,7 +230,7 @@ class SensedBody:
                 out[i, j] = linear.rows_dot(R, i, self._imu_rotation, j)
 
     def turning_inertia(self) -> tuple[float, float]:
-        """What angular velocities make of moment of momentum about the CoM, at the angles last taken.
+        """Inertias that turn angular velocities into moment of momentum about the CoM, at the angles last taken.
 
         Returns:
             that of the base about a horizontal axis, the greater one; the root sum of squares of all joints' [kg m^2].
@@ -276,7 +276,7 @@ def _between(model: pin.Model, carrier: int, carriers: list[int]) -> Array:
 
 
 def supporting(model: pin.Model, carriers: tuple[int, ...]) -> Array:
-    """Which joints carry what is on some joints: 1 or 0, shape (carriers, nj)."""
+    """Mark the joints that carry what is on some joints: 1 or 0, shape (carriers, nj)."""
     found = np.zeros((len(carriers), model.nv - 6))
     for row, carrier in zip(found, carriers, strict=True):
         row[[model.idx_vs[joint] - 6 for joint in _ancestors(model, carrier)]] = 1.0

@@ -12,7 +12,7 @@ from surefoot.wbc.tunable import check, number
 
 @dataclass(frozen=True, slots=True)
 class SensorNoise:
-    """What the sensors add; the defaults are those of the preset `good` (docs/sensors.md).
+    """The errors of the sensors; the defaults are those of the preset `good` (docs/sensors.md).
 
     Raises:
         ParameterError: one is negative or not finite.
@@ -38,21 +38,21 @@ class SensorNoise:
 
 @dataclass(frozen=True, slots=True)
 class GroundNoise:
-    """What feet and ground do that no sensor tells.
+    """The motion of feet and ground that no sensor measures.
 
     How loaded soles move was measured in walks with large and small feet, on stairs, a slope and blocks. Under the
-    weight they sink by 0.24 to 0.26 mm. By the root of the mean square of their true ways in 50 ms over that time they
-    creep by at most 0.06 mm, and by 0.05 mm they sink and by 0.14 to 0.6 mrad they rock in another way than springs do.
+    weight they sink by 0.24 to 0.26 mm. In 50 ms they creep by at most 0.06 mm, RMS over the walk. Beside what springs
+    give, they sink by 0.05 mm and rock by 0.14 to 0.6 mrad.
 
     Raises:
         ParameterError: one is negative or not finite.
     """
 
     kinematics: float = number(1e-5, "m", "of a sole's position in a rigid robot's kinematics")
-    turning: float = number(1e-5, "rad", "of a sole's orientation likewise")
+    turning: float = number(1e-5, "rad", "of a sole's orientation in a rigid robot's kinematics")
     creep: float = number(1e-4, "m", "of a second's way of a loaded sole along the ground, with the root of the time")
-    sinking: float = number(1e-4, "m", "likewise into the ground and out of it, but as a spring does")
-    rocking: float = number(5e-4, "rad", "of how a loaded sole turns in a second, likewise, but as on springs")
+    sinking: float = number(1e-4, "m", "of a loaded sole's way into the ground and out of it, as a spring has it")
+    rocking: float = number(5e-4, "rad", "of a second's turn of a loaded sole, as on springs")
     depth: float = number(2.5e-4, "m", "by which a sole sinks under the weight as on springs; its deviation is half")
     landing: float = number(7e-4, "m", "of where a sole comes to rest after it is felt")
     landing_turn: float = number(2e-3, "rad", "of how it does so")
@@ -68,7 +68,7 @@ class GroundNoise:
 
 @dataclass(frozen=True, slots=True)
 class ContactDetection:
-    """When the ground carries a sole.
+    """The bounds at which the ground carries a sole.
 
     Raises:
         ParameterError: one is negative or not finite.

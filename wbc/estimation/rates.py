@@ -12,7 +12,7 @@ IMPACT = 9.0
 
 
 class RateFilter:
-    """Kalman filter of a random walk for each axis, driven by told angular accelerations.
+    """Kalman filter of a random walk for each axis, driven by decided angular accelerations.
 
     Between two readings ω' = ω + α T, whose variance grows by s² T of what the plan lacks; a reading z of a gyroscope
     with the density d has the variance d²/T of a mean over T. With the innovation y = z - ω of variance S = P + d²/T,
@@ -50,7 +50,7 @@ class RateFilter:
         Args:
             reading: of the gyroscope, shape (3,) [rad/s].
             gained: angular velocity that was planned to be gained since the reading before, shape (3,); None where
-                nobody has told [rad/s].
+                nobody has decided [rad/s].
             ticks: since the reading before.
         """
         for i in range(3):

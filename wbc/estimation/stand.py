@@ -8,8 +8,10 @@ from surefoot.maths import algebra, linear
 from surefoot.wbc.types import Array
 
 TURN_AT, VELOCITY_AT, POSITION_AT, FOOT_AT, SOLE_AT, GYRO_AT, FORCE_AT, OFFSETS_AT = 0, 3, 6, 9, 15, 21, 24, 27
-"""Where each part of the error begins: R, v, p, d, Z, biases of gyroscope and accelerometer, offsets of encoders and
-mount. Feet and soles are the left one, then the right one; all but the offsets are of three numbers each."""
+"""Indices at which each part of the error begins: R, v, p, d, Z, biases of gyroscope and accelerometer, offsets.
+
+Feet and soles are the left one, then the right one; all but the offsets are of three numbers each.
+"""
 
 TURN, VELOCITY, POSITION = (slice(at, at + 3) for at in (TURN_AT, VELOCITY_AT, POSITION_AT))
 FOOT, SOLE = (tuple(slice(at + 3 * k, at + 3 * k + 3) for k in (0, 1)) for at in (FOOT_AT, SOLE_AT))
@@ -20,7 +22,7 @@ AXES = 3
 
 
 class Stand:
-    """Where the filter believes that the IMU and the soles are, in arrays that stay where they are.
+    """The places of IMU and soles as the filter believes them, in arrays that stay where they are.
 
     Attributes:
         R: orientation of the IMU in the world, shape (3, 3).

@@ -12,16 +12,16 @@ from surefoot.wbc.estimation.parameters import SensorNoise
 from surefoot.wbc.types import Array, RobotState
 
 BANDWIDTH = 60.0
-"""Of the observer for encoders of `FINE` [Hz]."""
+"""Bandwidth of the observer for encoders of `FINE` [Hz]."""
 
 FINE = 1.1e-5
-"""Encoder noise for which the bandwidth is told [rad]."""
+"""Encoder noise for which the bandwidth is given [rad]."""
 
 BASE = (1e-3, 2e-3)
-"""Of the base's velocities from tick to tick: what the IMU lacks of links that bend, and corrections [m/s, rad/s]."""
+"""Changes of the base's velocities in a tick: what an IMU misses of links that bend, and corrections [m/s, rad/s]."""
 
 LEVER = 0.1
-"""At which moments count as forces [m]."""
+"""Lever at which moments count as forces [m]."""
 
 BASE_NOISE = 1e-4
 """Variance of what drives the base beside its velocities, so that theirs has an inverse [N^2, (N·m)^2]."""
@@ -61,7 +61,10 @@ class TorqueWrench:
     def __init__(
         self, model: pin.Model, soles: tuple[str, str], period: float, sensors: SensorNoise, held: bool = True
     ) -> None:
-        self._model, self._data, self._period, self._held = model, model.createData(), period, held
+        self._model = model
+        self._data = model.createData()
+        self._period = period
+        self._held = held
         self._columns, self._dynamics = JointColumns(model, self._data), Dynamics(model, self._data)
         frames = [model.getFrameId(name) for name in soles]
         self._left, self._right = (Sole(model, self._data, frame) for frame in frames)

@@ -21,7 +21,7 @@ UNBOUNDED = 1e9
 
 @dataclass(frozen=True, slots=True)
 class QpLayout:
-    """Where everything is in the QP.
+    """The places of everything in the QP.
 
     Variables ``x = [q̈ (nv), w_left (6), w_right (6)]`` with sole wrenches in the sole frames, in units of
     ``RobotTerms.wrench_unit``; rows: contact of the left
@@ -111,7 +111,7 @@ class QpData:
         return QpData(self.H.copy(), self.g.copy(), self.A.copy(), self.bounds_lower.copy(), self.bounds_upper.copy())
 
     def is_finite(self) -> bool:
-        """Whether every entry is a number; some solvers loop on what is not."""
+        """Return true if every entry is a number; some solvers loop on what is not."""
         parts = (self.H, self.g, self.A, self.bounds_lower, self.bounds_upper)
         return math.isfinite(sum(float(part.sum()) for part in parts))
 

@@ -36,13 +36,13 @@ class DrivenRows:
         self._acceleration = np.zeros(len(self._joints))
 
     def tell(self, torque: Array | None, stiffness: Array | float = 0.0, damping: Array | float = 0.0) -> None:
-        """Say what drives the joints until the next QP.
+        """Set what drives the joints until the next QP.
 
         Args:
             torque: of all joints at the end of that time, if they go on at their speed, shape (nj,) [N·m]; None where
                 it is not known.
             stiffness: of their drives, shape (nj,) [N·m/rad].
-            damping: likewise [N·m·s/rad].
+            damping: of their drives, shape (nj,) [N·m·s/rad].
         """
         T = self._period
         inertia = np.asarray(damping * T + 0.5 * stiffness * T * T) * np.ones(self._size)

@@ -42,7 +42,7 @@ class EqualityQp:
         qp: which is solved as it is at each call; its n variables are the accelerations, then the wrenches.
 
     Attributes:
-        qp: likewise.
+        qp: the problem that is solved.
         x: the minimiser found last, shape (n,).
         values: that and then A x, shape (n + rows,).
         A, lower, upper: of the QP.
@@ -53,12 +53,19 @@ class EqualityQp:
 
     def __init__(self, qp: QpData) -> None:
         self.qp, n, m = qp, len(qp.g), EQUALITY_ROWS
-        self._H, self._g, self.A, self.lower, self.upper = qp.H, qp.g, qp.A, qp.bounds_lower, qp.bounds_upper
+        self._H = qp.H
+        self._g = qp.g
+        self.A = qp.A
+        self.lower = qp.bounds_lower
+        self.upper = qp.bounds_upper
         self.U, self.x, self.values = np.zeros((n, n)), np.zeros(n), np.zeros(len(qp.bounds_lower))
         self._x, self._row_values = self.x, self.values[n:]
         # Y, then w, and a column of zeros: loops over rows of a multiple of four numbers are faster.
         self.Yw, self._YY = np.zeros((n, m + 2)), np.zeros((m, m + 2))
-        self.Y, self._w, self.R, self._Yw = self.Yw[:, :m], self.Yw[:, m], self._YY[:, :m], self._YY[:, m]
+        self.Y = self.Yw[:, :m]
+        self._w = self.Yw[:, m]
+        self.R = self._YY[:, :m]
+        self._Yw = self._YY[:, m]
         self._multipliers = np.zeros(m)
         # Without tasks on both, accelerations and wrenches do not meet in H.
         self._motion = n - 2 * FOOT_ROWS

@@ -114,7 +114,7 @@ class Daqp:
         soft: NDArray[np.intp] | None = None,
         lets_go: bool = False,
     ) -> None:
-        """What counts as an equality, and what may be broken.
+        """Set what counts as an equality, and what may be broken.
 
         Args:
             accuracy: largest violation of a normalised row that counts as none [-].
@@ -123,7 +123,10 @@ class Daqp:
                 others are small, where there is no solution that holds them; None for none.
             lets_go: whether the rows that hold soles on the ground are soft, too.
         """
-        self._accuracy, self._fixed, self._soft, self._lets_go = accuracy, fixed, soft, lets_go
+        self._accuracy = accuracy
+        self._fixed = fixed
+        self._soft = soft
+        self._lets_go = lets_go
         self._sense = np.zeros(0, dtype=np.intc)
 
     def solve(self, qp: QpData) -> QpSolution | None:
@@ -226,8 +229,8 @@ def in_turn(
     Args:
         first: name of the first one.
         second: of the one that is asked when all others fail.
-        soft: what those between them may break, as of ``Daqp``; the latter of them lets go of soles as well.
-        fixed: bounds that may be equalities, as of ``Daqp``, which then is the first one; None for none.
+        soft: numbers of bounds and rows that those between them may break; the latter of them lets go of soles, too.
+        fixed: numbers of bounds that may be equalities, for ``Daqp``, which then is the first one; None for none.
 
     Raises:
         ValueError: for an unknown name.

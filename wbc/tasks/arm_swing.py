@@ -23,7 +23,7 @@ class ArmSwing:
         self.left_back, self.right_back = back
 
     def offset(self, terms: RobotTerms) -> tuple[float, float]:
-        """How far the left arm is swung back from the posture, and its rate [rad, rad/s]; the right one mirrors it."""
+        """Angle of the left arm back from the posture, and its rate [rad, rad/s]; the right one mirrors it."""
         x, y = terms._R_base[0, 0], terms._R_base[1, 0]
         scale = self.gain / max(math.hypot(x, y), 1e-3)
         left = algebra.rotate(terms._R_contact[0], algebra.vector(terms._v_sole[0]))

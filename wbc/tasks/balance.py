@@ -67,7 +67,7 @@ class SupportRegion:
         return nearest_x + share * (x - nearest_x), nearest_y + share * (y - nearest_y)
 
     def _holds(self, x: float, y: float) -> bool:
-        """Whether a point is on no edge's outer side."""
+        """Return true if a point is on no edge's outer side."""
         for i in range(self._count):
             edge = self._edges[i]
             if not (x - edge[0]) * edge[3] - (y - edge[1]) * edge[2] <= 0.0:
@@ -78,10 +78,10 @@ class SupportRegion:
 class BalanceLaw:
     """CoM acceleration that tracks the reference.
 
-    Horizontal: with ξ = c + c'/ω and e = ξ - ξ_ref, the pendulum's commanded point is p = p_ref + k e, moved so that
-    the ZMP p + o with the reference's offset o lies in the support region, or up to `beyond_catching` beyond it while a
-    step catches the body: there it is a centroidal moment pivot (Popovic, Goswami and Herr, International Journal of
-    Robotics Research 2005), the force passes the CoM at a distance, and the trunk turns. Then
+    Horizontal: with ξ = c + c'/ω and e = ξ - ξ_ref, the pendulum's commanded point is p = p_ref + k e. It is moved so
+    that the ZMP p + o, with the reference's offset o, lies in the support region. While a step catches the body the ZMP
+    may lie up to `beyond_catching` beyond the region. There it is a centroidal moment pivot (Popovic, Goswami and Herr,
+    International Journal of Robotics Research 2005): the force passes the CoM at a distance, and the trunk turns. Then
     c'' = c''_ref + λ (c - c_ref - p + p_ref).
     That is c'' = λ (c - p) for a reference of one instant; that of a control tick has its state at the begin and all
     else in the middle. On the reference this returns the reference's own acceleration. Since ξ' = (λ/ω)(ξ - p) for

@@ -98,7 +98,10 @@ class ForceDistribution(DiagonalTerm):
 
     def __init__(self, weights: TaskWeights, wrench_unit: float) -> None:
         """``wrench_unit``: of the wrench variables [N, N·m]."""
-        self._force, self._moment, self._unit, self._g = weights.force, weights.moment, wrench_unit, GRAVITY
+        self._force = weights.force
+        self._moment = weights.moment
+        self._unit = wrench_unit
+        self._g = GRAVITY
 
     def weigh(self, diagonal: Array, catching: bool) -> None:
         """See ``DiagonalTerm.weigh``."""

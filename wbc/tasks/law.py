@@ -1,4 +1,4 @@
-"""What the tasks of this package have in common: a law that writes its rows and its target in place."""
+"""The common part of the tasks of this package: a law that writes its rows and its target in place."""
 
 from typing import TYPE_CHECKING, cast
 
@@ -38,7 +38,7 @@ class TaskLaw:
 
 
 class Place:
-    """Where a task is in a stack: its rows and what belongs to them.
+    """The place of a task in a stack: its rows and what belongs to them.
 
     Args:
         task: it; one whose class overrides ``TaskLaw.write``, or has nothing of it, is asked by ``write``.

@@ -53,7 +53,10 @@ class TaskStack:
         self.diagonal, self.linear = np.zeros(variables), np.zeros(variables)
         self.scale, self.unscale = np.zeros(sum(sizes)), np.zeros(sum(sizes))
         self._T, self._t, self._root_W = self.rows, self.target, self.scale
-        self._D, self._d, self._H, self._g = self.diagonal, self.linear, qp.H, qp.g
+        self._D = self.diagonal
+        self._d = self.linear
+        self._H = qp.H
+        self._g = qp.g
         ends = np.cumsum(sizes)
         slices = [slice(end - size, end) for size, end in zip(sizes, ends, strict=True)]
         self._places = [

@@ -17,7 +17,7 @@ YIELDING = 0.1
 """Way to the end of its range within which an ankle ceases to turn its swinging foot towards that end [rad]."""
 
 _TURNED_BACK = 0.05
-"""How far beyond its target such a foot has to be turned that it turns back at full strength [rad]."""
+"""Angle beyond the target of such a foot at which it turns back at full strength [rad]."""
 
 _RESTING = 0.3
 """Share by which the joint of such a foot is to rest while a step catches the body [-].
@@ -101,7 +101,7 @@ def _ankles(model: pin.Model, frames: BodyFrames) -> tuple[Array, tuple[tuple[in
 
 
 def _rolling(model: pin.Model, data: pin.Data, sole: str, columns: tuple[int, ...]) -> int:
-    """Of the columns of an ankle, that of the joint whose axis is nearest to the length of its sole; -1 for none."""
+    """Column of the ankle joint whose axis is nearest to the length of its sole; -1 for none."""
     frame, local = model.getFrameId(sole), pin.ReferenceFrame.LOCAL
     axes = np.abs(pin.computeFrameJacobian(model, data, pin.neutral(model), frame, local)[3:, columns])
     along = [column for column, (x, y, z) in zip(columns, axes.T.tolist(), strict=True) if x > max(y, z)]
@@ -111,9 +111,9 @@ def _rolling(model: pin.Model, data: pin.Data, sole: str, columns: tuple[int, ..
 class SwingFoot(TaskLaw):
     """Acceleration of the swing foot's sole, linear then angular, in the sole's frame; absent when both feet stand.
 
-    A foot that leaves the ground rolling is seen from its toe edge (see ``RobotTerms.shift_foot``). One that cannot be
-    as level as it should (see `AnkleStops`) is from then on seen from its ankle: a foot that turns about it leaves the
-    shank where it was planned to be, and with it the momentum of the leg that the planner counts on. While a step
+    A foot that leaves the ground rolling is seen from its toe edge (see ``RobotTerms.shift_foot``). A foot that cannot
+    be as level as it should (see `AnkleStops`) is from then on seen from its ankle. If it turns about the ankle, the
+    shank stays where it was planned, and with it the momentum of the leg that the planner counts on. While a step
     catches the body, the joint that has come to its end is to rest as well. Otherwise the QP would turn the foot as a
     flywheel for the trunk. It is then lifted by what its side edge hangs lower, or that edge would meet the ground at
     full speed. Any foot is lifted by a few millimetres of what its toe or heel hangs lower. All of that would take the
@@ -220,7 +220,7 @@ class SwingFoot(TaskLaw):
         return algebra.add(back, reference._s_ddot)
 
     def _hangs(self, R: Array, reference: WbcReference) -> float:
-        """How much lower an edge of the sole hangs than it should, as far as it is to be lifted for that [m]."""
+        """Height by which an edge of the sole hangs too low, as far as it is to be lifted for that [m]."""
         R_d = self._R_d
         beside = self._side * abs(R[2, 1] - R_d[2, 1]) if reference.catching else 0.0
         hangs: float = min(self._toe * abs(R[2, 0] - R_d[2, 0]), self._lifted) + beside

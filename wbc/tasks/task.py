@@ -1,4 +1,4 @@
-"""What a task is to the whole-body QP, and what several tasks have in common."""
+"""A task as the whole-body QP sees it, and the common part of several tasks."""
 
 from collections.abc import Callable, Iterable
 from dataclasses import dataclass
@@ -30,7 +30,7 @@ class Task(Protocol):
 
     @property
     def name(self) -> str:
-        """What it is called in the log and in messages; its own among the tasks of a controller."""
+        """Name of the task in the log and in messages; its own among the tasks of a controller."""
 
     @property
     def size(self) -> int:

@@ -54,7 +54,10 @@ class HipStops:
         now, turning = math.atan2(terms._R_base[2, 1], terms._R_base[2, 2]), terms._w_base[0]
         roll, rate = 0.0, 0.0
         for i in range(self._columns.shape[0]):
-            column, sign, lower, upper = self._columns[i], self._sign[i], self._lower[i], self._upper[i]
+            column = self._columns[i]
+            sign = self._sign[i]
+            lower = self._lower[i]
+            upper = self._upper[i]
             angle = terms._q[column + 1] + sign * now
             above = angle > 0.5 * (lower + upper)
             excess = angle - upper if above else lower - angle
@@ -65,7 +68,7 @@ class HipStops:
         return roll, rate
 
     def _taken(self, excess: float) -> float:
-        """What of an excess the pelvis takes, setting in smoothly about zero [rad]."""
+        """Part of an excess that the pelvis takes, setting in smoothly about zero [rad]."""
         if excess <= -self._softened:
             return 0.0
         if excess >= self._softened:
@@ -73,14 +76,14 @@ class HipStops:
         return (excess + self._softened) * (excess + self._softened) / (4.0 * self._softened)
 
     def _slope(self, excess: float) -> float:
-        """How that changes with it [-]."""
+        """Derivative of that part by the excess [-]."""
         if excess <= -self._softened:
             return 0.0
         return 1.0 if excess >= self._softened else (excess + self._softened) / (2.0 * self._softened)
 
 
 def _rolls(model: pin.Model, frames: BodyFrames) -> tuple[tuple[int, float], ...]:
-    """Of the left and the right hip's roll joint: column of the generalised velocity, sign of its axis ahead."""
+    """The roll joints of the left and the right hip: column of the generalised velocity, sign of the axis ahead."""
     data, found = model.createData(), []
     pin.computeJointJacobians(model, data, pin.neutral(model))
     for name in frames.soles:

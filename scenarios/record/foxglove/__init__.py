@@ -1,4 +1,4 @@
-"""What MCAP viewers draw: a run in Foxglove's well-known schemas, beside the numeric channels of the log."""
+"""The drawings of MCAP viewers: a run in Foxglove's well-known schemas, beside the numeric channels of the log."""
 
 DERIVED_TOPICS = frozenset(
     {"/tf", "/joint_states", "/scene/world", "/scene/forces", "/scene/points", "/scene/support", "/events"}

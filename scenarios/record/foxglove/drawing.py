@@ -202,7 +202,7 @@ LIFT = 0.002
 _VERTICES = sum(vertices for _, vertices, _ in LOOPS)
 
 NOWHERE = (0.0, 0.0, -1000.0)
-"""Where a point is drawn that does not exist now, such as the ZMP of a robot in flight; out of sight [m]."""
+"""Place of a point that does not exist now, such as the ZMP of a robot in flight; out of sight [m]."""
 
 
 def force_arrow(origin: Array, force: Array) -> tuple[float, ...]:
@@ -233,7 +233,7 @@ class Outlines:
     """
 
     def __init__(self, half_length: float, half_width: float) -> None:
-        """For soles of this half size [m]."""
+        """Open them for soles of this half size [m]."""
         self._corners = [(a * half_length, b * half_width) for a, b in CORNERS.tolist()]
         self.values: list[float] = []
         self.ground = 0.0

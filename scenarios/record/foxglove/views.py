@@ -1,4 +1,4 @@
-"""What MCAP viewers draw of a run: bodies, forces, points and outlines, and its events in words."""
+"""The drawings of a run for MCAP viewers: bodies, forces, points and outlines, and its events in words."""
 
 import math
 from collections.abc import Iterator
@@ -100,13 +100,23 @@ class PointView:
         self._events = EventLog(writer)
 
     def events(self, time_ns: int, contact: tuple[bool, bool], force: Array, plan: WalkPlan, lost: bool) -> None:
-        """Say what has changed since the last control tick; ``force`` is the push, shape (2,) [N]."""
+        """Log what has changed since the last control tick; ``force`` is the push, shape (2,) [N]."""
         self._events.update(time_ns, contact, force, plan.status.solver is _HELD, plan.status.falling, lost)
 
     def picture(
         self, tick: int, time_ns: int, com: Array, com_velocity: Array, zmp: Array, plan: WalkPlan, sample: PlanSample
     ) -> None:
-        """Draw a control tick, if it is one that is drawn; arguments as of `WalkView`, the ZMP as x y."""
+        """Draw a control tick, if it is one that is drawn.
+
+        Args:
+            tick: number of the control tick.
+            time_ns: simulated time [ns].
+            com: true CoM, shape (3,) [m].
+            com_velocity: shape (3,) [m/s].
+            zmp: true ZMP, shape (2,) [m]; NaN in flight.
+            plan: the plan that is followed.
+            sample: its references now.
+        """
         if tick % self._every == 0:
             ground = min(float(foot.position[2]) for foot in plan.footholds)
             x, y = zmp.tolist()
@@ -127,7 +137,7 @@ class EventLog:
     def update(
         self, time_ns: int, contact: tuple[bool, bool], force: Array, fallback: bool, falling: bool, fallen: bool
     ) -> None:
-        """Say what has changed since the last call; before the first one the robot stood in peace.
+        """Log what has changed since the last call; before the first one the robot stood in peace.
 
         Args:
             time_ns: simulated time [ns].
@@ -200,7 +210,7 @@ _FALLBACK, _HELD = SolveStatus.EQUALITIES_ONLY, SolverStatus.HELD
 
 
 class RobotView:
-    """What is drawn of every robot: its bodies, its joints, and the forces on it.
+    """The drawings of every robot: its bodies, its joints, and the forces on it.
 
     Attributes:
         every: control ticks from picture to picture.
@@ -275,7 +285,7 @@ class SeatView(RobotView):
         self._events = EventLog(writer)
 
     def events(self, time_ns: int, measurement: Measurement, contact: tuple[bool, bool], fallen: bool) -> None:
-        """Say what has changed since the last control tick; feet that stand are (left, right)."""
+        """Log what has changed since the last control tick; feet that stand are (left, right)."""
         force = measurement.external_force
         self._events.update(time_ns, contact, force, fallback=False, falling=False, fallen=fallen)
 
@@ -289,7 +299,7 @@ class BodyView(RobotView):
         self._events = EventLog(writer)
 
     def events(self, time_ns: int, measurement: Measurement, report: WbcReport, plan: WalkPlan, fallen: bool) -> None:
-        """Say what has changed since the last control tick."""
+        """Log what has changed since the last control tick."""
         force, status = measurement.external_force, plan.status
         fallback = report.status >= _FALLBACK or status.solver is _HELD
         self._events.update(time_ns, report.active, force, fallback, status.falling, fallen)

@@ -20,7 +20,7 @@ from surefoot.scenarios.errors import Key, Problem, nearest
 from surefoot.scenarios.file.group import controller_faults
 from surefoot.scenarios.file.schema import Gait
 from surefoot.scenarios.file.units import meant
-from surefoot.scenarios.setup.events import cut_off, idle_commands, never_act, slight, told_problems
+from surefoot.scenarios.setup.events import command_problems, cut_off, idle_commands, never_act, slight
 from surefoot.scenarios.setup.groups.formulation import LONGEST_REACH
 from surefoot.scenarios.setup.groups.gait import commanded, step_region, twist_of, uncommanded
 from surefoot.scenarios.setup.groups.hardware import hardware_problems
@@ -48,7 +48,7 @@ def check(walk: Walk, robots: Robots) -> list[Problem]:
         *commands,
         *clock,
         *_durations(walk),
-        *told_problems(walk),
+        *command_problems(walk),
         *(() if clock else (*never_act(walk), *cut_off(walk))),
         *slight(walk),
         *(() if commands else idle_commands(walk)),
@@ -95,7 +95,7 @@ def _durations(walk: Walk) -> Iterator[Problem]:
 
 
 def _swing_too_short(walk: Walk) -> bool:
-    """Whether a single support leaves no time for a swing of the foot."""
+    """Return true if a single support leaves no time for a swing of the foot."""
     return walk.keys.gait.single_support < (FEWEST_SWING_SAMPLES - 0.5) * walk.keys.planner.sample_time
 
 
@@ -107,7 +107,7 @@ def _pushes(walk: Walk) -> Iterator[Problem]:
             yield Problem(key, "a push with both a time and a point of the gait", "give one of them")
         elif push.time is None and (push.step is None or push.phase is None):
             yield Problem(key, "a push without a begin", "give time, or step, phase and fraction")
-        elif push.step is not None and push.step > walk.asked_gait.steps and not walk.told:
+        elif push.step is not None and push.step > walk.asked_gait.steps and not walk.takes_commands:
             what = f"a push in step {push.step} of a gait of {walk.asked_gait.steps} steps"
             yield Problem((*key, "step"), what, f"give a step of at most {walk.asked_gait.steps}")
         if push.impulse is not None and push.force is not None:

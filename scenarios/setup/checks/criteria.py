@@ -1,4 +1,4 @@
-"""What a criterion may be, for the checks and for editors, whose JSON Schema is made here.
+"""The range of a criterion, for the checks and for editors, whose JSON Schema is made here.
 
 Each must be able to fail, on a value that the run will have.
 """
@@ -34,7 +34,7 @@ def criteria_problems(criteria: Mapping[str, Bound], walker: str) -> list[Proble
 
 
 def _of_a_planner(criteria: Mapping[str, Bound]) -> Iterator[Problem]:
-    """Tell criteria that no run of a controller without a planner can be held to."""
+    """Name criteria that no run of a controller without a planner can be held to."""
     for name, bound in criteria.items():
         if not applies(name, bound, "seat"):
             what = f"criteria.{name} is of a planner, and a controller has its seat"
@@ -94,7 +94,7 @@ def _unequal(name: str, value: bool | float | str, metric: Metric[Any]) -> Itera
 
 
 def _met_by_all(name: str, bound: Bound, metric: Metric[Any]) -> Iterator[Problem]:
-    """Tell a criterion that any value of the metric meets by its nature."""
+    """Name a criterion that any value of the metric meets by its nature."""
     if bound.equals is not None:
         return
     low = all(
@@ -157,7 +157,7 @@ def published() -> dict[str, Any]:
 
 
 def _criterion(name: str, metric: Metric[Any]) -> dict[str, Any]:
-    """What may stand behind a metric's name."""
+    """The schema of the value behind a metric's name."""
     limit: dict[str, Any] = {"type": "number"}
     several = {"type": "array", "items": limit, "minItems": metric.size, "maxItems": metric.size}
     sides = {"anyOf": [limit, several]}

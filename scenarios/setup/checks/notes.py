@@ -1,4 +1,4 @@
-"""What to know of a scenario that passes the checks: keys without effect, odd times, and what its robot lacks."""
+"""Notes on a scenario that passes the checks: keys without effect, odd times, and what its robot lacks."""
 
 from collections.abc import Iterable, Iterator
 
@@ -19,14 +19,18 @@ _PLANT_READS = {"pendulum": ("feedback",), "cart_table": ()}
 
 
 def notes(walk: Walk, driven: bool = False) -> tuple[str, ...]:
-    """List them, one sentence each; those of a robot that was told by hand how to walk if it was ``driven``."""
-    still = () if driven or walk.keys.gait.steps or commanded(walk.keys.gait) or walk.told else _without_steps(walk)
+    """List them, one sentence each; those of a robot that was driven by hand if it was ``driven``."""
+    still = (
+        ()
+        if driven or walk.keys.gait.steps or commanded(walk.keys.gait) or walk.takes_commands
+        else _without_steps(walk)
+    )
     keys = (*_unlikely(walk), *_without_effect(walk), *_without_occasion(walk), *still, *_cut_short(walk))
     return (*keys, *_left_out(walk))
 
 
 def agenda(walk: Walk) -> Agenda:
-    """What is to happen in a run, as its log tells it."""
+    """The agenda of a run, as its log holds it."""
     said, driven = notes(walk), notes(walk, driven=True)
     pushes = (*walk.pushes, *(push for _, push in walk.gait_pushes))
     return Agenda(
@@ -43,7 +47,7 @@ _LONG = 60.0
 
 
 def _unlikely(walk: Walk) -> Iterator[str]:
-    """Tell times that are what they say and were perhaps meant in another unit."""
+    """Note times that are what they say and were perhaps meant in another unit."""
     times = {f"pushes.{index}.duration": push.duration for index, push in enumerate(walk.keys.pushes)}
     for name, value in {"gait.initial_stand": walk.keys.gait.initial_stand, **times}.items():
         hint = meant(value, "s", _LONG)
@@ -52,7 +56,7 @@ def _unlikely(walk: Walk) -> Iterator[str]:
 
 
 def _left_out(walk: Walk) -> Iterator[str]:
-    """Tell what the model of the robot has and the robot has not."""
+    """Note what the model of the robot has and the robot has not."""
     if walk.walker.has_body:
         yield from (f"robot {walk.robot.name}, {line}" for line in walk.robot.left_out)
 
@@ -77,14 +81,14 @@ def _without_effect(walk: Walk) -> Iterator[str]:
 
 
 def _given(walk: Walk, group: str, names: Iterable[str]) -> Iterator[str]:
-    """Those of a group's keys, dotted, that are not the defaults of a robot of this size."""
+    """Keys of a group, dotted, that are not the defaults of a robot of this size."""
     settings = getattr(walk.keys, group)
     model: type[BaseModel] = type(Scenario.model_fields[group].default)
     return (f"{group}.{name}" for name in names if getattr(settings, name) != default_of(model, name, walk.size))
 
 
 def _no_equal_steps(walk: Walk) -> Iterator[str]:
-    """Tell keys of equal steps in a walk whose steps are given in another way."""
+    """Note keys of equal steps in a walk whose steps are given in another way."""
     gait, commands = walk.keys.gait, walk.keys.commands
     instead = next((f"gait.{name}" for name in ("velocity", "footsteps", "waypoints") if getattr(gait, name)), None)
     names: tuple[str, ...] = EQUAL_STEPS
@@ -97,13 +101,13 @@ def _no_equal_steps(walk: Walk) -> Iterator[str]:
 
 
 def _not_felt(walk: Walk) -> Iterator[str]:
-    """Tell what a pendulum, which is one body, and its plant make nothing of."""
+    """Note what a pendulum, which is one body, and its plant make nothing of."""
     pendulum, load = walk.keys.pendulum, walk.keys.errors.payload
     unread = [name for name in PendulumSettings.model_fields if name not in ("plant", *_PLANT_READS[pendulum.plant])]
     yield from (f"{key} has no effect on pendulum.plant {pendulum.plant}" for key in _given(walk, "pendulum", unread))
     bodies = {f"pushes.{index}.body": push.body for index, push in enumerate(walk.keys.pushes)}
     bodies["errors.payload.body"] = None if load is None else load.body
-    if walk.keys.sensing.preset is None:  # else it follows from that, and is told with it
+    if walk.keys.sensing.preset is None:  # else it follows from that, and is noted with it
         yield from (f"{key} has no effect on a pendulum" for key in _given(walk, "sensing", ("source", "options")))
     yield from (f"{name} has no effect on a pendulum" for name, body in bodies.items() if body is not None)
 
@@ -112,17 +116,17 @@ _STEPPING = ("step_length", "lateral_step", "turn", "swing_height", "apex_single
 """Keys of a gait that say how steps are taken."""
 
 _TIMES = ("single_support", "double_support", "initial_stand")
-"""Those that say when, by which a run lasts that has no duration of its own."""
+"""Keys of an instant, by which a run lasts that has no duration of its own."""
 
 
 def _without_steps(walk: Walk) -> Iterator[str]:
-    """Tell what a robot that takes no step has no use for."""
+    """Note what a robot that takes no step has no use for."""
     names = (*_STEPPING, *(() if walk.keys.duration is None else _TIMES))
     yield from (f"{key} has no effect on a robot that takes no step" for key in _given(walk, "gait", names))
 
 
 def _without_occasion(walk: Walk) -> Iterator[str]:
-    """Tell keys that shape what this scenario has not got: a climb, a load."""
+    """Note keys that shape what this scenario has not got: a climb, a load."""
     keys, load = walk.keys, walk.keys.errors.payload
     if keys.planner.rise is not None and keys.terrain.kind == "flat":
         yield "planner.rise has no effect on level ground"

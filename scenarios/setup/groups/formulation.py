@@ -1,4 +1,4 @@
-"""How the motion of a walk is planned: the planner's formulation, its height law and its parameters."""
+"""The planner of a walk: its formulation, its height law and its parameters."""
 
 import math
 from collections.abc import Iterator
@@ -30,8 +30,8 @@ from surefoot.scenarios.setup.terrain.ground import Ground
 from surefoot.similarity import Similarity
 
 LEG_SHARE = 0.9
-"""Share of the span of the legs that steps on command make use of: with all of it both are straight at touchdown, and
-at 0.88 m/s a push felled the robot that it took at 0.65 to 0.8 m/s [-]."""
+"""Share of the span of the legs that steps on command use [-]. With all of it both legs are straight at touchdown: at
+0.88 m/s the robot fell by a push that it took at 0.65 to 0.8 m/s."""
 
 ANKLE_SHARE = 0.85
 """Share of an ankle's torque that bears the robot with the CoP at the edge of its room; the rest is for shocks [-]."""
@@ -44,17 +44,17 @@ SHORTEST_REACH, LONGEST_REACH = 0.4, 0.8
 reference robot as all lengths here [m]."""
 
 FURTHER = 0.1
-"""How much further than the gait's own steps it may be [m]."""
+"""Distance beyond the gait's own steps that it may be [m]."""
 
 
 def lowered(keys: PlannerSettings, size: Similarity) -> float:
-    """How much lower than the gait says a robot of a size carries its CoM, for knees that are bent [m]."""
+    """Height by which a robot of a size carries its CoM lower than the gait says, for knees that are bent [m]."""
     return BENT_KNEES * size.length if keys.knee == "bent" else 0.0
 
 
 @dataclass(frozen=True, eq=False)
 class Formulation:
-    """What a scenario says of its planner, for legs without inertia and before the robot's soles are known.
+    """A scenario's planner, for legs without inertia and before the robot's soles are known.
 
     Attributes:
         keys: of the planner.
@@ -105,7 +105,7 @@ class Formulation:
 
     @property
     def _reach(self) -> float:
-        """How far ahead of its stance foot the planner may place a footstep: a little beyond the gait's own [m]."""
+        """Farthest footstep that the planner may place ahead of the stance foot: a little beyond the gait's own [m]."""
         ground, steps, length = self.ground, self.ground.steps, self.size.length
         if not ground.commanded and steps.steps == 0 and not steps.waypoints:
             return LONGEST_REACH * length
@@ -114,7 +114,7 @@ class Formulation:
 
     @property
     def _search(self) -> GroundSearch:
-        """How a swing foot that has not felt the ground goes on downwards.
+        """The search of a swing foot that has not felt the ground, on its way down.
 
         Where the ground has steps its heights are believed less: a foot that finds no tread by the end of single
         support hurries after one that lies lower, since waiting for it costs balance.
@@ -186,13 +186,13 @@ def _usual(size: Similarity) -> tuple[PlannerParameters, PlannerParameters]:
 
 
 def region_of(parameters: PlannerParameters, facts: RobotFacts, com_height: float) -> StepRegion:
-    """Where a step that is commanded while it walks may land: within reach of planner and, with some left, legs."""
+    """Region in which a step that is commanded while it walks may land: within reach of planner and legs."""
     span, sole = LEG_SHARE * facts.leg_span(com_height), (facts.foot_length, facts.foot_width)
     return step_region(parameters, sole, facts.shank_spacing, span, facts.hip_width)
 
 
 def leg_reach(parameters: PlannerParameters, facts: RobotFacts, com_height: float, standing_height: float) -> LegReach:
-    """What the legs can do to catch a body with its CoM at a height in the gait, and at one in standing [m]."""
+    """The reach of legs that catch a body with its CoM at a height in the gait, and at one in standing [m]."""
     recovery = parameters.recovery
     return LegReach(
         radius=0.5 * LEG_SHARE * facts.leg_span(com_height),
@@ -208,7 +208,7 @@ def leg_reach(parameters: PlannerParameters, facts: RobotFacts, com_height: floa
 
 
 def cop_room(leg: LegInertia, facts: RobotFacts, mass: float) -> tuple[float, float]:
-    """How far from a sole's centre ankles bear a mass [kg], ahead and behind, and to both sides [m]."""
+    """Distances from a sole's centre at which ankles bear a mass [kg], ahead and behind, and to both sides [m]."""
     if leg.chain is None:
         return math.inf, math.inf
     levers = [ANKLE_SHARE * torque / (GRAVITY * mass) for torque in facts.ankle_torque]

@@ -20,7 +20,7 @@ EQUAL_STEPS = ("steps", "step_length", "lateral_step", "turn")
 """Keys of a gait of equal steps, which say nothing beside a velocity or footsteps."""
 
 _STOPPING = 3.0
-"""Steps that a robot takes at most after it was told to stop [-]."""
+"""Steps that a robot takes at most after it was commanded to stop [-]."""
 
 _LARGEST_SOLE = (0.3, 0.15)
 """Length and width of soles where a scenario says nothing of them; smaller ones do not make strides shorter [m]."""
@@ -30,7 +30,7 @@ FINAL_STAND = 2.5
 
 
 def commanded(keys: schema.Gait) -> bool:
-    """Whether the gait is given by a velocity or by footsteps."""
+    """Return true if the gait is given by a velocity or by footsteps."""
     return bool(keys.velocity or keys.footsteps)
 
 
@@ -70,7 +70,7 @@ def gait_of(keys: schema.Gait) -> GaitParameters:
 
 
 def longest_landing(gait: GaitParameters) -> float:
-    """How far ahead of or behind its stance foot a step lands at most, either foot leading [m]."""
+    """Longest distance of a landing from its stance foot, ahead or behind, either foot leading [m]."""
     places = [stride.landing(foot) for stride in gait.strides for foot in Foot]
     return max((abs(float(place.position[0])) for place in places), default=0.0)
 
@@ -109,7 +109,7 @@ def waypoints_of(keys: schema.Gait, start: schema.Start) -> tuple[Twist, ...]:
     return tuple(Twist(float(place[0]), float(place[1]), heading) for place, heading in places)
 
 
-def told_until(gait: GaitParameters, command: schema.CommandSettings) -> float:
+def commanded_until(gait: GaitParameters, command: schema.CommandSettings) -> float:
     """Time at which the robot stands after a command that lets it stop, or a little later [s]."""
     return command.time + _STOPPING * gait.period
 
@@ -128,7 +128,7 @@ def step_region(
     leg_span: float = math.inf,
     hip_width: float = 0.0,
 ) -> StepRegion:
-    """Where commanded steps may land: within the planner's reach, and the legs' if they are given."""
+    """Region in which commanded steps may land: within the planner's reach, and the legs' if they are given."""
     near, far = parameters.reach_width
     width = (max(near, shank_spacing), far)
     gap = parameters.recovery.sole_gap

@@ -13,7 +13,7 @@ from surefoot.sim.sensor_errors import PRESETS, Delivery, SensorErrors
 from surefoot.similarity import Similarity
 
 _GROUPS = {"joints": "encoder", "imu": "imu", "feet": "wrench"}
-"""How the keys of each group of sensors begin."""
+"""Prefixes of the keys of each group of sensors."""
 
 _ZERO_MEANS_NOTHING = ("encoder_noise", "gyro_noise", "accelerometer_noise", "wrench_noise", "latency")
 """Keys that logs of earlier versions have at zero, since their defaults were written down."""
@@ -23,7 +23,7 @@ _FEET = tuple(name for name in SENSOR_KEYS if name.startswith(("wrench_", "momen
 
 @dataclass(frozen=True, slots=True)
 class Hardware:
-    """What nobody is told of sensors and motors.
+    """The errors of sensors and motors that no part of the controller knows.
 
     Attributes:
         sensors: what those that an estimator reads add to the truth.
@@ -35,7 +35,7 @@ class Hardware:
 
     @classmethod
     def of(cls, sensing: Sensing, motors: MotorSettings | None, size: Similarity) -> "Hardware":
-        """That of a scenario's keys for a robot of a size."""
+        """The hardware by a scenario's keys, for a robot of a size."""
         drives = IDEAL
         if motors is not None:
             drives = DriveErrors(motors.delay or 0.0, motors.noise or 0.0, motors.torque_speed)
@@ -43,7 +43,7 @@ class Hardware:
 
 
 def sensor_errors(sensing: Sensing, size: Similarity) -> SensorErrors:
-    """What the sensors of an estimator add to the truth.
+    """The errors that the sensors of an estimator add to the truth.
 
     Args:
         sensing: keys, which are meant as they are.
@@ -85,7 +85,7 @@ def _given(sensing: Sensing) -> dict[str, Any]:
 
 
 def _delivery(sensing: Sensing, group: str, usual: Delivery) -> Delivery:
-    """How the readings of a group come: as its own keys say, else as those of all groups, else as the preset."""
+    """The delivery of a group's readings: by its own keys, else by those of all groups, else by the preset."""
     found = {}
     for name in ("latency", "jitter", "dropout"):
         own, common = getattr(sensing, f"{group}_{name}"), getattr(sensing, name)
@@ -98,7 +98,7 @@ def hardware_problems(sensing: Sensing, motors: MotorSettings | None, physics_ra
 
     Args:
         sensing: its keys.
-        motors: likewise.
+        motors: keys of its motors; None where none are given.
         physics_rate: steps of the world in a second [Hz].
     """
     given = _given(sensing)

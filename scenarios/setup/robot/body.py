@@ -70,7 +70,14 @@ def frames_of(robot: RobotDescription) -> BodyFrames:
 
 
 def leg_inertia(model: pin.Model, frames: BodyFrames, q: Array, leg_joints: NDArray[np.bool_]) -> LegInertia:
-    """The legs as the planner knows them; arguments as of `surefoot.models.legs.leg_masses`."""
+    """The legs as the planner knows them.
+
+    Args:
+        model: the robot.
+        frames: of its body.
+        q: standing configuration, shape (nq,), soles level and side by side.
+        leg_joints: which joints are leg joints, bool, shape (nj,).
+    """
     given = model, frames.soles, q, leg_joints
     masses = leg_masses(*given)
     links = {"thigh": Link(*masses.thigh), "shank": Link(*masses.shank)}
@@ -95,7 +102,7 @@ def _sole_placements(body: Body, q: Array) -> tuple[Array, Array]:
 
 @dataclass(frozen=True, slots=True)
 class TorqueMargin:
-    """How much of their torque the joints need to hold a posture.
+    """The share of their torque that the joints need to hold a posture.
 
     Attributes:
         joint: the one that needs most of its own; empty where the posture cannot be taken.
@@ -136,5 +143,5 @@ def standing(body: Body, side: float) -> tuple[TorqueMargin, Array]:
 
 
 def on_one_foot(body: Body) -> TorqueMargin:
-    """What standing on one foot takes; of the left and the right one the worse."""
+    """The demand of standing on one foot; of the left and the right one the worse."""
     return max((standing(body, side)[0] for side in (1.0, -1.0)), key=lambda margin: margin.share)

@@ -59,7 +59,7 @@ def _one_foot_share(name: str, options: RobotSettings) -> float:
 
 
 def is_known(name: object, robots: Robots) -> bool:
-    """Whether a scenario may name that robot: one of the robots, or a robot file, whatever is in it."""
+    """Return true if a scenario may name that robot: one of the robots, or a robot file, whatever is in it."""
     return isinstance(name, str) and (is_file(name) or name in robots.names())
 
 
@@ -100,17 +100,17 @@ def true_robot(
     return robot
 
 
-def nearer_landings(gait: Mapping[str, Any], told: bool) -> float:
-    """How much nearer than its step width the feet of a walk land; infinite where they may land anywhere [m].
+def nearer_landings(gait: Mapping[str, Any], takes_commands: bool) -> float:
+    """Distance by which feet land nearer than their step width; infinite where they may land anywhere [m].
 
     Args:
         gait: keys of the group ``gait`` that are given.
-        told: whether the walk hears while it goes on where to go.
+        takes_commands: whether the walk hears while it goes on where to go.
     """
     velocity = gait.get("velocity")
     commands = velocity if isinstance(velocity, list | tuple) else ()
     sideways = any(isinstance(one, Mapping) and (one.get("v_y") or one.get("yaw_rate")) for one in commands)
-    if told or sideways or any(gait.get(name) for name in ("turn", "footsteps", "waypoints")):
+    if takes_commands or sideways or any(gait.get(name) for name in ("turn", "footsteps", "waypoints")):
         return math.inf
     aside = gait.get("lateral_step", 0.0)
     return abs(aside) if isinstance(aside, int | float) else math.inf
@@ -130,4 +130,4 @@ def rules(nearer: float) -> dict[Key, Rule]:
 
 
 POSTURE = ("com_height", "step_width")
-"""Those of them that every walk has."""
+"""Keys that every walk has."""

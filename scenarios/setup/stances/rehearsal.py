@@ -1,4 +1,4 @@
-"""The first steps of a walk, gone through by the planner's chain of links: what the legs cannot do is told before."""
+"""The first steps of a walk, gone through by the planner's chain of links: it finds what the legs cannot do."""
 
 import math
 from dataclasses import dataclass
@@ -31,10 +31,10 @@ _GRID = 0.002
 """Distance of the points at which the ground is looked at, for the reference robot [m]."""
 
 _HALVINGS = 5
-"""How often that distance is halved to find an edge in it [-]."""
+"""Halvings of that distance to find an edge in it [-]."""
 
 _CLEAR = 0.002
-"""Distance of a shank from an edge that is too small to be sure of, likewise [m]."""
+"""Distance of a shank from an edge that is too small to be sure of, of the reference robot [m]."""
 
 
 @dataclass(frozen=True, slots=True)
@@ -105,18 +105,18 @@ def check_turns(walk: Walk) -> None:
 
 
 def _largest_turn(walk: Walk) -> tuple[float, tuple[str, ...]]:
-    """Of the trunk in a step [rad], and the key that asks for it; a foot turns by twice that, a hip by as much."""
+    """Largest turn of the trunk in a step [rad], and its keys; a foot turns by twice that, a hip by as much."""
     turn = max((abs(stride.yaw) for stride in walk.gait.strides), default=0.0)
-    most, told = walk.region.turn, walk.commands
-    if any(command.places for command in told):
+    most, commands = walk.region.turn, walk.commands
+    if any(command.places for command in commands):
         return most, ("gait", "waypoints")
-    rates = [abs(command.twist.yaw) for command in told if command.twist is not None]
+    rates = [abs(command.twist.yaw) for command in commands if command.twist is not None]
     asked = min(most, max(rates, default=0.0) * walk.gait.period)
     return (asked, ("commands",)) if asked > turn else (turn, ("gait", "velocity" if walk.gait.bouts else "turn"))
 
 
 def _fast(walk: Walk) -> bool:
-    """Whether the legs of a walk are anywhere near as fast as their joints can."""
+    """Return true if the legs of a walk are anywhere near as fast as their joints can."""
     gait, robot = walk.gait, walk.robot
     longest = max((abs(stride.x) for bout in gait.bouts for stride in bout.strides), default=abs(gait.step_length))
     least = min(robot.velocity_limit[k] for k in robot.joint_indices(robot.roles.legs))
@@ -171,7 +171,7 @@ def _check_speeds(robot: "RobotDescription", angles: Array, sample_time: float) 
 
 
 def _check_ankles(robot: "RobotDescription", angles: Array, way: Rehearsed) -> None:
-    """Of feet that roll, at whose lift-off `check_stances` does not look; angles have shape (2, n) [rad].
+    """Check the ankles of feet that roll, at whose lift-off `check_stances` does not look; angles (2, n) [rad].
 
     The rehearsal is the walk itself, so that nothing is to spare as in the stances of a walk's periodic likeness.
     """
@@ -209,7 +209,7 @@ def _check_shanks(walk: Walk, way: Rehearsed, joints: tuple[Array, Array, Array]
 
 
 def _overlap(walk: Walk, way: Rehearsed, foot: int, outline: Array, knees: Array, ankles: Array) -> tuple[float, int]:
-    """How deep the shank of a standing foot is in an edge ahead at worst, negative outside, and when [m, ticks].
+    """Greatest depth of a standing foot's shank in an edge ahead, negative outside, and its time [m, ticks].
 
     The outline is convex and anticlockwise.
     """

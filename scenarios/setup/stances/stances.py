@@ -1,14 +1,14 @@
-"""Whether the joints reach the stances that a walk goes through, and hold them, before it begins.
+"""Checks, before a walk begins, that the joints reach its stances and hold them.
 
-Between touchdown and lift-off both feet stand, far apart: there joints come to the ends of their ranges. Where the CoM
-then is follows from the pendulum on its periodic walk: with the ZMP going evenly from one foot to the
-other in double support (duration T_d), and standing still in single support (T_s),
+Between touchdown and lift-off both feet stand, far apart: there joints come to the ends of their ranges. The place of
+the CoM then is that of a pendulum on its periodic walk. Its ZMP goes evenly from one foot to the other in double
+support, of duration T_d. It stands still in single support, of duration T_s. At the ends of a double support the CoM is
+(1/2 + k) of the way between the feet from their middle:
 
-    at the ends of a double support it is (1/2 + k) of the way between the feet from their middle,
     along the walk  k = -S_d / (ω T_d (C_d + S_d C_s / S_s)),  sideways  k = -S_d / (ω T_d (C_d + S_d S_s / C_s)),
 
-with C, S = cosh, sinh of ω T / 2, by matching place and velocity where the supports meet. There one foot bears all,
-with a force that goes from its sole through the CoM (`surefoot.wbc.body.statics.bearing_torque`).
+with C, S = cosh, sinh of ω T / 2. Place and velocity match where the supports meet. There one foot bears all, with a
+force that goes from its sole through the CoM (`surefoot.wbc.body.statics.bearing_torque`).
 """
 
 import math
@@ -35,17 +35,19 @@ from surefoot.wbc.body.ik import PostureIk, PostureResult, PostureTarget
 from surefoot.wbc.body.statics import bearing_torque
 
 MISSING = 0.01
-"""What a stance may lack before a walk is refused: the controller lets trunk and CoM give way by as much [m, rad]."""
+"""Lack of a stance up to which a walk is not refused: the controller lets trunk and CoM give way by it [m, rad]."""
 
 SPARE = 0.06
-"""How far from the ends of their ranges the legs' joints are to stay in these stances: the walk itself needs some way
-beside what its periodic likeness does [rad]."""
+"""Distance of the legs' joints from the ends of their ranges in these stances [rad].
+
+The walk itself needs some way beside what its periodic likeness does.
+"""
 
 _LOOKED_AT = 1000
 """Footsteps that are looked at; equal ones once."""
 
 _EXACTLY = 1e-4
-"""What a stance may lack whose knees are measured [m, rad]."""
+"""Lack of a stance whose knees are measured [m, rad]."""
 
 _AT_END = 0.01
 """A joint that is nearer to the end of its range is at it [rad]."""
@@ -75,7 +77,7 @@ class Stance:
 
     @property
     def moment(self) -> str:
-        """What its footstep does there."""
+        """Moment of its footstep."""
         return "lands" if self.landing else "bears the other one's lift-off"
 
 
@@ -99,7 +101,7 @@ def check_stances(walk: Walk, body: Body, q: Array) -> None:
 
 
 def least_bend(walk: Walk, body: Body) -> float | None:
-    """By how much the straighter knee is bent at least in a walk's stances [rad]; None where none is known beforehand.
+    """Least bend of the straighter knee in a walk's stances [rad]; None where none is known beforehand.
 
     Raises:
         ParameterError: the legs do not reach where it begins.
@@ -112,16 +114,16 @@ def least_bend(walk: Walk, body: Body) -> float | None:
 
 
 _WAYS = (-0.06, 0.03)
-"""How far lower and higher it is sought, of the leg's length [-]."""
+"""Least and greatest height at which it is sought, of the leg's length [-]."""
 
 _DECIMALS = 4
-"""Of a height [m]."""
+"""Decimals of a height [m]."""
 
 
 _NO_STANCE: dict[str, Any] = dict.fromkeys(("name", "pushes", "faults", "criteria"), True) | {
     "planner": {"recovery": set(RecoverySettings.model_fields) - {"sole_gap"}}
 }
-"""Of a scenario: what moves none of the stances that its gait goes through."""
+"""Keys of a scenario that change none of the stances that its gait goes through."""
 
 
 def bent_once(before: Scenario, after: Scenario, robots: Robots) -> float:
@@ -135,8 +137,8 @@ def bent_once(before: Scenario, after: Scenario, robots: Robots) -> float:
 def bent_alike(before: Scenario, after: Scenario) -> float:
     """CoM height with which the straightest knee is bent as that of another robot on its walk [m].
 
-    Equal legs alone do not say it. Where the CoM is beside the hips, how much of the mass is in the legs, how long the
-    soles are and how far apart the hips, all of that moves the hips over the feet. So both robots stand as they would.
+    Equal legs alone do not say it. The hips' place over the feet depends on the CoM beside the hips, on the mass of the
+    legs, on the length of the soles and on the distance of the hips. So both robots stand as they would.
 
     Args:
         before: the walk of the other one.
@@ -154,7 +156,7 @@ def bent_alike(before: Scenario, after: Scenario) -> float:
     body, leg, height = body_of(walk.robot), walk.robot.leg_length, walk.gait.com_height
 
     def bend(tried: float) -> float:
-        """With the CoM at a height; none where the legs do not reach."""
+        """Bend of the knees with the CoM at a height; none where the legs do not reach."""
         gait = after.gait.model_copy(update={"com_height": tried})
         try:
             return least_bend(replace(walk, keys=after.model_copy(update={"gait": gait})), body) or 0.0

@@ -1,4 +1,4 @@
-"""The posture in which a run begins: over its feet, with the start noises, as told, and pressed into the ground."""
+"""The posture in which a run begins: over its feet, with the start noises, as believed, and pressed into the ground."""
 
 import math
 
@@ -16,7 +16,7 @@ from surefoot.wbc.body.ik import PostureTarget
 Array = NDArray[np.float64]
 
 SOLE_SINKAGE = 1.3e-4
-"""How far the reference robot's soles sink into the simulated ground under its weight [m]."""
+"""Depth by which the reference robot's soles sink into the simulated ground under its weight [m]."""
 
 
 def start_posture(walk: Walk, body: Body) -> Array:
@@ -25,7 +25,10 @@ def start_posture(walk: Walk, body: Body) -> Array:
     Raises:
         ParameterError: the legs cannot reach that stance.
     """
-    feet, start, height, ground = walk.ground.stance, walk.start, walk.standing_height, walk.ground.start_height
+    feet = walk.ground.stance
+    start = walk.start
+    height = walk.standing_height
+    ground = walk.ground.start_height
     target = PostureTarget(feet.position, feet.yaw, np.array([start.x, start.y, ground + height]), start.yaw)
     robot = body.robot
     q = pin.neutral(body.model)
@@ -74,16 +77,16 @@ def disturbed(q: Array, walk: Walk, body: Body) -> Array:
     return result.q
 
 
-def as_told(q: Array, walk: Walk, body: Body) -> Array:
+def at_believed_start(q: Array, walk: Walk, body: Body) -> Array:
     """The configuration, shape (nq,), in which a robot that only senses takes itself to stand when it stands like q.
 
     No sensor tells where it is in the world, nor where it looks: the middle and the heading of its feet are those that
-    it was told.
+    it believes at the start.
     """
-    told, feet = walk.ground.stance, feet_at(body, q)
-    turn = -float(np.mean([wrap_angle(yaw) for yaw in feet.yaw - told.yaw]))
+    believed, feet = walk.ground.stance, feet_at(body, q)
+    turn = -float(np.mean([wrap_angle(yaw) for yaw in feet.yaw - believed.yaw]))
     turned = pin.SE3(pin.utils.rotate("z", turn), np.zeros(3))
-    middle = pin.SE3(np.eye(3), told.position.mean(axis=0))
+    middle = pin.SE3(np.eye(3), believed.position.mean(axis=0))
     base = middle * turned * pin.SE3(np.eye(3), -feet.position.mean(axis=0)) * pin.XYZQUATToSE3(q[:7])
     return np.concatenate((pin.SE3ToXYZQUAT(base), q[7:]))
 

@@ -19,7 +19,7 @@ STEEPEST = 0.35
 """Inclination beyond which no ground is made; the ankle has to turn as far [rad]."""
 
 _FLUSH = 1e-3
-"""How far a neighbouring face may rise above the plane of a sole [m]."""
+"""Height of a neighbouring face above the plane of a sole that does not count [m]."""
 
 
 class SlopeKind(TerrainKind):
@@ -62,7 +62,7 @@ def steepness(ground: Ground) -> Iterator[Problem]:
 
 
 def off_face(ground: Ground, facts: RobotFacts, name: str, what: str, right: str) -> Iterator[Problem]:
-    """Tell a walk that would start on a tilted face, or else its first sole that would not be whole on one face.
+    """Report a walk that would start on a tilted face, or else its first sole that would not be whole on one face.
 
     Args:
         ground: tilted in part.
@@ -83,7 +83,7 @@ def off_face(ground: Ground, facts: RobotFacts, name: str, what: str, right: str
 
 
 def _buried(ground: Ground, corners: Array) -> Array:
-    """How far the ground is above each sole's plane at the worst of its corners, shape (n + 2,) [m]."""
+    """Height of the ground above each sole's plane at the worst of its corners, shape (n + 2,) [m]."""
     heights = ground.terrain.heights(corners.reshape(-1, 2)).reshape(corners.shape[:2])
     places, normals = ground.places, np.array([step.normal for step in ground.footsteps])
     tilt = normals[:, :2] / normals[:, 2:]
@@ -92,7 +92,7 @@ def _buried(ground: Ground, corners: Array) -> Array:
 
 
 BLOCK_GAP = 0.02
-"""Between blocks for the left and the right foot [m]."""
+"""Distance between blocks for the left and the right foot [m]."""
 
 MOST_BLOCKS = 200
 """Blocks of a field, since every look at the ground goes through all of them [-]."""

@@ -39,25 +39,25 @@ LONG_FOOT = 0.3
 
 
 def tiles_of(keys: Scenario, size: Similarity) -> Tiles | None:
-    """What lies in truth where a robot of a size believes in level ground; None when it is level."""
+    """The tiles on which a robot of a size walks while it believes in level ground; None when it is level."""
     noise = keys.errors.ground_noise
     return Tiles(noise, keys.seed, _level_room(keys, size), TILE * size.length) if noise else None
 
 
 def tilt_of(keys: Scenario, size: Similarity) -> Tilt | None:
-    """How ground is truly tilted where a robot of a size believes in level ground; None when it is not."""
+    """The true tilt of ground that a robot of a size believes to be level; None when it is level."""
     pitch, roll = keys.errors.ground_pitch or 0.0, keys.errors.ground_roll or 0.0
     return Tilt(pitch, roll, _level_room(keys, size), FAR * size.length) if pitch or roll else None
 
 
 def _level_room(keys: Scenario, size: Similarity) -> float:
-    """How far ground stays level beyond the centres of the feet at the start, which is known [m]."""
+    """Distance beyond the centres of the feet at the start for which ground stays level, which is known [m]."""
     return 0.5 * max(keys.robot_options.foot_length or 0.0, LONG_FOOT * size.length) + keys.start.position_noise
 
 
 @dataclass(frozen=True, eq=False)
 class Ground:
-    """What a scenario says of its ground, and of the walk that comes to it.
+    """A scenario's ground, and the walk that comes to it.
 
     Attributes:
         kind: of the ground.
@@ -89,7 +89,7 @@ class Ground:
 
     @property
     def commanded(self) -> bool:
-        """Whether the gait is given by a velocity or by footsteps."""
+        """True if the gait is given by a velocity or by footsteps."""
         return bool(self.steps.velocity or self.steps.footsteps)
 
     @property
@@ -106,7 +106,7 @@ class Ground:
 
     @property
     def site(self) -> Site:
-        """Where ground is built, and for which walk."""
+        """The place where ground is built, and the walk for which it is."""
         return Site(
             self.origin,
             self.start.yaw,
@@ -132,7 +132,7 @@ class Ground:
 
     @cached_property
     def stance(self) -> FeetState:
-        """Where the feet stand at the start: side by side at the start position and heading, on the ground there."""
+        """Feet at the start: side by side at the start position and heading, on the ground there."""
         return self._stance(self.start_height)
 
     def _stance(self, height: float) -> FeetState:
@@ -254,7 +254,7 @@ class TerrainKind:
         return []
 
     def notes(self, ground: Ground) -> Iterator[str]:
-        """Tell what of it the walk does not come to, a sentence each."""
+        """Note what of it the walk does not come to, a sentence each."""
         return iter(())
 
 
@@ -272,7 +272,7 @@ def climb_problems(ground: Ground, facts: RobotFacts, risers: int = 1) -> Iterat
 
 
 def unreached(ground: Ground, what: str) -> Iterator[Problem]:
-    """Tell a walk that takes steps and leaves off before the ground is anything but level."""
+    """Note a walk that takes steps and leaves off before the ground is anything but level."""
     count = len(ground.footsteps) - 2
     if count and np.ptp(ground.places[:, 2]) == 0.0 and all(step.normal[2] == 1.0 for step in ground.footsteps):
         said = f"none of {count} footsteps comes to the {what}, so that the walk is one on level ground"

@@ -17,7 +17,7 @@ LANDING_TREADS = 3
 """Depth of a landing whose depth is not given, in treads: the gait keeps its rhythm on it."""
 
 MOST_BEHIND = 0.03
-"""How far behind mid-tread a foot stands at most: shanks lean forward and must not touch the edge ahead [m]."""
+"""Greatest distance of a foot behind mid-tread: shanks lean forward and must not touch the edge ahead [m]."""
 
 HEEL_ROOM = 0.015
 """Distance of the heel from the riser behind it on the way down [m]."""
@@ -56,7 +56,7 @@ class StairsKind(TerrainKind):
 
 
 def _risers(ground: Ground) -> list[int]:
-    """How many risers each footstep takes, up or down, in order."""
+    """Number of risers that each footstep takes, up or down, in order."""
     heights = ground.places[:, 2]
     return [int(number) for number in np.round(np.abs(np.diff(heights)) / ground.keys.riser)]
 
@@ -77,7 +77,7 @@ def stairs_of(ground: Ground) -> Stairs:
 
 
 def _behind(ground: Ground) -> float:
-    """How far behind mid-tread feet of known length stand: half of the room, going down away from risers [m]."""
+    """Distance of feet of known length behind mid-tread: half of the room, going down away from risers [m]."""
     foot, keys, length = ground.sole, ground.keys, ground.size.length
     if foot is None:
         return 0.0
@@ -124,7 +124,7 @@ def _over_edge(ground: Ground, facts: RobotFacts, row: int, over: float) -> Prob
 
 
 def _beyond_climb(ground: Ground, row: int) -> bool:
-    """Whether a row of the footsteps lies beyond the last riser of the way up, or is the one that steps over it."""
+    """Return true if a row of the footsteps lies beyond the last riser of the way up, or steps over it."""
     if ground.keys.direction != "up_down":
         return False
     stairs, yaw = stairs_of(ground), ground.start.yaw
@@ -133,7 +133,7 @@ def _beyond_climb(ground: Ground, row: int) -> bool:
 
 
 def _leaps(ground: Ground) -> Iterator[Problem]:
-    """Tell the first step that takes more than one riser."""
+    """Report the first step that takes more than one riser."""
     riser, risers = ground.keys.riser, _risers(ground)
     rows = [row for row, number in enumerate(risers) if number > 1]
     if rows:

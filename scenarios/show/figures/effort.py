@@ -128,7 +128,7 @@ def _peaks(axes: Axes) -> dict[str, float]:
 
 
 def groups(names: tuple[str, ...], roles: Roles) -> dict[str, dict[str, list[int]]]:
-    """Joints by figure and label: both legs joint by joint, waist joints likewise, arms and head together."""
+    """Joints by figure and label: legs and waist joint by joint, arms and head together."""
     legs = {side: leg(names, roles, side) for side in FOOT_NAMES}
     drawn = {f"{side} leg": {_short(names[i], side): [i] for i in joints} for side, joints in legs.items()}
     upper: dict[str, list[int]] = {}

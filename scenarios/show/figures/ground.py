@@ -68,7 +68,7 @@ def _pressures(axes: Axes, view: LogView, foot: int) -> None:
 
 
 def bears_alone(view: LogView, foot: int, times: Array) -> NDArray[np.bool_]:
-    """Whether a foot is the stance foot at given times, shape (n,)."""
+    """Mark the times at which a foot is the stance foot, shape (n,)."""
     return np.asarray(view.at("/reference", "stance", times) == foot)
 
 
@@ -172,7 +172,12 @@ def yaw_moment_used(wrench: Array, coefficient: float, sole: SoleSize) -> Array:
     """Yaw moment over the one at which the sole turns with these other forces and moments, shape (n,) [-].
 
     Caron, Pham and Nakamura, "Stability of surface contacts for humanoid robots", ICRA 2015, eqs. (10) to (12).
-    Arguments as of `friction_used`; infinite where the sole slips whatever its yaw moment.
+    It is infinite where the sole slips whatever its yaw moment.
+
+    Args:
+        wrench: at the sole's centre in its frame, force first, shape (n, 6).
+        coefficient: of friction [-].
+        sole: its size.
     """
     x, y, mu = sole[0] / 2, sole[1] / 2, coefficient
     fx, fy, fz, tx, ty, tz = wrench.T
@@ -223,7 +228,7 @@ def _rows(view: LogView) -> list[tuple[float, float]]:
 
 
 def strip_height(view: LogView, width: float) -> float:
-    """Of the rows of a strip, drawn in a width, all [in]."""
+    """Height of the rows of a strip, drawn in a width, all [in]."""
     rows = _rows(view)
     if not rows:
         return 0.0
@@ -233,7 +238,7 @@ def strip_height(view: LogView, width: float) -> float:
 
 
 def is_wide(view: LogView) -> bool:
-    """Whether the walk is much longer in x than in y, so that its top view is a strip."""
+    """Return true if the walk is much longer in x than in y, so that its top view is a strip."""
     try:
         extent = np.ptp(view.field("/truth", "com", 3)[:, :2], axis=0)
     except MissingError:
@@ -266,7 +271,7 @@ _MOST_NAMED = 150
 
 
 def _footprints(axes: Axes, view: LogView, stretch: tuple[float, float] | None) -> list[Artist]:
-    """Where the soles stood at the window's begin and landed since, and where they were last planned to land.
+    """Draw where the soles stood at the window's begin and landed since, and where they were last planned to land.
 
     Of a row of a strip only those in its stretch of x [m].
     """

@@ -27,7 +27,7 @@ _REFERENCES = (
     ("com", 3, "CoM reference", palette.COM_PLANNED),
     ("dcm", 2, "DCM reference", palette.DCM_PLANNED),
 )
-"""What ZMP, CoM and DCM should be: field of ``/reference``, its size, label and colour."""
+"""References of ZMP, CoM and DCM: field of ``/reference``, its size, label and colour."""
 
 
 def strips(view: LogView) -> tuple[tuple[float, float], ...]:

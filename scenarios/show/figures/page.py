@@ -83,7 +83,7 @@ _WIDE = (
     (3.9, ("joints",)),
     (3.1, ("solver",)),
 )
-"""Likewise, of a walk whose top view is a strip."""
+"""Rows of the page of a walk whose top view is a strip: height [in] and the figures in it."""
 
 
 def page(view: LogView, header: str) -> Figure:
@@ -120,7 +120,7 @@ def single(view: LogView, header: str, name: str) -> Figure:
 
 
 def _head(area: Area, header: str, behind: Background, size: float) -> None:
-    """What the log is, and what the shades behind all curves over time mean."""
+    """Write the title of the log, and the meaning of the shades behind all curves over time."""
     area.text(0.01, 0.98, header, ha="left", va="top", fontsize=size, linespacing=1.4)
     area.legend(handles=behind.handles(), loc="lower left", bbox_to_anchor=(0.004, 0.0), ncols=4)
 
@@ -197,7 +197,7 @@ def _verdict(log: Log) -> str:
 
 
 def _part(log: Log) -> str:
-    """How the run of a log ended of which only a part is looked at, so that nothing of it is judged."""
+    """The end of a run of whose log only a part is looked at, so that nothing of it is judged."""
     end = log.metadata.get(END_RECORD, {})
     if not {"time", "kind"} <= end.keys():
         return "a part of the run"
@@ -216,7 +216,7 @@ _BOTH = (
     ("CoM y [m]", "/truth", "com", 1),
     ("CoM z [m]", "/truth", "com", 2),
 )
-"""What is drawn of two runs: label, topic, field and its component."""
+"""Curves that are drawn of two runs: label, topic, field and its component."""
 
 
 def overlay(a: LogView, b: LogView, header: str, divergence: float | None) -> Figure:

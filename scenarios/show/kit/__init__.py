@@ -1,1 +1,1 @@
-"""What every report is made of: pages, tables, figures and the shades behind them."""
+"""The elements of every report: pages, tables, figures and the shades behind them."""

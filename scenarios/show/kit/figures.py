@@ -1,4 +1,4 @@
-"""How figures look, how curves are thinned, and how they are saved."""
+"""The look of figures, the thinning of curves, and the saving of both."""
 
 import math
 from collections.abc import Iterator, Sequence
@@ -67,7 +67,7 @@ def canvas(width: float, heights: Sequence[float]) -> tuple[Figure, list[SubFigu
 
 
 PAGE_WIDTH = 11.6
-"""Of a figure that is as wide as a page's text [in]."""
+"""Width of a figure that is as wide as a page's text [in]."""
 
 
 def panels(

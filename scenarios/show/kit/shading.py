@@ -35,7 +35,7 @@ class Stretch:
 
 @dataclass(frozen=True, slots=True)
 class Background:
-    """What happened in a window.
+    """The events in a window.
 
     Attributes:
         phases: with the phase and the stance foot as values.
@@ -157,7 +157,7 @@ def draw_panels(
 
 
 def background(view: LogView) -> Background:
-    """What happened in a window, as far as the log tells."""
+    """Find the events in a window, as far as the log has them."""
     return Background(_phases(view), _pushes(view), _fall(view))
 
 

@@ -12,7 +12,7 @@ from surefoot.scenarios.show.kit.figures import in_style
 from surefoot.scenarios.show.kit.html import escape, tag
 
 _PIXELS = 98
-"""Of a page for an inch of a figure: one of 11.6 in is as wide as the text."""
+"""Pixels of a page for an inch of a figure: one of 11.6 in is as wide as the text."""
 
 
 def figure_html(figure: Figure, caption: str, name: str = "", kind: str = "") -> str:

@@ -11,7 +11,7 @@ from surefoot.scenarios.run.skeleton import OnProgress, Progress
 
 
 def check(fidelity: str, *, video: Path | None, view: bool, replace: bool = False) -> None:
-    """Say before a run what its pictures would lack after it.
+    """Report before a run what its pictures would lack after it.
 
     Raises:
         MissingExtraError: an optional package is not installed.
@@ -29,7 +29,7 @@ def check(fidelity: str, *, video: Path | None, view: bool, replace: bool = Fals
 
 
 LEAVE = 3.0
-"""How long a replay may take to end when it is asked to [s]."""
+"""Time that a replay may take to end when it is asked to [s]."""
 
 
 class LiveView:

@@ -1,4 +1,4 @@
-"""What a replay shows, whatever shows it: frames, surfaces on bodies, footprints, and marks made of facts."""
+"""The content of a replay, whatever shows it: frames, surfaces on bodies, footprints, and marks made of facts."""
 
 from collections.abc import Iterator
 from dataclasses import dataclass
@@ -19,7 +19,7 @@ MarkKind = Literal["point", "arrow", "outline"]
 
 @dataclass(frozen=True, slots=True)
 class ReplayWindow:
-    """What is asked for of a run.
+    """The window of a run that is asked for.
 
     Attributes:
         start: first time, the log's if None [s].
@@ -36,7 +36,7 @@ class ReplayWindow:
 
 @dataclass(frozen=True, slots=True)
 class Frames:
-    """Which ticks are shown.
+    """The ticks that are shown.
 
     Attributes:
         time: of each frame, shape (n,) [s].
@@ -95,18 +95,18 @@ class Track:
     trail: bool = False
 
     def shown(self, frame: int) -> bool:
-        """Whether there is something to show in a frame."""
+        """Return true if there is something to show in a frame."""
         return bool(np.isfinite(self.vertices[frame]).all())
 
     def path(self, frames: slice) -> Array:
-        """Where a point has been, without the frames in which it was not shown, shape (k, 3) [m]."""
+        """Path of a point, without the frames in which it was not shown, shape (k, 3) [m]."""
         points = self.vertices[frames, 0]
         return np.asarray(points[np.isfinite(points).all(axis=1)])
 
 
 @dataclass(frozen=True, slots=True)
 class Footprint:
-    """Where a sole has been set down; it stays.
+    """The footprint of a sole that has been set down; it stays.
 
     Attributes:
         color: of the foot.
@@ -166,14 +166,14 @@ class Replay:
         return found
 
     def followed(self) -> Array:
-        """What a camera that follows the robot looks at: the base without the sway of its steps, shape (n, 3) [m]."""
+        """Point that a camera which follows the robot looks at: the base without its sway, shape (n, 3) [m]."""
         base, half = self.body_position[:, 1], round(SWAY * self.frame_rate / 2)
         padded = np.pad(base, ((half, half), (0, 0)), mode="edge")
         return np.asarray(np.lib.stride_tricks.sliding_window_view(padded, 2 * half + 1, axis=0).mean(axis=-1))
 
 
 LIFT = 0.004
-"""How far marks on the ground are drawn above it [m]."""
+"""Height at which marks on the ground are drawn above it [m]."""
 
 CONTACT_SCALE = 0.0005
 """Length of a contact force's arrow [m/N]: 1000 N are 0.5 m."""
@@ -182,7 +182,7 @@ PUSH_SCALE = 0.002
 """Length of a push's arrow [m/N]: 200 N are 0.4 m."""
 
 PUSH_SHOWN = 0.3
-"""How long a push stays in sight after its end, since many last less than a frame [s]."""
+"""Time for which a push stays in sight after its end, since many last less than a frame [s]."""
 
 LEAST_FORCE = 5.0
 """Weaker forces are not drawn [N]."""
@@ -193,7 +193,7 @@ SoleSize = tuple[float, float]
 
 @dataclass(frozen=True, slots=True)
 class Facts:
-    """What the marks tell, by frame, whether it comes from a log or from a run that goes on.
+    """The facts that marks are made of, by frame, from a log or from a run that goes on.
 
     Attributes:
         com: true CoM, shape (n, 3) [m].

@@ -167,7 +167,7 @@ def _pushed_body(log: Log, run: RunView) -> str:
 
 
 def _facts(run: RunView, frames: Frames, pushed: Array) -> content.Facts:
-    """What the marks tell; the push is the strongest of the last moments, at a place of shape (n, 3) [m]."""
+    """Extract the facts; the push is the strongest of the last moments, at a place of shape (n, 3) [m]."""
     rows, count = frames.rows, len(frames.rows)
     ahead, ahead_foot = np.empty((count, 0, 4)), np.empty((count, 0))
     if run.has("/footsteps"):
@@ -202,7 +202,7 @@ def _facts(run: RunView, frames: Frames, pushed: Array) -> content.Facts:
 
 
 def _taken_footprints(log: Log, frames: Frames, sole: content.SoleSize) -> Iterator[content.Footprint]:
-    """Where the feet stood at first, and every touchdown until the last frame."""
+    """Footprints of the feet at first, and of every touchdown until the last frame."""
     first = next(log.parts("/footsteps"), None) if "/footsteps" in log.numeric else None
     if first is not None:
         for color, name in zip(FEET, FOOT_NAMES, strict=True):

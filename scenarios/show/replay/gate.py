@@ -1,8 +1,8 @@
 """The one way to a viewer: a port of this machine, and a check that no page of others passes.
 
 A browser lets any page send requests to this machine and connect to its sockets. So an answer is given only to requests
-with the token in its path, for a host that is this machine (a name that others point here is not), from a page of this
-address or from no page at all.
+with the token in the path, from a page of this address or from no page at all. Their host has to be this machine; a
+name that others point here is not.
 """
 
 import asyncio
@@ -47,16 +47,16 @@ VIEWER = "viewer"
 """Name of the viewer's own page, where another one is served at the address."""
 
 GRACE = 0.5
-"""How long a page has to take its leave when the viewer ends [s]."""
+"""Time that a page has to take its leave when the viewer ends [s]."""
 
 HEARD = ("ViewerCameraMessage", "GuiUpdateMessage", "SceneNodeClickMessage", "SceneNodeDragMessage")
-"""What the pages here send to viser, which knows more: uploads, and a tunnel that shows the viewer to the internet."""
+"""Messages that the pages here send to viser, which knows more: uploads, and a tunnel to the internet."""
 
 HEADERS = {"Cache-Control": "no-store", "Referrer-Policy": "no-referrer", "X-Frame-Options": "DENY"}
-"""Of every page: its address holds the token, which nothing else shall learn."""
+"""Headers of every page: its address holds the token, which nothing else shall learn."""
 
 logger = logging.getLogger(__name__)
-"""Told of bad requests and broken connections, which are no business of the terminal."""
+"""Logger of bad requests and broken connections, which are no business of the terminal."""
 logger.addHandler(logging.NullHandler())
 logger.propagate = False
 
@@ -82,11 +82,11 @@ class Gate:
 
     @property
     def address(self) -> str:
-        """Of the page."""
+        """Address of the page."""
         return f"http://{LOCALHOST}:{self.port}/{self.token}/"
 
     def refusal(self, request: "Request") -> str | None:
-        """Why a request is not answered, if so."""
+        """Reason why a request is not answered; None if it is."""
         hosts, origins = (request.headers.get_all(name) for name in ("Host", "Origin"))
         if len(hosts) != 1 or not is_here(hosts[0]):
             return f"this address is not served; open {LOCALHOST} or localhost"
@@ -129,7 +129,7 @@ class Gate:
 
     @staticmethod
     def _name(request: "Request") -> str:
-        """What is asked for, below the token."""
+        """Name of what is asked for, below the token."""
         return "/".join(request.path.split("?")[0].split("/")[2:])
 
 
@@ -149,7 +149,7 @@ class _Screened:
 
 
 def is_heard(message: str | bytes) -> bool:
-    """Whether viser may be given a message; it would set any attribute of a control that one names, also a callback."""
+    """Return true if viser may be given a message; it would set any attribute of a control that one names."""
     msgspec: Any = importlib.import_module("msgspec")
     try:
         given = msgspec.msgpack.decode(message if isinstance(message, bytes) else b"")
@@ -169,7 +169,7 @@ _HERE = re.compile(rf"(?:{'|'.join(map(re.escape, HOSTS))})(?::[0-9]{{0,5}})?", 
 
 
 def is_here(host: str) -> bool:
-    """Whether the host of a request is a name of this machine, with a port or none behind it."""
+    """Return true if the host of a request is a name of this machine, with a port or none behind it."""
     return _HERE.fullmatch(host) is not None
 
 

@@ -27,18 +27,18 @@ POLL = 1.0
 """Wall-clock time between looks at the log [s]."""
 
 PATIENCE = 15.0
-"""How long a log may lack its first control tick [s]."""
+"""Time for which a log may lack its first control tick [s]."""
 
 SPEEDS = {"0.1x": 0.1, "0.25x": 0.25, "0.5x": 0.5, "1x": 1.0, "2x": 2.0, "4x": 4.0}
-"""Of replayed over wall-clock time, by what they are called."""
+"""Speeds of replayed over wall-clock time, by what they are called."""
 
 
 def serve(path: Path, window: ReplayWindow, say: Callable[[str], None]) -> None:
-    """Serve a log, which may still grow, on this machine until a signal ends it; ``say`` is told the address.
+    """Serve a log, which may still grow, on this machine until a signal ends it; ``say`` gets the address.
 
     Raises:
         MissingExtraError: viser is not installed.
-        LogError: the log holds nothing to show, or is there no more; errors as of `serving`.
+        LogError: the log holds nothing to show, or is there no more; the port is taken.
     """
     gate = Gate()
     with serving(gate) as server:
@@ -54,7 +54,7 @@ def serve(path: Path, window: ReplayWindow, say: Callable[[str], None]) -> None:
 
 
 def _size(path: Path) -> int:
-    """Of a log that is followed [B]; LogError where it is there no more."""
+    """Size of a log that is followed [B]; LogError where it is there no more."""
     try:
         return path.stat().st_size
     except OSError as error:
@@ -62,7 +62,7 @@ def _size(path: Path) -> int:
 
 
 def _first(path: Path, window: ReplayWindow) -> Replay:
-    """What a log shows, as soon as it shows anything."""
+    """The replay of a log, as soon as it shows anything."""
     begin = time.monotonic()
     while True:
         log = read(path)

@@ -73,15 +73,15 @@ class Chart:
                 found[curve] = points[:, curve.component]
         return found
 
-    def told(self, values: Mapping[Curve, Array] | None = None) -> dict[str, Any]:
+    def to_json(self, values: Mapping[Curve, Array] | None = None) -> dict[str, Any]:
         """The chart for a script, as JSON: the curves with their values, or all of them without any."""
         curves = []
         for curve in self.curves if values is None else values:
-            told = {"name": curve.name, "color": palette.hexadecimal(curve.color), "planned": curve.planned}
+            shown = {"name": curve.name, "color": palette.hexadecimal(curve.color), "planned": curve.planned}
             if values is not None:
                 rounded = values[curve].round(4).tolist()
-                told["values"] = [value if abs(value) < np.inf else None for value in rounded]
-            curves.append(told)
+                shown["values"] = [value if abs(value) < np.inf else None for value in rounded]
+            curves.append(shown)
         return {"label": self.label, "digits": self.digits, "curves": curves}
 
 
@@ -111,15 +111,15 @@ CHARTS = (
     Chart("DCM inside what is captured [m]", 3, _MARGINS),
     Chart("normal force [N]", 0, _FORCES),
 )
-"""Beside the picture of every replay and of a robot that is driven."""
+"""Charts beside the picture of every replay and of a robot that is driven."""
 
 
 LEAD = 3.0
-"""How long before a replay begins the step began at most in which it does [s]."""
+"""Longest time before a replay at which the step began in which it begins [s]."""
 
 
 def beside_replay(log: Log, replay: Replay) -> LogView:
-    """What the charts beside a replay are drawn of."""
+    """The view from which the charts beside a replay are drawn."""
     reads = {topic: set(names) for topic, names in STANCES.items()}
     for chart in CHARTS:
         for curve in chart.curves:
@@ -133,7 +133,7 @@ MOST_FRAMES = 600
 
 
 def write_page(log: Path, out: Path, window: ReplayWindow | None = None, replace: bool = False) -> float:
-    """Write the page of a log; errors as of `extract`.
+    """Write the page of a log.
 
     Returns:
         frames per simulated second, fewer than asked for where there would be more than `MOST_FRAMES` [Hz].
@@ -146,14 +146,14 @@ def write_page(log: Path, out: Path, window: ReplayWindow | None = None, replace
     opened = read(log)
     replay = extract(opened, dataclasses.replace(window or ReplayWindow(), most=MOST_FRAMES))
     view = beside_replay(opened, replay)
-    charts = [chart.told(chart.values(view, replay.time)) for chart in CHARTS]
+    charts = [chart.to_json(chart.values(view, replay.time)) for chart in CHARTS]
     with write_whole(out, replace) as temporary:
         temporary.write_text(page(replay, charts), encoding="utf-8")
     return replay.frame_rate
 
 
 def page(replay: Replay, charts: Sequence[Mapping[str, Any]] = ()) -> str:
-    """The page as text, with charts as of `Chart.told` beside the picture.
+    """The page as text, with charts from `Chart.to_json` beside the picture.
 
     Raises:
         MissingExtraError: viser is not installed.
@@ -170,7 +170,7 @@ def page(replay: Replay, charts: Sequence[Mapping[str, Any]] = ()) -> str:
 
 
 def column(replay: Replay, layers: tuple[str, ...], charts: Sequence[Mapping[str, Any]]) -> str:
-    """What stands beside the picture: title, legend, charts, and the room for viser's switches of the layers."""
+    """The column beside the picture: title, legend, charts, and the room for viser's switches of the layers."""
     time = replay.time.round(4).tolist()
     legend = (
         f'<span><b style="background:{palette.hexadecimal(c)}"></b>{name}</span>' for name, c in replay.legend().items()
@@ -202,8 +202,8 @@ def filled(template: str, data: Any = None, **names: str) -> str:
         names: HTML by name.
     """
     # An end of the script inside a text would end it.
-    told = json.dumps(data, allow_nan=False, separators=(",", ":")).replace("</", "<\\/")
-    return _Template(template).substitute(names, data=told)
+    text = json.dumps(data, allow_nan=False, separators=(",", ":")).replace("</", "<\\/")
+    return _Template(template).substitute(names, data=text)
 
 
 def taken_in(page: str, head: str, column: str) -> str:

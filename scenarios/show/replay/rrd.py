@@ -19,7 +19,7 @@ TIMELINE = "time"
 
 
 def write_rrd(log: Path, out: Path, window: ReplayWindow | None = None, replace: bool = False) -> None:
-    """Write the recording of a log; errors as of `extract`.
+    """Write the recording of a log.
 
     Raises:
         MissingExtraError: rerun is not installed.

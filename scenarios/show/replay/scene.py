@@ -63,13 +63,13 @@ GROUND = "/Ground"
 """The node of the ground."""
 
 STEP_BACK = np.array([1.7, -2.0, 0.35])
-"""From what the camera looks at to where it stands at first [m]."""
+"""Step back of the camera at first from what it looks at [m]."""
 
 LOOK_AT_HEIGHT = 0.75
-"""Of what the camera looks at, over the ground [m]."""
+"""Height over the ground of what the camera looks at [m]."""
 
 GROUND_DEPTH = np.array([0.0, 0.0, -0.002])
-"""Where the ground is drawn, so that it does not fight with what lies on it [m]."""
+"""Place of the ground, so that it does not fight with what lies on it [m]."""
 
 
 def set_stage(server: "viser.ViserServer", replay: Replay) -> Any:
@@ -98,7 +98,7 @@ SEE_THROUGH = "Robot, see-through"
 """Layer of the robot through which the marks inside it are seen, forces and CoM among them; hidden at first."""
 
 _OPACITY = 0.6
-"""Of that layer [-]."""
+"""Opacity of that layer [-]."""
 
 _QUADRANGLE = np.array([[0, 1, 2], [0, 2, 3]])
 

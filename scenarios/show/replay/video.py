@@ -64,7 +64,7 @@ def _outline(color: Color, size: float, vertices: Array) -> Iterator[Mark]:
 
 
 FRAME_RATE = 30.0
-"""Of every video [Hz]."""
+"""Frame rate of every video [Hz]."""
 
 CAMERA = Camera(distance=2.7, azimuth=130.0, elevation=-12.0)
 QUALITY = Quality(reflections=False)
@@ -78,7 +78,7 @@ CAMERAS = {
 """Cameras by name. A fixed one looks at the middle of the way, from so far that the robot is in sight all along it."""
 
 WIDER = 0.75
-"""By how much a fixed camera steps back for each metre of the way [-]."""
+"""Distance by which a fixed camera steps back for each metre of the way [-]."""
 
 SLOWEST, FASTEST = 0.1, 10.0
 SMALLEST, LARGEST = 64, 3840
@@ -89,7 +89,7 @@ CODEC = {"crf": "20", "preset": "veryfast"}
 
 @dataclass(frozen=True, slots=True)
 class Film:
-    """How a video is made.
+    """The settings of a video.
 
     Attributes:
         speed: of the video over that of the run.
@@ -142,7 +142,7 @@ def _camera(asked: str) -> Camera:
 def write_video(
     log: Path, out: Path, window: ReplayWindow | None = None, film: Film | None = None, replace: bool = False
 ) -> None:
-    """Write an mp4 file of a window of a log, with a progress line; errors as of `extract`.
+    """Write an mp4 file of a window of a log, with a progress line.
 
     Raises:
         MissingExtraError: PyAV or an off-screen OpenGL is not installed.

@@ -120,7 +120,7 @@ def test_a_crowd_is_not_waited_for(entrance):
     crowd = [entrance.come() for _ in range(3 * doors.MOST_WAITING)]
     sent_away = sum(entrance.hear(one) is not None for one in crowd[doors.MOST_WAITING :])
     assert sent_away == 2 * doors.MOST_WAITING
-    assert len(entrance.said) <= doors.MOST_TOLD
+    assert len(entrance.said) <= doors.MOST_REFUSALS
     for one in crowd:
         one.close()
     time.sleep(0.1)

@@ -23,7 +23,7 @@ pytestmark = pytest.mark.unit
 
 PATIENCE = 10.0
 COMMANDS = 3
-"""Of a controller that is ended while it sends; the plant answers each with a state that nobody reads."""
+"""Number of commands of a controller that is ended while it sends; the plant answers each, and nobody reads."""
 
 
 @pytest.fixture(name="walk", scope="module")
@@ -32,7 +32,7 @@ def walk_fixture():
 
 
 def served(walk, *last, real_time=False, after=0.0, stays=False):
-    """How serving ends for a controller that sends commands, after a while [s] these frames, and is gone or stays."""
+    """The end of serving a controller that sends commands, after a while [s] these frames, and is gone or stays."""
     n = len(walk.robot.joint_names)
     server = Server(walk, "127.0.0.1", 0, lambda said: None, Care(), real_time)
     ends = []
@@ -78,7 +78,7 @@ def test_an_end_after_a_command_that_nobody_may_obey_is_no_end_in_order(walk):
 
 
 def test_a_plant_is_told_that_the_walk_is_over_before_the_log_is_judged(monkeypatch, tmp_path):
-    """By the wall clock its joints would be damped meanwhile."""
+    """Its joints would be damped meanwhile by the wall clock."""
     scenario = surefoot.load("stand", {"duration": 0.05, "criteria": {}})
     server = Server(resolve(scenario), "127.0.0.1", 0, lambda said: None, Care())
     ends = []

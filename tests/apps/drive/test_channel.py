@@ -1,4 +1,4 @@
-"""What a page sends is taken in order or refused in a sentence; what is new is told as fast as the page draws."""
+"""Input of a page is taken in order or refused in a sentence; news are sent as fast as the page draws."""
 
 import json
 import random

@@ -28,7 +28,7 @@ HIDE_NOTICE = (
     "document.head.insertAdjacentHTML('beforeend', '<style>.mantine-Notifications-root {display: none}</style>')"
 )
 TORSO = (0.495, 0.3)
-"""Where it is in the picture, from the left and from the top."""
+"""Place of the torso in the picture, from the left and from the top."""
 
 
 @pytest.fixture(scope="module")

@@ -1,4 +1,4 @@
-"""What is measured of a robot, each against a robot made worse in that one thing."""
+"""Measurements of a robot, each against a robot made worse in that one thing."""
 
 from dataclasses import replace
 

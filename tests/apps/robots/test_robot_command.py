@@ -111,7 +111,7 @@ def test_a_scenario_that_the_catalogue_has_not_got_is_bad_input(surefoot) -> Non
 
 
 def test_each_scenario_is_looked_at_once_and_the_longest_run_comes_first(monkeypatch, tmp_path) -> None:
-    """What is refused is known before any run, and how much there is to run, too."""
+    """Refusals are known before any run, and how much there is to run, too."""
     durations = {"stand": 1.0, "stairs-tall": 0.0, "walk": 2.0, "slope": 3.0}
     looked: list[str] = []
 

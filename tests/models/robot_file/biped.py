@@ -12,7 +12,7 @@ AXES = {"x": "1 0 0", "y": "0 1 0", "z": "0 0 1", "-y": "0 -1 0", "-x": "-1 0 0"
 
 @dataclass
 class Biped:
-    """What may be altered.
+    """The parts of a biped that may be altered.
 
     Attributes:
         knee: axis of the knees; bent forward, their angles are positive about y.

@@ -32,7 +32,7 @@ def schema() -> dict[tuple[str, ...], frozenset[str]]:
 
 
 def path(tags: tuple[str, ...]) -> str:
-    """Of an element in the table."""
+    """Path of an element in the table."""
     found = ""
     for tag in tags:
         found = path_of(found, tag)
@@ -49,7 +49,7 @@ def source_text(more: str = "", at: str = "", change: tuple[str, str] = ("", "")
 
 
 def read_text(folder: Path, text: str, more: str = "", limits: str = LIMITS) -> Reduced:
-    """What a robot file says of a text, and what the reader leaves out of it; nothing is drawn or derived."""
+    """The robot that a robot file makes of a text, and what the reader leaves out; nothing is drawn or derived."""
     (folder / "biped.xml").write_text(text)
     place = folder / "biped.yaml"
     place.write_text(FILE.replace("biped.urdf", "biped.xml") + limits + more)

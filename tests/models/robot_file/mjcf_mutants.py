@@ -50,7 +50,7 @@ VALUES = {
     "settotalmass": ("30",),
     "gravity": ("0 0 -9.81", "0 0 -1"),
 }
-"""What an attribute may hold; of others one of these."""
+"""Values that an attribute may hold; of others one of these."""
 
 ANY = ("0", "1", "0.3", "1 2 3", "true", "left_knee", "0.1 0.2")
 STATES = 5
@@ -93,7 +93,7 @@ def _with_attribute(rng: random.Random, text: str) -> str:
 
 
 def outcome(folder: Path, text: str) -> tuple[str, tuple[str, ...], RobotDescription | None]:
-    """What a text comes to: a refusal, or lines on what is left out and the robot."""
+    """Outcome of a text: a refusal, or lines on what is left out and the robot."""
     (folder / "hand.xml").write_text(f'<mujoco model="hands"><worldbody>{HAND}</worldbody></mujoco>')
     file = biped.write(folder, text, biped.FILE.replace("biped.urdf", "biped.xml") + LIMITS, "biped.xml")
     try:
@@ -104,7 +104,7 @@ def outcome(folder: Path, text: str) -> tuple[str, tuple[str, ...], RobotDescrip
 
 
 def lost(robot: RobotDescription, text: str) -> list[str]:
-    """What a robot moves otherwise than its source by MuJoCo's own account, contacts, gravity and motors aside."""
+    """Motions of a robot that differ from its source by MuJoCo's own account, contacts, gravity and motors aside."""
     try:
         source = mujoco.MjModel.from_xml_string(text)
     except ValueError:  # of what is not read, or needs files
@@ -125,7 +125,7 @@ def lost(robot: RobotDescription, text: str) -> list[str]:
 
 
 def _accelerations(model: mujoco.MjModel, robot: RobotDescription, state: object) -> np.ndarray:
-    """Of the joints in a state that is the same for both models [rad/s^2]."""
+    """Accelerations of the joints in a state that is the same for both models [rad/s^2]."""
     rng = np.random.default_rng(0)
     rng.bit_generator.state = state
     data = mujoco.MjData(model)
@@ -143,7 +143,7 @@ def _accelerations(model: mujoco.MjModel, robot: RobotDescription, state: object
 
 
 def _stronger(robot: RobotDescription, source: mujoco.MjModel, name: str) -> bool:
-    """Whether a joint has more torque than its source gives it at the ends of what its motors may do."""
+    """Return true if a joint has more torque than its source gives it at the ends of what its motors may do."""
     given = {"left_ankle_roll": 40.0, "right_ankle_roll": 40.0}  # by the robot file
     data, dof = mujoco.MjData(source), source.joint(name).dofadr[0]
     best = []

@@ -1,4 +1,4 @@
-"""What a refusal proposes is accepted when it is followed: of robot files, of models, and of walks."""
+"""Proposals of a refusal are accepted when they are followed: of robot files, of models, and of walks."""
 
 import re
 import shlex
@@ -14,7 +14,7 @@ from surefoot.apps.robots.examine import examine
 from surefoot.models import RobotError, RobotOptions, describe
 from surefoot.scenarios.errors import ScenarioError, SetupError
 from surefoot.scenarios.run.simulation import Simulation
-from surefoot.scenarios.setup.feasible import told
+from surefoot.scenarios.setup.feasible import proposal_text
 from surefoot.scenarios.setup.load import load
 
 pytestmark = pytest.mark.unit
@@ -109,7 +109,7 @@ WALKS = {
 
 
 def refusal_of(name: str, overrides: dict) -> str:
-    """Why a scenario is refused before its run; nothing where it is accepted."""
+    """Reason why a scenario is refused before its run; nothing where it is accepted."""
     try:
         Simulation(load(name, overrides)).close()
     except (ScenarioError, SetupError) as error:
@@ -126,18 +126,18 @@ def proposal_in(said: str) -> dict:
 
 def test_a_proposal_is_told_as_options_that_a_shell_takes() -> None:
     proposal = {"gait.step_length": 0.138, "gait.velocity": [{"time": 0.0, "yaw_rate": 0.118}], "gait.turn": 0.2}
-    said = told(proposal)
+    said = proposal_text(proposal)
     assert said.startswith("--set gait.step_length=0.138 --set 'gait.velocity=[{")
     assert proposal_in(f"slow; take for example {said} (0.5 in the file)") == proposal
 
 
 def bounded(said: str, overrides: dict, name: str) -> dict:
-    """What follows 'KEY ...; use at most NUMBER'."""
+    """Settings that follow 'KEY ...; use at most NUMBER'."""
     limit = re.search(r"(?:at most|less than) ([\d.]+)", said)[1]
     key = re.search(r"yaw_rate of|gait\.\w+", said)[0]
     if key == "yaw_rate of":
-        told = [command.model_dump(exclude_none=True) for command in load(name, overrides).commands]
-        slower = [one | {"yaw_rate": min(one.get("yaw_rate", 0.0), float(limit))} for one in told if "v_x" in one]
+        commands = [command.model_dump(exclude_none=True) for command in load(name, overrides).commands]
+        slower = [one | {"yaw_rate": min(one.get("yaw_rate", 0.0), float(limit))} for one in commands if "v_x" in one]
         return overrides | {"commands": slower}
     return overrides | {key: float(limit) - (0.001 if "less than" in said else 0.0)}
 
@@ -171,7 +171,7 @@ def test_a_walk_that_follows_its_refusal_is_accepted(tmp_path, case) -> None:
     ],
 )
 def test_a_proposal_says_what_it_leaves_out_of_the_criteria(tmp_path, case, left_out) -> None:
-    """What asks for the speed or for the way of the walk as it was; other postures and lower steps leave none out."""
+    """Criteria on the speed or the way of the walk as it was; other postures and lower steps leave none out."""
     name, given = WALKS[case]
     path = biped.write(tmp_path, None, biped.FILE + yaml.safe_dump(given))
     said = refusal_of(name, {"robot": str(path)})

@@ -24,7 +24,7 @@ HALF = "name: half\nmodel: humanoid100\nscale: 0.5\n"
 
 @pytest.fixture
 def derived(monkeypatch):
-    """How often a description was derived and not read, from an empty memory."""
+    """Number of times that a description was derived and not read, from an empty memory."""
     calls = []
     plain = derive.derive
     monkeypatch.setattr(derive, "derive", lambda *args: calls.append(1) or plain(*args))
@@ -96,7 +96,7 @@ def test_what_is_cached_is_what_was_derived(tmp_path, derived) -> None:
 
 
 def test_no_other_content_is_ever_taken_for_it(tmp_path, derived) -> None:
-    """Of the file, the model or a mesh, even one of the same size and time."""
+    """The content is that of the file, the model or a mesh, even one of the same size and time."""
     mesh = '<link name="cap"><visual><geometry><mesh filename="cap.stl"/></geometry></visual></link>'
     fixed = '<joint name="cap_joint" type="fixed"><parent link="base"/><child link="cap"/></joint>'
     body = biped.Biped(extra=mesh + fixed)

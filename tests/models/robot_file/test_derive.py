@@ -1,4 +1,4 @@
-"""What is derived of a robot is true of its mechanics, however its axes and frames are turned."""
+"""Values derived of a robot are true of its mechanics, however its axes and frames are turned."""
 
 import biped
 import mujoco

@@ -256,7 +256,7 @@ def test_a_link_that_urdfdom_does_not_take_is_named(tmp_path, old, said, capfd) 
 
 
 def test_a_file_of_nothing_is_called_empty(tmp_path) -> None:
-    """What a failed command leaves behind `>`."""
+    """A failed command leaves such a file behind `>`."""
     path = tmp_path / "robot.yaml"
     for text in ("", "\n\n", "# nothing but this\n"):
         path.write_text(text)

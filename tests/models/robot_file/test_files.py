@@ -1,4 +1,4 @@
-"""What a model is made of: found as the engines find it, so that a description is never of files that changed."""
+"""Files of a model are found as the engines find them, so that a description is never of files that changed."""
 
 import os
 import re

@@ -122,7 +122,7 @@ def test_it_stands_without_moving_on_side_edges(tmp_path) -> None:
 @pytest.mark.physics
 @pytest.mark.parametrize("seed", [0, pytest.param(3, marks=pytest.mark.long)])
 def test_it_stands_on_side_edges_from_sensors(tmp_path, seed) -> None:
-    """How its soles are turned about their edges is no measurement of level; the way between the edges is."""
+    """The turn of its soles about their edges is no measurement of level; the way between the edges is."""
     keys = {"robot": str(robot(tmp_path)), "seed": seed, "criteria": {}}
     verdict = run_scenario(surefoot.load("stand", keys), tmp_path).verdict
     assert not verdict["fell"] and verdict["ghost_force_max"] < 8.0

@@ -1,4 +1,4 @@
-"""Where the IMU of a robot file is: by its key, by its name, or else at the floating base."""
+"""The place of a robot file's IMU: by its key, by its name, or else at the floating base."""
 
 import biped
 import numpy as np

@@ -228,7 +228,7 @@ def test_a_foot_that_weighs_nothing_is_refused(tmp_path) -> None:
 
 @pytest.mark.parametrize("scale", [0.1, 3.0])
 def test_a_robot_of_another_size_has_such_joints_too(tmp_path, scale) -> None:
-    """What has no mass has none in any size: MuJoCo would not take the power of it."""
+    """A body without mass has none in any size: MuJoCo would not take the power of it."""
     one, other = (explain(str(_written(tmp_path, text(), more))).description for more in ("", f"scale: {scale}\n"))
     assert other.mass == pytest.approx(scale**3 * one.mass)
     assert EnginePair(other).difference(*EnginePair(other).random_state(np.random.default_rng(0))).largest < 1e-9

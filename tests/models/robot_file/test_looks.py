@@ -1,4 +1,4 @@
-"""What is only drawn never stops physics: a look that no engine makes is left out, and told."""
+"""Shapes that are only drawn never stop physics: a look that no engine makes is left out, and told."""
 
 import biped
 import mujoco

@@ -203,5 +203,5 @@ def test_a_law_guesses_its_own_units(name) -> None:
     assert law.holds(law.usual, 1.0)
     for factor, unit in law.units:
         if not law.holds(law.usual * factor, 1.0):
-            assert unit in law.told("it", law.usual * factor, 1.0)[1]
-    assert "likely" not in law.told("it", 1.01 * law.usual, 1.0)[1]
+            assert unit in law.refusal("it", law.usual * factor, 1.0)[1]
+    assert "likely" not in law.refusal("it", 1.01 * law.usual, 1.0)[1]

@@ -1,4 +1,4 @@
-"""What an MJCF of very many triangles costs: the time of a process of its own, and its memory."""
+"""The cost of an MJCF of very many triangles: the time of a process of its own, and its memory."""
 
 import os
 import subprocess

@@ -21,7 +21,7 @@ QUICK = (
     "pointer as dae",
     "stl with nan",
 )
-"""Of each kind of fault one, for every change."""
+"""One fault of each kind, for every change."""
 
 EVERY = [pytest.param(name, marks=pytest.mark.unit if name in QUICK else pytest.mark.long) for name in MESHES]
 THIGH = '<geometry><box size="0.06 0.06 0.2"/></geometry>'
@@ -47,7 +47,7 @@ def hull_of(robot, body: str) -> np.ndarray:
 
 
 def is_the_body(points: np.ndarray) -> bool:
-    """Whether points span the body where it is, within a twentieth: it is a polyhedron."""
+    """Return true if points span the body where it is, within a twentieth: it is a polyhedron."""
     low, high = points.min(axis=0), points.max(axis=0)
     return bool((np.abs(high - low - SIZE) < 0.05 * SIZE).all() and (np.abs((low + high) / 2 - AT) < 0.003).all())
 
@@ -105,13 +105,13 @@ OF_MJCF = [
 
 
 OF_POINTS = ("obj of points",)
-"""Of which MuJoCo takes the convex hull."""
+"""Sources of which MuJoCo takes the convex hull."""
 
 
 @pytest.mark.parametrize("drawn", [True, False], ids=["drawn", "touching"])
 @pytest.mark.parametrize("name", OF_MJCF)
 def test_a_mesh_of_an_mjcf_is_used_refused_or_told(tmp_path, name, drawn, capfd, recwarn) -> None:
-    """What touches and is not understood is refused, what is drawn is left out."""
+    """A mesh that touches and is not understood is refused, one that is drawn is left out."""
     mesh = MESHES[name]
     (tmp_path / f"thigh.{mesh.ending}").write_bytes(mesh.data)
     inertial = '<inertial pos="0 0 -0.15" mass="1" diaginertia="0.01 0.01 0.002"/><geom type="capsule"'

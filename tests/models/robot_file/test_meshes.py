@@ -128,7 +128,7 @@ def test_rough_meshes_get_as_few_triangles_as_there_may_be_within_seconds(triang
 
 
 def reach(points, directions):
-    """How far points reach in each direction, some at a time, since all together fill the memory."""
+    """Reach of points in each direction, some at a time, since all together fill the memory."""
     return np.concatenate([(points @ some.T).max(axis=0) for some in np.array_split(directions, 50)])
 
 

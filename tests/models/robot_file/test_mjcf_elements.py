@@ -22,7 +22,7 @@ def folder(tmp_path):
 
 @pytest.fixture(scope="module")
 def plain(tmp_path_factory):
-    """What is left out of the biped without any more."""
+    """Lines on what is left out of the biped without any more."""
     return set(read_text(tmp_path_factory.mktemp("plain"), source_text()).left_out)
 
 

@@ -8,7 +8,7 @@ from mjcf_mutants import lost, mutant, outcome
 
 
 def attack(folder, seeds) -> Counter[str]:
-    """What mutants of some seeds come to; each that has lost something tells more than the plain biped."""
+    """Outcomes of mutants of some seeds; each that has lost something tells more than the plain biped."""
     told, kinds = set(outcome(folder, source_text())[1]), Counter[str]()
     for seed in seeds:
         text = mutant(seed)

@@ -1,4 +1,4 @@
-"""What is wrong with a robot file or its model is said in one sentence, with the place and what would be right."""
+"""Faults of a robot file or its model are named in one sentence, with the place and what would be right."""
 
 import re
 

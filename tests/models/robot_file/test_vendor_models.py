@@ -103,7 +103,7 @@ def test_elements_of_other_programs_in_a_link_are_not_looked_at(tmp_path) -> Non
 
 
 def test_a_torso_is_named_as_the_description_names_it(tmp_path) -> None:
-    """What `robot new` proposes for a link that has the name of a joint can be written into the file."""
+    """The name that `robot new` proposes for a link that has the name of a joint can be written into the file."""
     model = biped.Biped(extra=CHEST.format(at="0 0 0.2", rpy="0 0 0", axis="0 0 1")).urdf().replace("chest", "waist")
     for name in ("waist", "waist_link"):
         assert explained(tmp_path, model, f"torso: {name}\n").description.torso_body == "waist_link"

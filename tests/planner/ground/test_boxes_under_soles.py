@@ -1,4 +1,4 @@
-"""Which boxes of the ground soles touch, and which carry them."""
+"""Boxes of the ground that soles touch, and those that carry them."""
 
 import numpy as np
 import pytest

@@ -1,4 +1,4 @@
-"""How far footsteps may be moved on the faces that they were chosen for."""
+"""The room of footsteps on the faces that they were chosen for."""
 
 import numpy as np
 import pytest

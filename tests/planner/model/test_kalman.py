@@ -82,7 +82,7 @@ def test_covariance_settles_at_the_riccati_solution(sensors):
 
 
 def test_deviation_of_the_dcm_estimate_is_millimetres():
-    """That the numbers are standard deviations: as variances they would give 23 mm."""
+    """The numbers are standard deviations: as variances they would give 23 mm."""
     _, covariances, _ = run(np.random.default_rng(0), 500)
     row = np.array([1.0, 1.0 / OMEGA, 0.0])
     assert np.sqrt(row @ covariances[-1] @ row) == pytest.approx(1.64e-3, rel=0.02)

@@ -175,7 +175,7 @@ def test_a_knee_goes_where_its_foot_turns():
 
 @pytest.mark.parametrize("sample", [slice(0, 1), slice(10, 11), slice(-1, None)], ids=["first", "within", "last"])
 def test_accelerations_are_exact_to_more_than_second_order(sample):
-    """Of a swing, at either end too: half the sample time leaves an eighth of the error at most."""
+    """Accelerations of a swing, at either end too: half the sample time leaves an eighth of the error at most."""
 
     def error(step, derivative):
         t = 0.3 + step * (np.arange(21) - (0 if sample.start == 0 else 20 if sample.stop is None else 11))

@@ -1,4 +1,4 @@
-"""How far the DCM is inside what can be captured, held against linear programs that look for CoPs and footsteps."""
+"""The capture margin of the DCM, held against linear programs that look for CoPs and footsteps."""
 
 import itertools
 from dataclasses import dataclass, replace
@@ -119,7 +119,8 @@ class Program:
 
 
 def rests(now, axis, box, steps, together, legs=LEGS):
-    """Whether an axis can be brought to rest after exactly so many landings, of one perhaps on the stance foot."""
+    """Return true if an axis can be brought to rest after exactly so many landings, of one perhaps on the stance
+    foot."""
     half, side, cycle = HALF[axis], now.place.foot.side, now.cycle
     program = Program(now.com[axis], now.dcm[axis], (steps + 1) * (SEGMENTS + 1))
     one = np.eye(1, len(program.com), len(program.com) - 1)[0]
@@ -147,7 +148,7 @@ def rests(now, axis, box, steps, together, legs=LEGS):
 
 
 def captured(now, most, legs=LEGS):
-    """Whether the body can be brought to rest within so many landings."""
+    """Return true if the body can be brought to rest within so many landings."""
     return any(
         all(
             rests(now, axis, box, steps, False, legs) or (steps == 1 and rests(now, axis, box, 1, True, legs))
@@ -333,7 +334,7 @@ def test_a_fall_is_told_by_plans_on_end_far_outside(stand):
 
 
 def told(margins, **keys):
-    """What plans with such margins tell one after another."""
+    """Warnings of plans with such margins one after another."""
     numbers, found, balance = replace(P.recovery, **keys), [], Balance()
     for margin in margins:
         lost = balance.lost + 1 if margin < -numbers.fall_margin else 0
@@ -359,7 +360,7 @@ def test_a_fall_is_told_after_so_many_plans_on_end_and_taken_back_after_so_many_
 
 
 def test_a_planner_tells_what_its_margins_say(stand):
-    """By the same counts, however the margins come about: here by a DCM that is lost and found again."""
+    """Counts are the same however the margins come about: here by a DCM that is lost and found again."""
     parameters, begin = replace(P, step_adaptation=StepAdaptation.NONE), GAIT.lift_off(3) + 0.25
     planner = WalkingPlanner(GAIT, stand(), 0.22, 0.11, parameters=parameters, legs=LEGS)
     com, feet, said, margins = np.array([0.0, 0.0, GAIT.com_height]), stand(), [], []

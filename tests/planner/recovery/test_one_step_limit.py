@@ -32,7 +32,7 @@ def line(*ways, **changes):
 
 
 def edge(decay, reach=REACH):
-    """Where the DCM may be at most now, so that the landing still catches it [m]."""
+    """Farthest DCM now that the landing still catches [m]."""
     return HALF * (1.0 - decay) + decay * (reach + HALF)
 
 
@@ -83,7 +83,7 @@ def test_the_best_way_to_land_counts_in_each_direction():
 
 
 def test_a_foot_is_where_full_acceleration_and_full_braking_bring_it():
-    """By trying out when to brake, also with a speed that cannot be lost in time."""
+    """Times to brake are tried out, also with a speed that cannot be lost in time."""
     most, time, ends = 5.0, 0.4, []
     for speed in (0.0, 0.8, -1.5):
         for way in (-1.0, 1.0):

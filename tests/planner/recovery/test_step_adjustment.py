@@ -1,4 +1,4 @@
-"""Where and when a step lands after a push, held against the pendulum's own motion."""
+"""The place and the time of a step after a push, held against the pendulum's own motion."""
 
 import math
 from dataclasses import dataclass, replace
@@ -60,9 +60,9 @@ def situation(error=(0.0, 0.0), single=0.3, half=HALF, swing=((0.1, 0.2), (1.0, 
     return Pushed(**{**given, **keys})
 
 
-def adjusted(now, timing=True, legs=LEGS, unsure=0.0):
+def adjusted(now, timing=True, legs=LEGS, uncertainty=0.0):
     parameters = P if timing else replace(P, step_adaptation=StepAdaptation.LOCATION)
-    return StepAdjustment(legs, parameters).solve(now.com, now.dcm, now.window, now, unsure)
+    return StepAdjustment(legs, parameters).solve(now.com, now.dcm, now.window, now, uncertainty)
 
 
 @pytest.mark.parametrize("error", [(0.0, 0.0), (0.08, 0.0), (-0.05, 0.03), (0.0, -0.04)])
@@ -79,8 +79,8 @@ def test_an_error_that_may_be_one_of_the_estimate_moves_no_step():
     held = (1.0 - np.exp(-OMEGA * 0.3)) * HALF + 0.02 * np.exp(-OMEGA * 0.3)
     for error in (1.001 * held, 0.999 * (held + 0.01)):
         assert adjusted(situation(error)) is not None
-        assert adjusted(situation(error), unsure=0.01) is None
-    assert adjusted(situation(held + 0.0101), unsure=0.01) is not None
+        assert adjusted(situation(error), uncertainty=0.01) is None
+    assert adjusted(situation(held + 0.0101), uncertainty=0.01) is not None
 
 
 def test_who_stands_on_both_feet_has_the_room_between_them():

@@ -78,7 +78,7 @@ class Recorded:
 
 
 def test_an_offset_that_serves_is_about_what_it_would_be_anew(stand):
-    """By what it does to the DCM, while a step is adapted; and it does serve for most ticks.
+    """The difference is in the DCM, while a step is adapted; and the offset does serve for most ticks.
 
     The later a footstep moves, the harder and the shorter its foot is pushed there, which moves the DCM no farther.
     """

@@ -32,9 +32,9 @@ def on(terrain):
 @pytest.mark.parametrize("ground", [flat, stairs])
 def test_a_walk_begins_laid_out_and_in_sight(stand, ground):
     walk = begun(WALK, stand(), on(ground()), 100.0)
-    anew = Schedule.start(WALK, stand(), on(ground())).laid_out()
-    assert len(walk.laid) == len(anew.laid) == WALK.steps + 2
-    for one, other in zip(walk.laid, anew.laid, strict=True):
+    anew = Schedule.start(WALK, stand(), on(ground())).with_nominal_steps()
+    assert len(walk.nominal_steps) == len(anew.nominal_steps) == WALK.steps + 2
+    for one, other in zip(walk.nominal_steps, anew.nominal_steps, strict=True):
         np.testing.assert_array_equal(one.place.position, other.place.position)
         assert (one.lift_off, one.stride, one.course) == (other.lift_off, other.stride, other.course)
     assert walk.last.lift_off > 100.0

@@ -42,7 +42,7 @@ def test_plan_is_equivariant_under_start_pose(stand):
 
 
 def test_a_change_of_width_leaves_the_stance_foot_alone(stand):
-    """Where a foot lands from its stance foot is a matter of its own stride alone."""
+    """The landing of a foot from its stance foot is a matter of its own stride alone."""
     strides = tuple(Twist(0.1, 0.02, 0.2, width) for width in (0.2, 0.3, 0.3, 0.25, 0.2))
     steps = plan_footsteps(GaitParameters(steps=5, bouts=(Bout(1.0, strides),)), stand(), flat())
     for row, stride in enumerate(strides, 2):

@@ -45,20 +45,20 @@ def told(step):
 @pytest.fixture
 def laid(monkeypatch):
     """Numbers of the steps that are laid."""
-    numbers, lay = [], module.lay
+    numbers, make_step = [], module.make_step
 
     def counted(stride, before, *rest):
         numbers.append(before[1].number + 1)
-        return lay(stride, before, *rest)
+        return make_step(stride, before, *rest)
 
-    monkeypatch.setattr(module, "lay", counted)
+    monkeypatch.setattr(module, "make_step", counted)
     return numbers
 
 
 @pytest.mark.parametrize("edges", [False, True])
 def test_steps_laid_beforehand_are_those_laid_on_the_way(stand, edges, laid):
     on_the_way = begun(stand, edges)
-    beforehand = on_the_way.laid_out()
+    beforehand = on_the_way.with_nominal_steps()
     laid.clear()
     way = np.array([0.01, -0.02, 0.0])
     for clock in np.arange(0.0, 900.0, 37.0):
@@ -78,7 +78,7 @@ def test_steps_laid_beforehand_are_those_laid_on_the_way(stand, edges, laid):
 
 
 def test_what_comes_otherwise_than_laid_is_laid_anew(stand, laid):
-    schedule = begun(stand, False).laid_out()
+    schedule = begun(stand, False).with_nominal_steps()
     walk = schedule.extended(100.0)
     laid.clear()
     assert walk.until(2, stands=False).extended(100.0).steps[2:] != walk.steps[2:]
@@ -95,5 +95,5 @@ def test_what_comes_otherwise_than_laid_is_laid_anew(stand, laid):
 
 
 def test_of_a_long_walk_on_bare_ground_two_minutes_are_laid(stand):
-    laid = begun(stand, False, replace(WALK, steps=200)).laid_out().laid
+    laid = begun(stand, False, replace(WALK, steps=200)).with_nominal_steps().nominal_steps
     assert laid[-2].lift_off < 120.0 / 0.02 <= laid[-1].lift_off

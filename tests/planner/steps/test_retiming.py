@@ -40,7 +40,7 @@ def plans_of(stand, gait, changes=(), rise=Rise.SINGLE, count=None):
 
 
 def assert_continuous(plans):
-    """What a plan says of its next sample is what the next plan says of its first one."""
+    """Assert that a plan's next sample is the next plan's first one."""
     for before, after in pairwise(plans):
         for name in ("zmp_reference", "load_left", "stiffness"):
             np.testing.assert_allclose(getattr(after, name)[0], getattr(before, name)[1], atol=1e-7, err_msg=name)

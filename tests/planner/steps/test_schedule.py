@@ -161,7 +161,7 @@ def test_a_schedule_stays_as_long_as_what_a_plan_sees(stand):
 
 
 def test_footholds_in_sight_shift_with_the_one_that_landed_elsewhere(stand):
-    """Those that come into sight later too, by the increments of the nominal path."""
+    """Footholds that come into sight later shift, too, by the increments of the nominal path."""
     gait, offset = GaitParameters(steps=20, single_support=0.5, double_support=0.12, initial_stand=0.0), (0.03, -0.02)
     plain = Schedule.start(gait, stand(gait.step_width), GROUND).extended(160.0)
     moved = plain.moved(1, plain.step(1).place.position + np.array([*offset, 0.0]))

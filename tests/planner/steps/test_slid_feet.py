@@ -42,7 +42,7 @@ def test_a_robot_that_stands_stands_over_its_feet_wherever_they_have_slid(stand,
 
 
 def test_soles_that_creep_by_millimetres_move_no_plan(stand):
-    """What sinks and rocks under a load is no slide."""
+    """Sinking and rocking under a load is no slide."""
     planner, _ = stands(stand, ((0.003, 0.003), (-0.003, 0.003)))
     for number in (-1, 0):
         place = planner.schedule.step(number).place

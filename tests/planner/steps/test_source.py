@@ -1,4 +1,4 @@
-"""Where commanded steps go: as asked within reach, bent to the nearest beyond it, and to places to the millimetre."""
+"""Commanded steps land as asked within reach, at the nearest place beyond it, and at places to the millimetre."""
 
 import numpy as np
 import pytest
@@ -40,7 +40,7 @@ def walked(source, most=200, pose=ORIGIN):
 
 
 def away(pose, place):
-    """How far a pose is from a place, in metres or radians, whichever is more."""
+    """Distance of a pose from a place, in metres or radians, whichever is more."""
     return max(np.hypot(pose.x - place.x, pose.y - place.y), abs(np.angle(np.exp(1j * (pose.yaw - place.yaw)))))
 
 

@@ -79,7 +79,7 @@ def test_steps_after_one_that_landed_aside_on_its_tread_go_as_far_aside_and_stay
 
 
 def test_on_a_block_they_go_no_farther_aside_than_it_does(stand):
-    """Of blocks half a metre wide, with a centimetre to their edges."""
+    """Blocks are half a metre wide, with a centimetre to their edges."""
     half = np.array([0.14, 0.25, 0.05])
     blocks = [Box(np.array([0.28 * n, 0.0, 0.05]), half, np.eye(3)) for n in range(-1, 8)]
     terrain = Terrain(tuple(blocks), path_start=(0.0, 0.0, 0.0))

@@ -124,7 +124,7 @@ def test_a_swing_that_is_put_off_does_not_go_beyond_its_target(time, delay):
 
 
 def heights(trajectory, time):
-    """Of the sole, its speed and its acceleration, from an instant until the touchdown."""
+    """Height of the sole, its speed and its acceleration, from an instant until the touchdown."""
     times = np.linspace(time, trajectory.touchdown_time - 2e-9, 300).tolist()
     return np.array([trajectory.evaluate(instant)[:, 2] for instant in times])
 

@@ -1,4 +1,4 @@
-"""How far hips swing a foot in a time, held against the swings that they would have to make."""
+"""The reach of a foot that hips swing in a time, held against the swings that they would have to make."""
 
 import numpy as np
 import pytest
@@ -17,7 +17,7 @@ P = PlannerParameters()
 
 
 def reach_of(swing, place, single):
-    """What legs can do with a left foot's step."""
+    """The reach of legs in a left foot's step."""
     footstep = Footstep(Foot.LEFT, np.append(place, 0.0), 0.0)
     times = {"double": 0.0, "single": single, "cycle": 0.7, "shortest": 0.0}
     kinds = {"crosses": True, "last": False, "adapted": False}

@@ -27,7 +27,7 @@ def swing(deviation, height=0.0, over=0.0):
 
 def test_where_the_height_is_known_nothing_changes():
     usual = GroundSearch()
-    assert usual.unsure(0.0) == (usual, 0.0)
+    assert usual.for_deviation(0.0) == (usual, 0.0)
     trajectory, place = swing(0.0)
     np.testing.assert_array_equal(trajectory.target, place)
     assert trajectory.search == usual and trajectory.aim == 0.0
@@ -35,12 +35,12 @@ def test_where_the_height_is_known_nothing_changes():
 
 def test_the_search_is_the_faster_the_less_sure_the_height_is_up_to_a_bound():
     usual = GroundSearch()
-    found = [usual.unsure(deviation) for deviation in (2e-4, 1e-3, 1.0)]
+    found = [usual.for_deviation(deviation) for deviation in (2e-4, 1e-3, 1.0)]
     speeds, aims = [search.touchdown_speed for search, _ in found], [aim for _, aim in found]
     assert usual.touchdown_speed < speeds[0] < speeds[1] < speeds[2] < 0.3
     assert 0.0 < aims[0] < aims[1] < aims[2] == pytest.approx(usual.unsure_aim * usual.most_unsure)
-    assert usual.unsure(3e-4)[0].touchdown_speed == pytest.approx(0.021, abs=0.001)
-    assert usual.unsure(3e-4)[0].acceleration == pytest.approx(2.0, abs=0.1)
+    assert usual.for_deviation(3e-4)[0].touchdown_speed == pytest.approx(0.021, abs=0.001)
+    assert usual.for_deviation(3e-4)[0].acceleration == pytest.approx(2.0, abs=0.1)
 
 
 @pytest.mark.parametrize("height", [0.0, 0.1, -0.1])
@@ -81,7 +81,7 @@ def test_a_height_that_goes_astray_is_followed_however_far_and_a_step_of_the_gro
 
 @pytest.mark.parametrize("sinks", [8e-4, 15e-3])
 def test_a_walk_whose_feet_are_all_believed_too_low_aims_as_much_lower_at_every_step(stand, sinks):
-    """What has drifted is off at the foot that stands and where the next one lands; the map alone does not drift."""
+    """Drift is in the foot that stands and in where the next one lands; the map alone does not drift."""
     gait, deviation, search = GaitParameters(steps=4), 3e-4, GroundSearch()
     planner, feet = WalkingPlanner(gait, stand(gait.step_width), 0.22, 0.11), stand(gait.step_width)
 

@@ -158,7 +158,7 @@ def test_a_package_of_metrics_gets_into_no_baseline_unless_a_criterion_names_it(
 
     @metric(unit="m", reads={"/truth": ("com",)})
     def com_sway(run):
-        """How far the CoM sways [m]."""
+        """Sway of the CoM [m]."""
         return float(np.std(run.field("/truth", "com")[:, 1]))
 
     register(com_sway)
@@ -478,7 +478,7 @@ def test_a_baseline_is_read_as_it_was_written(kept):
 
 
 def test_a_metric_of_parts_is_read_as_it_was_written(kept):
-    """Those of an estimator, which a walk from the truth has not got."""
+    """The metrics are of an estimator, which a walk from the truth has not got."""
     case, baseline = kept
     parts = {"com": 1.0, "com_velocity": 2.0, "tilt": 3.0, "sole_height": 4.0}
     write_baseline(case.baseline, replace(baseline, metrics={**baseline.metrics, "estimation_nees": parts}))

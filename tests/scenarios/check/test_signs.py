@@ -1,4 +1,4 @@
-"""What a run is recognised by: each sign is what it says, on motion of which it is known."""
+"""The signs of a run: each is what it says, on motion of which it is known."""
 
 from types import SimpleNamespace
 

@@ -1,4 +1,4 @@
-"""What a command's parameters are given: what Typer would give them, and pydantic only where it is needed."""
+"""Parameters of a command get what Typer would give them, and pydantic only where it is needed."""
 
 import subprocess
 import sys

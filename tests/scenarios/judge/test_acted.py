@@ -1,4 +1,4 @@
-"""What was promised and came to nothing fails a run: commands, places, ground that no foot met, pushes cut off."""
+"""Promises that came to nothing fail a run: commands, places, ground that no foot met, pushes cut off."""
 
 import pytest
 
@@ -48,7 +48,7 @@ def test_a_place_with_another_heading_is_not_reached(tmp_path):
     assert reasons(tmp_path, commands=[place], **keys) == ()
     turned = {"time": 0.5, "place": {"x": 0.2, "y": 0.0, "yaw": 3.0}}
     found = reasons(tmp_path, commands=[turned], **{**keys, "duration": 2.5})
-    assert any("rad from where it was told to go last; it must be within 0.02 rad" in reason for reason in found)
+    assert any("rad from where it was commanded to go last; it must be within 0.02 rad" in reason for reason in found)
 
 
 @pytest.mark.unit

@@ -1,4 +1,4 @@
-"""When pushes and faults act is written into the log by setup; the judge reads it, and sets nothing up again."""
+"""Times of pushes and faults are written into the log by setup; the judge reads them, and sets nothing up again."""
 
 import json
 import subprocess

@@ -1,4 +1,4 @@
-"""What made a robot fall stands first, and what follows from it is an effect; what is as believed is no cause."""
+"""Causes of a fall stand first, and what follows from them is an effect; what is as believed is no cause."""
 
 import numpy as np
 import pytest

@@ -96,7 +96,7 @@ BEGINS = {
     "overruns": None,
     "finite_values": 1.0,
 }
-"""When the first evidence of each fault is there [s]; no walk in simulation hangs on the time of a tick."""
+"""Time of the first evidence of each fault [s]; no walk in simulation hangs on the time of a tick."""
 
 
 @pytest.mark.parametrize("name", FAULTS)

@@ -240,7 +240,7 @@ def test_a_fall_is_known_before_it_comes(metrics, motion):
 
 @pytest.mark.parametrize("how", [{"margins": "absent"}, {"margins": "untold"}])
 def test_a_log_without_margins_tells_none(metrics, motion, how):
-    """That of a version before them, and that of a planner of one's own, whose plans have none."""
+    """Such logs are of a version before margins, and of a planner of one's own, whose plans have none."""
     found = metrics(motion(**how))
     assert {found[name] for name in ("capture_margin_min", "step_shift", "step_timing")} == {None}
     assert found["dcm_error_rms"] is not None

@@ -43,7 +43,7 @@ class Raw:
 
     @functools.cached_property
     def yaw(self):
-        """Of both soles, without jumps, shape (2, n)."""
+        """Headings of both soles, without jumps, shape (2, n)."""
         x, y, z, w = np.moveaxis([sole[:, 3:] for sole in self.soles], 2, 0)
         return np.unwrap(np.arctan2(2 * (w * z + x * y), 1 - 2 * (y * y + z * z)), axis=1)
 
@@ -208,7 +208,7 @@ def footstep_error(raw):
 
 
 def slip(raw):
-    """Of each corner within 5 mm of the flat ground, from where it came to it."""
+    """Slip of each corner within 5 mm of the flat ground, from where it came to it."""
     farthest = 0.0
     for foot, ticks in stances(raw):
         begin = {}
@@ -234,7 +234,7 @@ def knees(raw):
 
 
 def clearance(raw):
-    """Of the middle half of each swing, every fifth tick, over flat ground."""
+    """Clearance of the middle half of each swing, every fifth tick, over flat ground."""
     least = np.inf
     for foot in (0, 1):
         ticks = np.nonzero(raw.single & (raw.stance == 1 - foot))[0]

@@ -1,4 +1,4 @@
-"""What a notebook shows of a verdict and of a log, and a channel as a data frame."""
+"""Views of a verdict and of a log in a notebook, and a channel as a data frame."""
 
 import sys
 

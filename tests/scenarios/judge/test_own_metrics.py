@@ -32,14 +32,14 @@ def torque_sum(run):
 
 @metric(unit="m", shown=(1e3, "mm"), size=2, reads={"/truth": ("com",)}, reduces=(torque_sum,))
 def grip(run):
-    """How well it holds, in two directions [m]."""
+    """Grip in two directions [m]."""
     assert len(run.reduced(torque_sum)) == run.ticks
     return np.array([0.001, 0.002])
 
 
 def made(function, **about):
     function.__name__ = "grip"
-    function.__doc__ = function.__doc__ or "How well it holds."
+    function.__doc__ = function.__doc__ or "Grip."
     return metric(**about)(function)
 
 
@@ -172,7 +172,7 @@ class OddFloat(float):
 
 
 class OddInt(int):
-    """Likewise."""
+    """An integer of another class."""
 
     __lt__ = __le__ = __eq__ = lambda self, other: True
     __gt__ = __ge__ = __ne__ = lambda self, other: False
@@ -308,5 +308,5 @@ def test_reserved_are_the_names_beside_the_metrics(verdict):
 
 def test_a_metric_is_still_its_function():
     assert isinstance(grip, Metric)
-    assert grip.meaning == "How well it holds, in two directions [m]."
+    assert grip.meaning == "Grip in two directions [m]."
     assert made(lambda run: run)(5) == 5

@@ -1,4 +1,4 @@
-"""Of a part of a run nobody says more than was measured: verdicts of logs that a flight recorder has kept."""
+"""Verdicts of logs of which a flight recorder has kept a part: nobody says more than was measured."""
 
 import pytest
 

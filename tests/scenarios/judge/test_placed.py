@@ -1,4 +1,4 @@
-"""What is held against a plan is taken from the estimate's world to the true one by the foot that carries."""
+"""Places that are held against a plan are taken from the estimate's world to the true one by the foot that carries."""
 
 import numpy as np
 import pytest

@@ -168,7 +168,7 @@ class Own:
         (1.0, True, ""),
         (0.0, True, "0 of 1.05 N·s acted of the push at 0.1 s"),
         (0.5, True, "0.526 of 1.05 N·s acted of the push at 0.1 s"),
-        (1.0, False, "the push at 0.1 s cannot be told to have acted: the plant does not measure the external force"),
+        (1.0, False, "the push at 0.1 s cannot be shown to have acted: the plant does not measure the external force"),
     ],
 )
 def test_a_plant_of_ones_own_is_judged_by_what_it_says_that_acted(tmp_path, share, tells, words):
@@ -209,7 +209,7 @@ def test_over_a_line_that_is_late_or_loses_states_no_push_is_blamed_for_it(tmp_p
     assert bridged(tmp_path, scenario, delay=0.01).passed
     monkeypatch.setattr(Host, "push", lambda host, asked: None)
     assert "0 of 1.05 N·s acted of the push at 0.1 s" in bridged(tmp_path, scenario, delay=0.01).reasons
-    lost = "the push at 0.1 s cannot be told to have acted: ticks of that time are not in the log"
+    lost = "the push at 0.1 s cannot be shown to have acted: ticks of that time are not in the log"
     assert lost in bridged(tmp_path, scenario, drop=0.2).reasons
 
 

@@ -96,7 +96,7 @@ def test_a_sound_step_has_neither_slip_nor_twist_nor_tilt_nor_flight(walk):
 
 
 def test_a_stance_foot_that_turns(walk):
-    """By 0.1 rad about its centre: the corners go 0.1 rad times half the diagonal."""
+    """It turns by 0.1 rad about its centre: the corners go 0.1 rad times half the diagonal."""
     walk.right[350:, 3:] = quaternion(yaw=3.1 + np.linspace(0.0, 0.1, 150))
     slip, twist, tilt, _ = measured(walk)
     assert twist == pytest.approx(0.1)

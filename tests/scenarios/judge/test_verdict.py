@@ -146,7 +146,7 @@ def test_the_record_of_the_end_and_the_data_must_agree(tmp_path, robot, motion, 
 
 @pytest.mark.parametrize("value", [1e-3, -2.5, 0.0, 7.0])
 def test_a_bound_holds_to_the_last_digit(value):
-    """What is at a bound meets it, and the next number beyond does not."""
+    """A value at a bound meets it, and the next number beyond does not."""
     for side, beyond in (("min", -math.inf), ("max", math.inf)):
         for limit in (value, (value,)):
             criteria = {"speed_mean": Bound.model_validate({side: limit})}

@@ -1,4 +1,4 @@
-"""How fast the estimated heading goes off, of a run whose heading is known."""
+"""The drift of the estimated heading, of a run whose heading is known."""
 
 from types import SimpleNamespace
 

@@ -1,4 +1,4 @@
-"""What numbers of messages tell: which are missing, which stand twice, and when they tell nothing."""
+"""Numbers of messages show which are missing, which stand twice, and when they show nothing."""
 
 import zlib
 

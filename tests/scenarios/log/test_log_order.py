@@ -55,7 +55,7 @@ def written(path, rate, seconds, seed=0, gaps=False, more=lambda writer, tick: N
 
 
 def holds(path, sent):
-    """Whether a log has what was sent, channel by channel in its order."""
+    """Return true if a log has what was sent, channel by channel in its order."""
     log = read(path)
     assert not log.losses()
     for topic, messages in sent.items():

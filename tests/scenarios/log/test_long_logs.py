@@ -115,7 +115,7 @@ def test_a_summary_and_exports_in_parts_are_those_of_the_whole(tmp_path, monkeyp
 
 
 SECONDS = (12.0, 24.0)
-"""Of the two logs that are held against each other."""
+"""Lengths of the two logs that are held against each other."""
 
 
 @pytest.fixture(scope="module")

@@ -71,7 +71,7 @@ def test_rows_are_thinned_together_or_not_at_all(tmp_path):
 
 
 def told(path):
-    """What an inspection says, but for what the clock on the wall tells, and for the rates of topics."""
+    """Text of an inspection, but for what the clock on the wall measures, and for the rates of topics."""
     said = inspect(read(path)).to_json()
     apart = {"log", "topics", "health"} | {name for name, metric in OWN.items() if not metric.repeatable}
     return {name: value for name, value in said.items() if name not in apart}

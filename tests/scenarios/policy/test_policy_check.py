@@ -1,4 +1,4 @@
-"""Why a policy falls: trials, mirror images, and the mend that lets it stand."""
+"""Reasons why a policy falls: trials, mirror images, and the mend that lets it stand."""
 
 import pytest
 

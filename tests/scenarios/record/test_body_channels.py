@@ -1,4 +1,4 @@
-"""What the recorder derives from a tick, against the definitions, whatever the order of the columns."""
+"""Values that the recorder derives from a tick, against the definitions, whatever the order of the columns."""
 
 from types import SimpleNamespace
 
@@ -82,7 +82,7 @@ def test_derived_fields_follow_their_definitions(tmp_path):
 
 
 def logged(tmp_path, change):
-    """What is derived of a tick that is changed before it is recorded, by topic and field."""
+    """Values derived of a tick that is changed before it is recorded, by topic and field."""
     given = tick(np.random.default_rng(6), SolveStatus.SOLVED)
     change(*given)
     with LogWriter(tmp_path / "log.mcap", {}) as writer:

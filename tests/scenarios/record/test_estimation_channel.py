@@ -46,7 +46,7 @@ def flat(tell):
 
 
 def errors(terms, truth, stance):
-    """By what an estimate is wrong, from the stance foot and with its heading turned to the true one."""
+    """Errors of an estimate, from the stance foot and with its heading turned to the true one."""
     R, true = terms.base_rotation, truth.base_rotation
     yaw = np.arctan2(R[1, 0], R[0, 0]) - np.arctan2(true[1, 0], true[0, 0])
     yaw = np.arctan2(np.sin(yaw), np.cos(yaw))

@@ -1,4 +1,4 @@
-"""What viewers get: every message decodes with the published classes and says what the numeric channels say."""
+"""Messages for viewers: every one decodes with the published classes and says what the numeric channels say."""
 
 import importlib
 

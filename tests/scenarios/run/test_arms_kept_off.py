@@ -13,7 +13,7 @@ pytestmark = pytest.mark.physics
 
 
 def touches(robot: str, seed: int) -> Iterator[bool]:
-    """Whether the robot touches itself, tick by tick, in a walk of the campaign `random-pushes`."""
+    """Yield true at each tick at which the robot touches itself, in a walk of the campaign `random-pushes`."""
     cell = list(cells(read_campaign("random-pushes", (f"robot={robot}",))))[seed]
     point = cell.point(seed, {})
     with surefoot.Simulation(read_scenario(*point.base.written, point.settings)) as simulation:

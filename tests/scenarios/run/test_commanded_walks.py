@@ -17,7 +17,7 @@ STOP = 6.0
 """Time at the end in which the robot is told to stop and stands [s]."""
 
 SEEDS, MINUTES = 10, 10
-"""Of the long walks."""
+"""Stop of the long walks."""
 
 FEET = {
     "human-size feet": ("walk", (0.6, 0.25, 0.6), {}),

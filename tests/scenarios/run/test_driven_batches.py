@@ -19,7 +19,7 @@ ROBOTS = {
 
 SEEDS = 20
 MOST_LOST = {True: 0, False: 2}
-"""Of so many seeds, walks that may fall, with what drives the arms told and untold."""
+"""Most walks of so many seeds that may fall, with what drives the arms told and untold."""
 
 
 def end_of(name, keys, seed=0):

@@ -34,7 +34,7 @@ def pushed(fraction, impulse, direction):
 
 
 def falls():
-    """How many of the pushes fell it."""
+    """Number of the pushes that felled it."""
     fallen = 0
     for fraction, impulse, direction in PUSHES:
         with pushed(fraction, impulse, direction) as simulation:
@@ -55,7 +55,7 @@ def test_steps_that_always_wait_for_their_time_let_it_fall(monkeypatch):
 
 
 def ended_early():
-    """Of double supports that begin before their time: which feet are held from their first tick on."""
+    """Feet that are held from the first tick on of double supports that begin before their time."""
     before, held = None, []
     with pushed(0.53, 0.7, 0.17) as simulation:
         while not (simulation.done or simulation.fell):

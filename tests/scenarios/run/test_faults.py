@@ -69,7 +69,7 @@ def test_not_a_number_ends_the_run_with_the_last_two_seconds_in_the_log(run):
 
 
 def test_a_diverging_simulation_ends_the_run_with_its_reason(tmp_path):
-    """By a force that no scenario may ask for."""
+    """It diverges by a force that no scenario may ask for."""
     scenario, path = surefoot.load("diagonal-walk"), tmp_path / "log.mcap"
     with pytest.raises(RunFault, match="simulation diverged"), surefoot.Simulation(scenario, log=path) as sim:
         while not sim.done:

@@ -32,7 +32,7 @@ SLABS, SEEDS = {"errors.ground_noise": 0.01}, range(1, 9)
 
 
 def test_g1_walks_on_targets_over_slabs_that_are_higher_or_lower_than_believed():
-    """Which of the seeds falls changes with the compiler."""
+    """The seed that falls changes with the compiler."""
     assert sum(stands(seed, **SLABS) for seed in SEEDS) >= 6
 
 

@@ -18,10 +18,10 @@ HELD = {"natural gait": 40.0, "paper's gait, feet of 7.5 cm": 25.0}
 """Forces that are walked with in every direction and phase, by the walk [N]."""
 
 LASTING = 2.0
-"""How long each acts [s]."""
+"""Time for which each acts [s]."""
 
 SCALES = (0.75, 0.8, 0.9, 1.1, 1.2, 1.25)
-"""Of the believed mass over the true one."""
+"""Ratios of the believed mass over the true one."""
 
 PHASES = [("double", 0.5), ("single", 0.2), ("single", 0.5), ("single", 0.8)]
 

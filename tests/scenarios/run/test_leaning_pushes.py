@@ -16,7 +16,7 @@ PUSHES = [
 
 
 def falls(keys):
-    """How many of the pushes fell it."""
+    """Number of the pushes that felled it."""
     fallen, march = 0, read_campaign("march-ladder").spec.set
     for impulse, direction in PUSHES:
         push = {**march["pushes"][0], "impulse": impulse, "direction": direction}

@@ -14,7 +14,7 @@ pytestmark = pytest.mark.physics
 
 
 def falls(direction, phase, fraction, impulse):
-    """Whether it falls."""
+    """Return true if it falls."""
     keys = {**read_campaign("march-ladder").spec.set, "duration": 3.0}
     push = {**keys["pushes"][0], "phase": phase, "fraction": fraction, "impulse": impulse, "direction": direction}
     with surefoot.Simulation(surefoot.load("walk", {**keys, "pushes": [push]})) as simulation:

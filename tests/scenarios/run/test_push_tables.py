@@ -31,7 +31,7 @@ SURVIVED = {
     "sensing.source": "truth",
 }
 SENSED = {"good": 0.95, "cheap": 0.85}
-"""What is survived from sensors of a preset, as a share of what is survived with the true state."""
+"""Share that is survived from sensors of a preset, of what is survived with the true state."""
 
 FEET = {"robot_options": {"foot_length": 0.22, "foot_width": 0.11}}
 GAIT = {"gait.single_support": 0.5, "gait.double_support": 0.12, "gait.com_height": 0.95}
@@ -50,10 +50,10 @@ WALKS = {
     "heel-off": (NATURAL[0], {**NATURAL[1], "gait.heel_off": 0.35}),
 }
 WIDE = {"gait.step_width": 0.26, "gait.step_length": 0.32, "terrain.tread": 0.32}
-"""That feet which are off their places do not touch, and have their corners on their treads."""
+"""Lengths with which feet that are off their places do not touch, and have their corners on their treads."""
 
 STAIRS = {"terrain.riser": 0.15, "terrain.start": 0.16}
-"""Of so long treads that ankles reach, with the footsteps in their middle."""
+"""Stairs of so long treads that ankles reach, with the footsteps in their middle."""
 
 DIRECTIONS = {"forward": 0.0, "left": 0.5 * math.pi, "backward": math.pi, "right": -0.5 * math.pi}
 PHASES = {
@@ -69,7 +69,7 @@ NATURAL_GOALS = {
     "SS 0.8": (0.55, 0.40, 0.65, 0.40),
 }
 TWICE = 0.25
-"""Of each of two pushes [N·s/kg]."""
+"""Impulse of each of two pushes [N·s/kg]."""
 
 PAPER_IMPULSES = {
     "forward": (0.12, 0.17, 0.20),
@@ -80,7 +80,7 @@ PAPER_IMPULSES = {
 
 
 def push(step: int, phase: str, impulse: float, direction: str) -> dict[str, object]:
-    """Of 0.1 s at the torso [N·s/kg]."""
+    """A push of 0.1 s at the torso [N·s/kg]."""
     kind, fraction = PHASES[phase]
     place = {"step": step, "phase": kind, "fraction": fraction}
     return {**place, "duration": 0.1, "impulse": impulse, "direction": DIRECTIONS[direction]}

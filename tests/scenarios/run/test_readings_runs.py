@@ -36,7 +36,7 @@ def cheap(tmp_path_factory):
 
 
 def errors_of(log, topic, group, field="joint_position"):
-    """What sensors have added to the truth of the time that they tell of."""
+    """Errors that sensors have added to the truth of the time that they measure."""
     said, truth = log["/readings"], log["/measurement"]
     ticks = np.arange(len(said)) - np.rint(said.field(f"{group}_age") * log_rate(log)).astype(int)
     return said.field(topic) - truth.field(field)[ticks]

@@ -1,4 +1,4 @@
-"""What the rotors of its motors give a small robot that is pushed as it marches, from good sensors at 250 Hz."""
+"""The gain of a small robot by its motors' rotors, as it is pushed while marching, from good sensors at 250 Hz."""
 
 from pathlib import Path
 
@@ -15,7 +15,7 @@ SEEDS = range(8)
 
 
 def falls(robot):
-    """Of marches with a push forward in mid-swing, those that fall or blow up, of eight seeds of the sensors."""
+    """Number of marches with a push forward in mid-swing that fall or blow up, of eight seeds of the sensors."""
     march = read_campaign("march-ladder").spec.set
     push = {**march["pushes"][0], "impulse": 0.9}
     keys = {**march, "robot": robot, "sensing.source": "ekf", "sensing.preset": "good", "pushes": [push]}

@@ -1,4 +1,4 @@
-"""What a run leaves on disk, however it ends."""
+"""The files that a run leaves on disk, however it ends."""
 
 import json
 import signal

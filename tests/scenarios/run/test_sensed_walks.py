@@ -166,7 +166,7 @@ def test_without_a_wrench_of_the_estimator_the_controller_has_that_of_the_sensor
 
 @pytest.mark.unit
 def test_the_load_observer_is_told_how_old_wrenches_are(tmp_path, monkeypatch):
-    """By the latency of their sensors and by what filters add; the truth is of now."""
+    """Their age is the latency of their sensors and what filters add; the truth is of now."""
     ages = []
 
     class Noted(LoadObserver):
@@ -198,7 +198,7 @@ def test_the_load_observer_is_told_how_old_wrenches_are(tmp_path, monkeypatch):
 @pytest.mark.unit
 @pytest.mark.parametrize("said", [True, False])
 def test_torques_count_for_the_time_that_lies_between_velocities(said, tmp_path, monkeypatch):
-    """Those that joints say are of the ticks, those by differences of the middle between two."""
+    """Torques that joints say are of the ticks, those by differences of the middle between two."""
     held = []
 
     class Noted(TorqueWrench):

@@ -45,6 +45,6 @@ def test_a_quarter_of_the_size_takes_the_same_share_of_torques_and_speeds(tmp_pa
 
 
 def test_with_the_gains_of_full_size_it_does_not_walk(tmp_path, monkeypatch):
-    """Of the true state; from sensors it takes these two steps."""
+    """It walks on the true state; from sensors it takes these two steps."""
     monkeypatch.setattr("surefoot.scenarios.setup.walk.controller_parameters", lambda *given: WbcParameters())
     assert not walked(tmp_path, "quarter", "sensing.source=truth").passed

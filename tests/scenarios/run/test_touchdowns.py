@@ -1,4 +1,4 @@
-"""Which footsteps are booked, and as what: feet that touch down when planned, earlier, later or never."""
+"""Footsteps that are booked, and as what: feet that touch down when planned, earlier, later or never."""
 
 from dataclasses import replace
 
@@ -40,7 +40,7 @@ class Booked:
 
 
 def planned_touchdown(walk):
-    """When the first foot is to land [s], and the planner's period [s]."""
+    """Time when the first foot is to land [s], and the planner's period [s]."""
     planner = walk.planner(walk.ground.stance, LegInertia())
     period = planner.parameters.sample_time
     return walk.gait.lift_off(1) + walk.gait.single_support, period

@@ -13,7 +13,7 @@ pytestmark = pytest.mark.physics
 
 
 def pushed(impulse, direction):
-    """Whether it falls of a push late in its third step, and at how many ticks its QP dropped all limits."""
+    """True if it falls of a push late in its third step, and the number of ticks at which its QP dropped all limits."""
     push = {"step": 3, "phase": "single", "fraction": 0.65, "duration": 0.1}
     push |= {"impulse": impulse, "direction": direction}
     keys = {"robot": "g1", "sensing.source": "truth", "criteria": {"fell": False}, "duration": 6.0, "pushes": [push]}
@@ -29,14 +29,14 @@ def pushed(impulse, direction):
 
 @pytest.mark.parametrize("direction", [0.25, -0.3])
 def test_a_long_step_does_not_throw_it_as_it_lands(direction):
-    """Of five neighbours four stand at least, and none of them meets a QP whose limits are all dropped."""
+    """At least four of five neighbours stand, and none of them meets a QP whose limits are all dropped."""
     runs = [pushed(impulse, direction) for impulse in (0.55, 0.58, 0.61, 0.64, 0.67)]
     assert sum(fell for fell, _ in runs) <= 1
     assert not any(dropped for fell, dropped in runs if not fell)
 
 
 def falls_around(adaptation, directions):
-    """How many walks fall of a push of 0.4 N·s/kg from what good sensors tell, each in another phase of its step."""
+    """Number of walks that fall of a push of 0.4 N·s/kg from good sensors, each in another phase of its step."""
     fallen = 0
     for n in directions:
         phase, fraction = (("double", 0.5), ("single", 0.2), ("single", 0.5), ("single", 0.8))[n % 4]
@@ -60,7 +60,7 @@ NEVER, ALWAYS = 1e-6, 1e6
 
 
 def falls_in_double_support(direction, fraction, again_cost):
-    """How many of three pushes after its fourth step it falls of; `again_cost` lets its foot step again, or not."""
+    """Number of three pushes after its fourth step that fell it; `again_cost` lets its foot step again, or not."""
     fallen = 0
     for impulse in (0.45, 0.5, 0.55):
         push = {"step": 5, "phase": "double", "fraction": fraction, "duration": 0.1}

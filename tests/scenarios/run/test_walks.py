@@ -14,9 +14,9 @@ from surefoot.scenarios.setup.load import load as load_scenario
 EVERY_CHANGE = [variation for variation in VARIATIONS if variation.every_change and variation.overrides]
 ON_DEMAND = [variation for variation in VARIATIONS if not variation.every_change]
 CHECKED = re.findall(r"surefoot check (.+)", (Path(__file__).parents[3] / "Makefile").read_text())[0].split()
-"""Those that ``make test`` holds against their baselines anyway, and with these against their criteria."""
+"""Walks that ``make test`` holds against their baselines anyway, and with these against their criteria."""
 HELD_BY_OTHERS = ("stairs-up", "stairs-down", "paper-walk", "commanded")
-"""By stairs-up-down, by paper-noise and paper-push, by test_commanded_walks."""
+"""Walks that others stand for: stairs-up-down, paper-noise and paper-push, by test_commanded_walks."""
 LONG_SCENARIOS = sorted({"walk-turn", "walk-curve", "walk-backward", "slope", "blocks", *HELD_BY_OTHERS, *CHECKED})
 
 

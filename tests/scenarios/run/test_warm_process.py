@@ -37,7 +37,7 @@ def ready(name="diagonal-walk", **keys):
 
 @pytest.fixture
 def tried(monkeypatch):
-    """How often stances were looked at."""
+    """Number of times that stances were looked at."""
     count = []
     check = feasible.check_stances
     monkeypatch.setattr(feasible, "check_stances", lambda *given: (count.append(given), check(*given)))
@@ -192,7 +192,7 @@ with one_thread():
 
 
 def test_libraries_that_come_with_the_loop_have_one_thread_too():
-    """That of SciPy may come late; with two threads a loaded machine takes four times."""
+    """The threads of SciPy may come late; with two threads a loaded machine takes four times."""
     given = {**os.environ, "OPENBLAS_NUM_THREADS": "2", "OMP_NUM_THREADS": "2"}
     done = subprocess.run([sys.executable, "-c", LOOP], env=given, capture_output=True, text=True, check=True)
     threads, _, libraries = done.stdout.strip().rpartition(" ")

@@ -1,4 +1,4 @@
-"""What the whole-body controller is told of a plan."""
+"""The reference of the whole-body controller for a plan."""
 
 from dataclasses import replace
 from itertools import pairwise
@@ -91,4 +91,4 @@ def scaled(plans):
     for plan in plans:
         if plan.roll is not None:
             scaling = TimeScaling(plan.sample_time, 10.0).scaled(15.0, 12.0)
-            yield replace(plan, roll=replace(plan.roll, scaling=scaling, told=plan.time))
+            yield replace(plan, roll=replace(plan.roll, scaling=scaling, shown=plan.time))

@@ -40,7 +40,7 @@ COMMANDED = "stop-and-go"
 SOUND = "criteria={fell: false, steps_taken: steps_planned, standing_time_final: {min: 1}, cop_ratio_p99: {max: 1},\
  footstep_error_max: {max: 0.01}, foot_slip_max: {max: 0.01}, self_contact_time: {max: 0}, wbc_fallbacks: {max: 0},\
  torque_at_limit_fraction: {max: 0.01}}"
-"""What any walk must meet, wherever it leads; the bounds of the catalogue are for its scenarios as they are."""
+"""Criteria that any walk must meet, wherever it leads; those of the catalogue are for its scenarios as they are."""
 
 SOUND_ON_STEPS = SOUND.replace("footstep_error_max: {max: 0.01}", "stair_edge_margin_min: {min: 0}")
 """The same where a tread may lie elsewhere than a foot was told, which counts as an error of the footstep."""

@@ -15,7 +15,7 @@ from surefoot.scenarios.run.run import run_scenario
 from surefoot.scenarios.run.skeleton import End
 from surefoot.scenarios.setup.load import load as load_scenario
 from surefoot.scenarios.show.compare import _metric as compare_metric
-from surefoot.scenarios.show.compare import compare, told_apart
+from surefoot.scenarios.show.compare import compare, distinct_texts
 from surefoot.scenarios.show.differences import Difference
 from surefoot.scenarios.show.figures.page import plot
 
@@ -78,7 +78,7 @@ def test_two_seeds_part_with_the_true_state(logs):
     ],
 )
 def test_numbers_that_differ_are_told_apart_with_few_digits(a, b, told):
-    assert told_apart(a, b) == told
+    assert distinct_texts(a, b) == told
 
 
 def test_an_element_of_a_joint_is_told_by_its_name(tmp_path, robot, two_steps):

@@ -1,4 +1,4 @@
-"""What people read: handy units, few digits, nothing rounded up to perfection."""
+"""Output for people: handy units, few digits, nothing rounded up to perfection."""
 
 import pytest
 

@@ -1,4 +1,4 @@
-"""Where two logs part is found to the bit, and named by channel, field and time."""
+"""Differences of two logs are found to the bit, and named by channel, field and time."""
 
 import numpy as np
 import pytest

@@ -1,4 +1,4 @@
-"""What a run's log tells of the moment of a push, and its one-step limit by trying out."""
+"""The state at a push by a run's log, and its one-step limit by trying out."""
 
 import math
 
@@ -46,7 +46,7 @@ def first_log(folder, phase="single", fraction=0.5, impulse=0.01):
 
 @pytest.fixture(scope="module")
 def log(tmp_path_factory):
-    """Of a run that is pushed in the middle of its first swing, of the left foot."""
+    """The log of a run that is pushed in the middle of its first swing, of the left foot."""
     return first_log(tmp_path_factory.mktemp("single"))
 
 
@@ -99,7 +99,7 @@ def test_each_thing_that_may_be_adapted_widens_the_limit(log):
 
 
 def survives(moment, sole, feet, legs, impulses, direction, time):
-    """Whether a simulated pendulum that is pushed comes over its feet by some constant CoP and some landing."""
+    """Return true if a simulated pendulum that is pushed comes over its feet by some constant CoP and some landing."""
     (stance, foot, speed), half = feet, np.array(sole) / 2.0
     signs = np.array([(x, y) for x in (-1.0, 1.0) for y in (-1.0, 1.0)])
     cops = stance + half * np.array([(x, y) for x in np.linspace(-1, 1, 5) for y in np.linspace(-1, 1, 5)])
@@ -122,7 +122,7 @@ def survives(moment, sole, feet, legs, impulses, direction, time):
 
 @pytest.mark.parametrize("direction", [0.0, math.pi / 2, math.pi, -math.pi / 2])
 def test_the_limit_is_what_trying_out_on_a_pendulum_finds(log, direction):
-    """Of all times, places and centres of pressure tried none survives more than a spacing of times costs."""
+    """No time, place and centre of pressure that was tried survives more than a spacing of times costs."""
     moment, walk, data = moment_of(log, 0), resolve(load(log)), LogView(read(log))
     row = int(np.searchsorted(data.time("/truth"), push_time(walk.gait, load(log).pushes[0]) + 1e-6)) - 1
     right, left = (data.field("/truth", f"{side}_sole", 7)[row, :2] for side in ("right", "left"))

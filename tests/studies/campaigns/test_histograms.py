@@ -1,4 +1,4 @@
-"""What a histogram of a campaign's page shows: every run once, at its place, and texts that can be read."""
+"""Histograms of a campaign's page show every run once, at its place, and texts that can be read."""
 
 from itertools import pairwise
 from xml.etree import ElementTree

@@ -1,4 +1,4 @@
-"""What a result is made of: whatever changes a robot changes the digest, and nothing else does."""
+"""The digest of a result: whatever changes a robot changes it, and nothing else does."""
 
 import importlib
 import os

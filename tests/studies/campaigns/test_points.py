@@ -1,4 +1,4 @@
-"""What is run: every combination once, values drawn apart from each other, and searches that find thresholds."""
+"""Points that are run: every combination once, values drawn apart from each other, searches that find thresholds."""
 
 import shlex
 

@@ -1,4 +1,4 @@
-"""Where a robot is by the feet that it stands on: exact where they stand still, whatever else moves."""
+"""The place of a robot by the feet that it stands on: exact where they stand still, whatever else moves."""
 
 import numpy as np
 import pinocchio as pin

@@ -1,4 +1,4 @@
-"""What tours say together: means, shares, punches and causes, out of tours that are made up."""
+"""Results of tours together: means, shares, punches and causes, out of tours that are made up."""
 
 import json
 import math

@@ -1,4 +1,4 @@
-"""What is drawn for a tour, by the laws of the benchmark's description."""
+"""Draws for a tour, by the laws of the benchmark's description."""
 
 import numpy as np
 import pytest

@@ -12,7 +12,7 @@ from surefoot.wbc.parameters import TaskWeights
 pytestmark = pytest.mark.physics
 
 SEED = 1084
-"""Of a tour whose first punch hits the right upper arm as the left foot swings."""
+"""Seed of a tour whose first punch hits the right upper arm as the left foot swings."""
 
 
 UPRIGHT = (("wbc.weights.upright_catching", 1.0), ("wbc.balance.beyond_catching", 0.0))
@@ -56,7 +56,7 @@ def test_a_punch_on_a_limp_arm_does_not_lift_it_off_its_stance_foot(monkeypatch)
 
 
 def fallen(monkeypatch, stride):
-    """Of four punches backward on a shoulder, of 410 to 440 N at most, those after which it falls within 3.5 s."""
+    """Number of four punches backward on a shoulder, of 410 to 440 N at most, after which it falls within 3.5 s."""
     monkeypatch.setattr(rules, "WEAKEST", 1.0)
     monkeypatch.setattr(leg_reach, "STRIDE", stride)
     # So it stands, when the second punch comes, where these forces tell both strides apart.

@@ -6,7 +6,7 @@ from surefoot.wbc.body.limits import AccelerationBounds, JointLimits
 pytestmark = pytest.mark.unit
 
 DISCRETISATION = 1e-3
-"""What a control period of 1 ms adds [rad]."""
+"""Change of an angle in a control period of 1 ms [rad]."""
 
 
 def limits(**changes):

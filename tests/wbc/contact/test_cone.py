@@ -26,7 +26,7 @@ def pyramids() -> np.ndarray:
 
 
 def corner_forces_exist(wrench: np.ndarray) -> bool:
-    """Whether four frictional point contacts at the corners can produce the wrench."""
+    """Return true if four frictional point contacts at the corners can produce the wrench."""
     G = pyramids()
     P = 1e-6 * np.eye(12)
     solution = qpsolvers.solve_qp(P, np.zeros(12), G, np.zeros(len(G)), wrench_map(), wrench, solver="daqp")

@@ -1,4 +1,4 @@
-"""What acts on a robot beside ground and gravity, from momentum and soles, and what the controller makes of it."""
+"""External forces beside ground and gravity, from momentum and soles, and the controller's use of them."""
 
 from dataclasses import replace
 from types import SimpleNamespace
@@ -181,7 +181,7 @@ def test_readings_that_are_no_numbers_and_flight_tell_nothing():
 
 
 def test_limits_widen_with_how_unsure_state_and_wrenches_are():
-    """What counts wholly where all is known counts not at all where it may be noise, and what is greater does."""
+    """A force that counts where all is known does not count where it may be noise; a greater one does."""
 
     def lasting(force, deviation):
         loads = observed(
@@ -257,7 +257,7 @@ def test_an_update_ends_a_load(robot, rng):
 
 
 def test_the_controller_moves_a_loaded_robot_as_an_unloaded_one(robot, references):
-    """By Newton and Euler the soles carry the load beside the motion, which is about the same in both."""
+    """The soles carry the load beside the motion by Newton and Euler, which is about the same in both."""
     answers = []
     # The point that drives the pendulum stays under the CoM; the ZMP is where the load moves it.
     leant = np.array([FORCE[0] + MOMENT[1], FORCE[1] - MOMENT[0]]) / (1.15 * MASS * GRAVITY)

@@ -1,4 +1,4 @@
-"""How sure an estimate is, against the covariance that finite differences carry over."""
+"""The deviations of an estimate, against the covariance that finite differences carry over."""
 
 import numpy as np
 import pinocchio as pin
@@ -50,7 +50,8 @@ class Case:
         return self.doubt.deviation(contact, gyro)
 
     def placed(self, joints):
-        """By Pinocchio in the base: the CoM, the soles' centres, and the pose of the IMU, of joints without offsets."""
+        """Places by Pinocchio in the base: the CoM, the soles' centres, and the pose of the IMU, of joints without
+        offsets."""
         model, data = self.robot.model, self.robot.model.createData()
         com = pin.centerOfMass(model, data, np.concatenate((pin.neutral(model)[:7], joints)))
         pin.updateFramePlacements(model, data)

@@ -63,7 +63,7 @@ def test_the_state_goes_on_by_what_the_imu_says_less_its_biases():
 
 
 def transition(stand):
-    """What becomes of an error over a period."""
+    """The transition of an error over a period."""
     F = np.eye(COUNT)
     Covariance(stand, NOISE, GROUND, False).advance(PERIOD, F)
     return F
@@ -90,7 +90,7 @@ def test_errors_go_on_as_the_transition_says_whatever_the_state(seed):
 
 
 def test_no_reading_tells_the_heading_or_the_place():
-    """What is added to the covariance along these is there afterwards, which a tilt that is added is not."""
+    """Additions to the covariance along these are there afterwards, which a tilt that is added is not."""
     rng = np.random.default_rng(3)
     J = rng.normal(size=(2, 6, OFFS))
 

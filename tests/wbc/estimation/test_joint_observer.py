@@ -12,7 +12,7 @@ PERIOD, RATE = 0.002, 6.0
 
 
 def readings(position, late=0, fresh=True, velocity=None):
-    """What encoders say, so many ticks late."""
+    """Readings of encoders, so many ticks late."""
     nothing = Reading(np.zeros(3), 0.0, True)
     told = Reading(np.atleast_1d(position), late * PERIOD, fresh)
     speed = None if velocity is None else Reading(np.atleast_1d(velocity), late * PERIOD, fresh)
@@ -41,7 +41,7 @@ def followed(late=0, told=True, noise=0.0, lost=0.0, ticks=3000, bandwidth=80.0)
         true = motion(tick)
         found.append((q[0] - true[0], qd[0] - true[1]))
         if told:
-            observer.told(np.array([true[2]]))
+            observer.drive(np.array([true[2]]))
     return np.array(found)[500:]
 
 
@@ -71,6 +71,6 @@ def test_velocities_that_encoders_say_are_taken():
     for tick in range(10):
         q, qd = observer.update(readings(motion(tick)[0], velocity=motion(tick)[1]))
         assert (q[0], qd[0]) == motion(tick)[:2]
-        observer.told(np.array([motion(tick)[2]]))
+        observer.drive(np.array([motion(tick)[2]]))
     q, qd = observer.update(readings(motion(8)[0], late=2, velocity=motion(8)[1]))
     assert q[0] == pytest.approx(motion(10)[0], abs=1e-6) and qd[0] == pytest.approx(motion(10)[1], abs=1e-6)

@@ -1,4 +1,4 @@
-"""When the ground carries a sole, by wrenches with noise and bias."""
+"""The contact of a sole with the ground, by wrenches with noise and bias."""
 
 import numpy as np
 import pytest

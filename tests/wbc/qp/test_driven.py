@@ -14,7 +14,7 @@ pytestmark = pytest.mark.unit
 
 @pytest.fixture
 def driven(robot):
-    """Which joints: the last four that are of no leg."""
+    """Mark the last four joints that are of no leg."""
     mask = np.zeros(len(robot.leg_joints), dtype=bool)
     mask[np.flatnonzero(~robot.leg_joints)[-4:]] = True
     return mask

@@ -136,7 +136,7 @@ def test_while_a_step_catches_the_body_an_ankle_that_yields_is_to_rest(body: Bod
 def test_a_foot_that_its_ankle_tilts_is_lifted_for_what_hangs_but_only_a_little_for_its_toe(
     body: Body, references, hung: float, length: float, rolled: float, catching: bool
 ) -> None:
-    """By what its toe hangs lower than it should, four millimetres on a robot of this size at most.
+    """It is lifted by what its toe hangs too low, four millimetres on a robot of this size at most.
 
     While a step catches the body by all that its side edge hangs lower, too.
     """

@@ -1,4 +1,4 @@
-"""Where a hip's range sideways ends the pelvis rolls with the leg, and nowhere else."""
+"""The pelvis rolls with the leg at the end of a hip's range sideways, and nowhere else."""
 
 from dataclasses import replace
 

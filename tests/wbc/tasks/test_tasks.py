@@ -164,7 +164,7 @@ def placed(robot, q, v):
 
 
 def rates(robot, state, acceleration, h=1e-6):
-    """By name, what each task steers, differentiated along a motion with that generalised acceleration."""
+    """Values that each task steers, by name, differentiated along a motion with that generalised acceleration."""
     found = []
     for t in (-h, h):
         v = state.v + t * acceleration
@@ -256,7 +256,7 @@ def test_a_rolling_foot_is_steered_by_its_toe_edge(robot, state, references):
 
 
 def test_diagonal_terms_ask_for_posture_share_and_rest(robot, state, references, loaded):
-    """What each single variable would be if nothing else weighed it."""
+    """Each single variable is what it would be if nothing else weighed it."""
     controller = robot.controller(WbcParameters(arm_swing=0.0))
     controller.observe(state)
     controller.update(references[0](load_share=(0.7, 0.3)), loaded)

@@ -88,15 +88,15 @@ def test_a_pendulum_is_not_passed_by_what_it_has_not_got(robots):
 def test_metrics_of_other_packages_likewise(robots):
     @metric(unit="m", least=0.0)
     def reach(run) -> float | None:
-        """How far a hand came [m]."""
+        """Reach of a hand [m]."""
 
     @metric()
     def touched(run) -> bool:
-        """Whether a wall was touched."""
+        """True if a wall was touched."""
 
     @metric()
     def unsaid(run):
-        """Of a kind that its function does not say."""
+        """A metric of a kind that its function does not say."""
 
     brought = (reach, touched, unsaid)
     for one in brought:

@@ -1,4 +1,4 @@
-"""What a scenario and a program say of the planner: the height law of a profile, and random numbers of each thing."""
+"""The planner of a scenario and of a program: the height law of a profile, and random numbers of each thing."""
 
 from dataclasses import replace
 

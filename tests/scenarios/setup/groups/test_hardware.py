@@ -43,7 +43,7 @@ def test_a_key_replaces_its_term_alone():
 
 
 def test_every_sensor_key_changes_what_sensors_do():
-    """Of the preset cheap, whose every term is set."""
+    """The preset is cheap, whose every term is set."""
     others = {"preset": "good", "wrench": "none", "encoder_velocity": True, "encoder_bits": 12}
     for name in SENSOR_KEYS:
         base = {"preset": "cheap"} | ({"encoder_velocity": True} if name == "encoder_velocity_noise" else {})

@@ -21,7 +21,7 @@ STEP = 0.01
 
 
 def cop_room(body, share=1.0):
-    """Of a walk of a robot with this share of its torques, as its planner is told."""
+    """Room of the CoP in a walk of a robot with this share of its torques, as its planner is given it."""
     walk = resolve(surefoot.load("walk"))
     walk = replace(walk, described=replace(walk.robot, torque_limit=share * walk.robot.torque_limit))
     posture = start_posture(walk, body)

@@ -1,4 +1,4 @@
-"""What the legs of a robot cannot do is told before the run, by what their joints and shanks would have to do."""
+"""Limits of a robot's legs are found before the run, by what their joints and shanks would have to do."""
 
 from dataclasses import replace
 

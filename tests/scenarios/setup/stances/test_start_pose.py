@@ -10,7 +10,7 @@ from surefoot.models.types import RobotOptions
 from surefoot.planner.geometry.plane import wrap_angle
 from surefoot.scenarios.file.schema import Gait, Scenario, Start
 from surefoot.scenarios.setup.robot.body import body_of, feet_at
-from surefoot.scenarios.setup.stances.start import SOLE_SINKAGE, as_told, disturbed, pressed, start_posture
+from surefoot.scenarios.setup.stances.start import SOLE_SINKAGE, at_believed_start, disturbed, pressed, start_posture
 from surefoot.scenarios.setup.walk import resolve
 
 pytestmark = pytest.mark.unit
@@ -82,15 +82,15 @@ def test_knees_bend_no_farther_back_than_straight(body, bend):
 
 
 @pytest.mark.parametrize("yaw", [0.0, 1.2, 3.1])
-def test_who_only_senses_takes_the_feet_to_be_around_where_it_was_told(body, yaw):
+def test_who_only_senses_takes_the_feet_to_be_around_where_it_wat_believed_start(body, yaw):
     noisy = Start(x=2.0, y=1.0, yaw=yaw, position_noise=0.001, angle_noise=0.0175)
     walk = resolve(Scenario(seed=1, start=noisy))
     q, told = disturbed(start_posture(walk, body), walk, body), walk.ground.stance
-    true, found = feet_at(body, q), feet_at(body, as_told(q, walk, body))
+    true, found = feet_at(body, q), feet_at(body, at_believed_start(q, walk, body))
     np.testing.assert_allclose(found.position.mean(axis=0), told.position.mean(axis=0), atol=1e-9)
     assert sum(map(wrap_angle, found.yaw - told.yaw)) == pytest.approx(0.0, abs=1e-9)
     # They stand as they do, wherever that is.
     apart = [np.linalg.norm(np.subtract(*feet.position)) for feet in (true, found)]
     assert apart[0] == pytest.approx(apart[1], abs=1e-12)
     assert wrap_angle(true.yaw[0] - true.yaw[1]) == pytest.approx(wrap_angle(found.yaw[0] - found.yaw[1]), abs=1e-9)
-    np.testing.assert_array_equal(as_told(q, walk, body)[7:], q[7:])
+    np.testing.assert_array_equal(at_believed_start(q, walk, body)[7:], q[7:])

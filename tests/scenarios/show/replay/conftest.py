@@ -11,7 +11,7 @@ from surefoot.scenarios.log import Log, read
 
 @pytest.fixture
 def write_log(tmp_path: Path) -> Callable[..., Path]:
-    """Writes a log; arguments as of `write` after the path."""
+    """Writes a log by the arguments of `write` after the path."""
     return lambda **options: write(tmp_path / "log.mcap", **options)
 
 

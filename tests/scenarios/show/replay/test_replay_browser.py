@@ -18,7 +18,7 @@ pytestmark = [
 ]
 
 SPEED = 2.5
-"""Of a robot that leaves the picture unless it is followed [m/s]."""
+"""Speed of a robot that leaves the picture unless it is followed [m/s]."""
 
 DARK = 125
 """Only the robot is so dark in every channel."""
@@ -58,14 +58,14 @@ def page(tmp_path_factory: pytest.TempPathFactory) -> Iterator[Browser]:
 
 
 def picture(page: Browser) -> np.ndarray:
-    """What the page shows of the scene."""
+    """The picture of the scene on the page."""
     image = np.asarray(Image.open(BytesIO(page.screenshot())).convert("RGB")).astype(int)
     frame = page.run(CANVAS)
     return image[: round(frame["bottom"]), : round(frame["right"])]
 
 
 def robot_at(page: Browser, seconds: float) -> float:
-    """Where the robot is in the picture at a time, from 0 at the left to 1 at the right; NaN out of it."""
+    """Place of the robot in the picture at a time, from 0 at the left to 1 at the right; NaN out of it."""
     page.run(SEEK % seconds)
     time.sleep(0.5)
     image = picture(page)

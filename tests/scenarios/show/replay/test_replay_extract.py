@@ -1,4 +1,4 @@
-"""What a replay shows is what the log says."""
+"""A replay shows what the log says."""
 
 import contextlib
 import random

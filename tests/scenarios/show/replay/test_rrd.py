@@ -39,7 +39,7 @@ def test_the_layout_has_the_scene_and_a_plot_for_every_chart():
 
 @pytest.fixture
 def sent(log):
-    """What a recorder sends: a replay, the columns by kind, and the paths."""
+    """Data that a recorder sends: a replay, the columns by kind, and the paths."""
     rerun, replay = MagicMock(), extract(log)
     Recorder(rerun, MagicMock(), replay).write(log)
     return rerun, replay

@@ -1,4 +1,4 @@
-"""What is put beside a viewer's picture neither breaks the viewer's page nor is broken by any text."""
+"""Texts beside a viewer's picture neither break the viewer's page nor are broken by any text."""
 
 import json
 import re

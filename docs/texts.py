@@ -1,6 +1,6 @@
-"""Write what commands tell of the package's own parts into the package: the schema, meanings of keys, metrics.
+"""Write the texts of commands on the package's own parts into the package: the schema, meanings of keys, metrics.
 
-python docs/told.py
+python docs/texts.py
 """
 
 import json
@@ -20,7 +20,7 @@ TEXTS: Mapping[str, Callable[[], str]] = {
     "meanings": lambda: json.dumps(starter.meanings(), indent=1, ensure_ascii=False),
     "metrics": _metrics,
 }
-"""What makes each text, by its name."""
+"""Functions that make each text, by its name."""
 
 
 def made(name: str) -> str:

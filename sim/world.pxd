@@ -1,3 +1,4 @@
+from surefoot.joints cimport JointCommand
 from surefoot.sim.checkpoint cimport Checkpoint
 from surefoot.sim.sensors cimport SensorReader
 
@@ -11,5 +12,5 @@ cdef class World:
 
     cpdef measure(self)
     cpdef advance(self, torque, long long steps)
-    cpdef act(self, command, double period)
+    cpdef act(self, JointCommand command, double period)
     cdef _diverge(self)

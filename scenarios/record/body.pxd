@@ -2,14 +2,19 @@ cimport cython
 cimport libc.math as math
 from surefoot.maths cimport algebra
 from surefoot.maths.algebra cimport vector3
+from surefoot.forces cimport ExternalLoad
+from surefoot.planner.plan.sample cimport PlanSample
+from surefoot.sim.measurement cimport Measurement
 from surefoot.wbc.contact cimport zmp
+from surefoot.wbc.types cimport WbcReport
 
 cdef double _SECOND, _FALLBACK
 
 cdef class Recorder:
     cdef object _row
 
-    cpdef tick(self, time_ns, measurement, truth, terms, planned, report, torque)
+    @cython.locals(m=Measurement, r=WbcReport, load=ExternalLoad)
+    cpdef tick(self, time_ns, Measurement measurement, truth, terms, PlanSample planned, WbcReport report, torque)
 
 cdef class RobotRows:
     cdef const double[:] _inverse_limit

@@ -1,4 +1,8 @@
-from surefoot.planner.types cimport CentroidalState
+cimport cython
+from surefoot.planner.plan.plan cimport WalkPlan
+from surefoot.planner.plan.sample cimport PlanSample
+from surefoot.planner.swing.heel_off cimport FootRoll
+from surefoot.planner.types cimport CentroidalState, PhaseInfo
 
 cdef class PlannerState:
     cdef readonly CentroidalState measured
@@ -17,4 +21,5 @@ cdef class WalkRecorder(RunRecorder):
     cdef bytes _polygon
     cdef bint _rolls
 
-    cpdef reference(self, time_ns, plan, sample)
+    @cython.locals(phase=PhaseInfo, roll=FootRoll)
+    cpdef reference(self, time_ns, WalkPlan plan, PlanSample sample)

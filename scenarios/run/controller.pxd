@@ -1,11 +1,18 @@
 from surefoot.joints cimport JointCommand
+from surefoot.planner.plan.sample cimport PlanSample
 from surefoot.readings cimport Reading, Readings
 from surefoot.scenarios.run.sensed cimport Senses
+from surefoot.wbc.body.model cimport RobotTerms
+from surefoot.wbc.controller cimport WholeBodyController
 from surefoot.wbc.estimation.estimate cimport Estimate
 from surefoot.wbc.types cimport WbcReport
 
 cdef class Controller:
-    cdef readonly object walk, body, whole_body, planning, posture, state, report, terms, wrench, sample, spent
+    cdef readonly object walk, body, planning, posture, state, wrench, spent
+    cdef readonly WholeBodyController whole_body
+    cdef readonly WbcReport report
+    cdef readonly RobotTerms terms
+    cdef readonly PlanSample sample
     cdef readonly Senses senses
     cdef readonly Estimate estimate
     cdef object _parts, _leg, _faults, _output, _giving_way, _landed, _arriving, _load, _landing, _torques

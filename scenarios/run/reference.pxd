@@ -2,8 +2,10 @@ cimport cython
 from surefoot.maths cimport algebra
 from surefoot.maths.algebra cimport vector3
 from surefoot.planner.geometry cimport orientation
+from surefoot.planner.plan.plan cimport WalkPlan
 from surefoot.planner.plan.sample cimport PlanSample
 from surefoot.planner.plan.sampling cimport PlanSampler
+from surefoot.planner.types cimport Footstep, PhaseInfo
 from surefoot.wbc.reference cimport WbcReference
 
 cdef Py_ssize_t OMEGA, STIFFNESS, LOAD, ZMP, PENDULUM_ZMP, COM, VELOCITY, ACCELERATION
@@ -11,10 +13,10 @@ cdef Py_ssize_t SWING, SWING_VELOCITY, SWING_ACCELERATION
 
 @cython.locals(sample=PlanSample, until=PlanSample)
 cpdef planned(PlanSampler sampler, double time, double middle)
-@cython.locals(passed=double, left=double, told=WbcReference)
-cpdef WbcReference whole_body_reference(plan, PlanSample sample)
-@cython.locals(swings=int, yaw_left=double, yaw_right=double)
-cdef int _ground(WbcReference told, plan, double yaw) except -1
+@cython.locals(phase=PhaseInfo, passed=double, left=double, told=WbcReference)
+cpdef WbcReference whole_body_reference(WalkPlan plan, PlanSample sample)
+@cython.locals(swings=int, left=Footstep, right=Footstep, yaw_left=double, yaw_right=double)
+cdef int _ground(WbcReference told, WalkPlan plan, double yaw) except -1
 cdef vector3 _tuple(vector)
 @cython.locals(rates=vector3)
 cdef void _fill(WbcReference told, const double[::1] point) noexcept nogil

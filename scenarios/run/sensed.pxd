@@ -1,3 +1,4 @@
+cimport cython
 from surefoot.readings cimport Reading, Readings
 from surefoot.sim.measurement cimport Measurement
 from surefoot.wbc.estimation.estimate cimport Deviation, Estimate, Planned
@@ -8,3 +9,6 @@ cdef class Senses:
     cdef Estimate _last
 
     cpdef told(self, reference, report)
+
+@cython.locals(sure=Deviation, age=double)
+cpdef foot_sensing(Estimate estimate, wrench, bint wanted, inferred=*, touching=*)

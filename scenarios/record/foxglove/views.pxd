@@ -1,3 +1,9 @@
+cimport cython
+from surefoot.planner.plan.plan cimport WalkPlan
+from surefoot.planner.types cimport PlanStatus
+from surefoot.sim.measurement cimport Measurement
+from surefoot.wbc.types cimport WbcReport
+
 cdef class EventLog:
     cdef object _channel
     cdef tuple _last
@@ -21,5 +27,6 @@ cdef class BodyView(RobotView):
     cdef object _walk
     cdef EventLog _events
 
-    cpdef events(self, time_ns, measurement, report, plan, bint fallen)
+    @cython.locals(status=PlanStatus)
+    cpdef events(self, time_ns, Measurement measurement, WbcReport report, WalkPlan plan, bint fallen)
     cdef _planned(self, time_ns, measurement, terms, plan, sample)

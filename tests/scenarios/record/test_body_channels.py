@@ -5,11 +5,13 @@ from types import SimpleNamespace
 import numpy as np
 import pytest
 
+from surefoot.planner.plan.sample import POINT, PlanSample, in_point
 from surefoot.scenarios.log import LogWriter, read
 from surefoot.scenarios.record.body import Recorder
 from surefoot.scenarios.record.channels import Sizes
+from surefoot.sim.measurement import Measurement
 from surefoot.wbc.contact.zmp import centre_of_pressure, measured_zmp
-from surefoot.wbc.types import ExternalLoad, SolveStatus
+from surefoot.wbc.types import ExternalLoad, SolveStatus, WbcReport
 
 pytestmark = pytest.mark.unit
 
@@ -23,8 +25,9 @@ def tick(rng, status):
     rotation = np.linalg.qr(rng.normal(size=(3, 3, 3)))[0]
     wrench = rng.normal(size=(2, 6)) * 20
     wrench[:, 2] = rng.uniform(100, 500, 2)
-    measurement = SimpleNamespace(
-        nonfoot_contact=0, self_contact=1, joint_position=rng.normal(size=NJ), joint_velocity=rng.normal(size=NJ),
+    measurement = Measurement(
+        time=0.0, nonfoot_contact=False, self_contact=True,
+        joint_position=rng.normal(size=NJ), joint_velocity=rng.normal(size=NJ),
         joint_torque=rng.normal(size=NJ), gyro=rng.normal(size=3), accelerometer=rng.normal(size=3), wrench=wrench,
         external_force=rng.normal(size=3), q=rng.normal(size=NJ + 7), v=rng.normal(size=NJ + 6),
     )  # fmt: skip
@@ -34,17 +37,19 @@ def tick(rng, status):
         sole_pose=np.column_stack((position, np.zeros((2, 3)), np.ones(2))), sole_position=position,
         sole_rotation=rotation[:2], torso_rotation=rotation[2],
     )  # fmt: skip
-    report = SimpleNamespace(
-        active=(True, False), felt=(False, True), status=status, iterations=7, primal_residual=1e-9,
-        dual_residual=2e-9, acceleration=rng.normal(size=NJ + 6), wrench=rng.normal(size=(2, 6)),
-        task_error=rng.normal(size=18),
+    report = WbcReport(
+        torque=np.zeros(NJ), active=(True, False), felt=(False, True), status=status, iterations=7,
+        primal_residual=1e-9, dual_residual=2e-9, acceleration=rng.normal(size=NJ + 6), wrench=rng.normal(size=(2, 6)),
+        task_error=rng.normal(size=18), build_time=0.0, solve_time=0.0,
         load=ExternalLoad(rng.normal(size=3), rng.normal(size=3), rng.uniform(0.8, 1.2)),
     )  # fmt: skip
     terms = SimpleNamespace(
         com=rng.normal(size=3), com_velocity=rng.normal(size=3), model_mass=100.0,
         q=rng.normal(size=NJ + 7), v=rng.normal(size=NJ + 6),
     )  # fmt: skip
-    planned = SimpleNamespace(contacts=(True, True), omega=rng.uniform(2, 4))
+    point = np.zeros(POINT)
+    point[in_point("omega")] = rng.uniform(2, 4)
+    planned = PlanSample(0.0, point, (True, True), None)
     return measurement, truth, terms, planned, report, rng.normal(size=NJ) * 30
 
 

@@ -6,15 +6,15 @@ from surefoot.forces cimport ExternalLoad
 from surefoot.planner.plan.sample cimport PlanSample
 from surefoot.sim.measurement cimport Measurement
 from surefoot.wbc.contact cimport zmp
-from surefoot.wbc.types cimport WbcReport
 
 cdef double _SECOND, _FALLBACK
 
 cdef class Recorder:
     cdef object _row
 
-    @cython.locals(m=Measurement, r=WbcReport, load=ExternalLoad)
-    cpdef tick(self, time_ns, Measurement measurement, truth, terms, PlanSample planned, WbcReport report, torque)
+    # A report's pairs of C, spread into a row of numbers, would each be one number.
+    @cython.locals(m=Measurement, load=ExternalLoad)
+    cpdef tick(self, time_ns, Measurement measurement, truth, terms, PlanSample planned, report, torque)
 
 cdef class RobotRows:
     cdef const double[:] _inverse_limit

@@ -1,15 +1,11 @@
 from surefoot.readings cimport Readings
 from surefoot.joints cimport JointCommand
-from surefoot.scenarios.record.body cimport Recorder
-from surefoot.scenarios.record.foxglove.views cimport BodyView
 from surefoot.scenarios.run.controller cimport Controller as Mind
 from surefoot.scenarios.run.moved cimport Moved
 
 cdef class WholeBody(Moved):
     cdef readonly Mind mind
-    cdef Recorder _recorder
-    cdef BodyView _view
-    cdef object _sensed, _coupled, _somebody
+    cdef object _recorder, _view, _sensed, _coupled, _somebody
     cdef JointCommand _no_torque
     cdef bint _told
 

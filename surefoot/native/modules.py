@@ -47,9 +47,8 @@ DIRECTIVES = {
 UNCHECKED = {"boundscheck": "False", "wraparound": "False"}
 """The same of modules that have arrays of C: no index is looked at, nor counted from the end, of lists either."""
 
-LOOPS, OTHERS = "-O3", "-Os"
-"""Optimisation of the primitives that loop over arrays, and of all else, of which a tick passes through a lot once:
-small code stays in the processor's cache, and compiles in half the time."""
+ARRAYS, OTHERS = "-O3", "-O1"
+"""Optimisation of modules that have arrays of C, and of those that call others: they compile in half the time."""
 
 FLAGS = ("-ffp-contract=off", "-fno-math-errno", "-fPIC", "-w", "--param=vect-max-version-for-alias-checks=200")
 """The last one lets loops over many rows of an array become vector instructions; GCC tests first
@@ -316,7 +315,7 @@ def _how(compiler: list[str]) -> str:
     if asked.returncode or not asked.stdout:
         raise NothingCompilesError(f"'{shlex.join(compiler)}' is no C compiler that works; install one, or set CC")
     named = asked.stdout.splitlines()[0].strip()
-    return f"Cython {version('cython')}, {named} {LOOPS} or {OTHERS} {shlex.join(_flags(compiler))}"
+    return f"Cython {version('cython')}, {named} {ARRAYS} or {OTHERS} {shlex.join(_flags(compiler))}"
 
 
 def _flags(compiler: list[str]) -> list[str]:
@@ -329,7 +328,7 @@ def _flags(compiler: list[str]) -> list[str]:
 def _compile_shared(compiler: list[str], folder: Path) -> None:
     c_file = folder / "shared.c"
     _run([sys.executable, "-m", "cython", f"--generate-shared={c_file}"])
-    _link([*compiler, LOOPS], c_file, shared_path())
+    _link([*compiler, ARRAYS], c_file, shared_path())
 
 
 def _lots(wanted: Mapping[str, Path]) -> Iterable[Mapping[str, Path]]:
@@ -359,8 +358,7 @@ def _translate(lot: Mapping[str, Path], folder: Path) -> None:
 
 def _compile(compiler: list[str], path: Path, folder: Path, written: "Future[None]") -> None:
     written.result()
-    loops = path.suffix == ".pyx"
-    _link([*compiler, LOOPS if loops else OTHERS], folder / f"{path.stem}.c", target(path))
+    _link([*compiler, ARRAYS if has_arrays(path) else OTHERS], folder / f"{path.stem}.c", target(path))
 
 
 def _link(compiler: list[str], c_file: Path, path: Path) -> None:

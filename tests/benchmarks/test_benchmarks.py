@@ -46,7 +46,7 @@ def test_the_stop_watch_sees_each_part_of_a_tick(tmp_path):
     walk = TimedWalk("diagonal-walk", ["duration=0.1"])
     ticks = list(walk.ticks(tmp_path / "log.mcap"))
     assert all(walk.laps[part] for part in PARTS)
-    # Those of plans are seldom, and what is logged and drawn is of two parts; none holds another, so all add up to less.
+    # Plans are seldom; what is logged and what is drawn has two methods. No part holds another, so all add up to less.
     once = {"measure", "sensors", "estimator", "Pinocchio terms", "plan sampled", "whole-body QP", "physics steps"}
     assert {part for part, laps in walk.laps.items() if len(laps) == len(ticks)} == once
     assert [len(walk.laps[part]) for part in ("logging", "viewers' channels")] == [2 * len(ticks)] * 2

@@ -3,7 +3,7 @@
 import sys
 import time
 from collections import defaultdict
-from collections.abc import Callable, Iterator, Sequence
+from collections.abc import Callable, Iterator, Mapping, Sequence
 from contextlib import ExitStack
 from pathlib import Path
 from types import ModuleType
@@ -15,7 +15,7 @@ from surefoot.scenarios.log import LogWriter
 from surefoot.scenarios.record.body import Recorder
 from surefoot.scenarios.record.foxglove.views import BodyView
 from surefoot.scenarios.record.walk import WalkRecorder
-from surefoot.scenarios.run import controller, full
+from surefoot.scenarios.run import assembly, controller, full
 from surefoot.scenarios.run.run import closed_loop, one_thread
 from surefoot.scenarios.run.sensed import Senses
 from surefoot.scenarios.run.skeleton import ClosedLoop
@@ -38,7 +38,7 @@ PARTS: dict[str, tuple[tuple[type | ModuleType, str], ...]] = {
     "viewers' channels": ((BodyView, "events"), (BodyView, "picture")),
     "physics steps": ((World, "act"),),
 }
-"""Methods and functions of the loop by what they do; one that compiled code goes past takes no time here."""
+"""Methods and functions of the loop by what they do; compiled code calls them where a class below has its own."""
 
 
 class TimedWalk:
@@ -60,24 +60,33 @@ class TimedWalk:
         """Walk to the end, logging to a file; gives the processor time that each control tick took [s]."""
         with ExitStack() as stack:
             stack.enter_context(one_thread())
-            for part, methods in PARTS.items():
-                for owner, method in methods:
-                    _time(stack, owner, method, self.laps[part])
+            for owner, methods in self._timed().items():
+                _watch(stack, owner, methods)
             writer = stack.enter_context(LogWriter(log, {}))
-            self.loop = closed_loop(resolve(self._scenario), writer)
+            # A loop of no parts of others has the controller that its module knew before it was watched.
+            parts = assembly.Parts(controller=full.WholeBodyController)
+            self.loop = closed_loop(resolve(self._scenario), writer, parts)
             while not self.loop.done:
                 start = time.thread_time()
                 self.loop.step()
                 yield time.thread_time() - start
 
+    def _timed(self) -> dict[type | ModuleType, dict[str, Callable[..., Any]]]:
+        """What is timed in the place of each method, by its owner: a class may be watched in several parts."""
+        found: dict[type | ModuleType, dict[str, Callable[..., Any]]] = defaultdict(dict)
+        for part, methods in PARTS.items():
+            for owner, method in methods:
+                found[owner][method] = _timed(getattr(owner, method), self.laps[part])
+        return found
 
-def _time(stack: ExitStack, owner: type | ModuleType, method: str, spent: list[float]) -> None:
-    """Time a method while the stack is open; of a compiled class, which cannot be changed, in a class below it."""
-    timed = _timed(getattr(owner, method), spent)
+
+def _watch(stack: ExitStack, owner: type | ModuleType, methods: Mapping[str, Callable[..., Any]]) -> None:
+    """Put methods in place while the stack is open; of a compiled class, which cannot be changed, in one below it."""
     if not isinstance(owner, type) or owner.__flags__ & _CHANGEABLE:
-        stack.enter_context(patch.object(owner, method, timed))
+        for method, timed in methods.items():
+            stack.enter_context(patch.object(owner, method, timed))
         return
-    below = type(owner.__name__, (owner,), {method: timed})
+    below = type(owner.__name__, (owner,), dict(methods))
     assert full.__name__ in sys.modules  # compiled modules look a class up when they are imported
     for module in list(sys.modules.values()):
         for name in [name for name, value in vars(module).items() if value is owner]:

@@ -16,6 +16,10 @@ import sys
 from collections.abc import Iterable, Mapping
 from importlib.machinery import EXTENSION_SUFFIXES
 from pathlib import Path
+from typing import TYPE_CHECKING
+
+if TYPE_CHECKING:
+    from concurrent.futures import Future
 
 # What only a build needs is imported there: each process of a checkout asks here whether modules are stale.
 
@@ -58,6 +62,9 @@ LINK = {"darwin": ("-bundle", "-undefined", "dynamic_lookup")}.get(sys.platform,
 
 SLOWER = 13
 """About how many times as long as a compiled walk an interpreted one takes."""
+
+LOT = 8
+"""Modules at most that one process of Cython reads; it takes as long to start as to read three."""
 
 MOST_LINES = 30
 """Most lines that are shown of what Cython or the compiler says."""
@@ -256,8 +263,14 @@ def build(names: Iterable[str] | None = None) -> None:
         if kept.get("made") != how or not (ROOT / shared_path()).exists():
             _compile_shared(compiler, Path(folder))
         with ThreadPoolExecutor(os.cpu_count()) as pool:
-            running = {name: pool.submit(_compile, compiler, name, found[name], Path(folder)) for name in wanted}
-    failed = {name: task.exception() for name, task in running.items() if task.exception() is not None}
+            lots = list(_lots({name: found[name] for name in wanted}))
+            written = [pool.submit(_translate, lot, Path(folder, str(number))) for number, lot in enumerate(lots)]
+            running = [
+                (name, pool.submit(_compile, compiler, path, Path(folder, str(number)), written[number]))
+                for number, lot in enumerate(lots)
+                for name, path in lot.items()
+            ]
+    failed = {name: task.exception() for name, task in running if task.exception() is not None}
     done = {name: digest for name, digest in kept.items() if name in found} | {name: fresh[name] for name in wanted}
     _write_stamp({"made": how, **{name: digest for name, digest in done.items() if name not in failed}})
     for error in failed.values():
@@ -320,13 +333,34 @@ def _compile_shared(compiler: list[str], folder: Path) -> None:
     _link([*compiler, ARRAYS], c_file, shared_path())
 
 
-def _compile(compiler: list[str], name: str, path: Path, folder: Path) -> None:
-    c_file = folder / f"{name}.c"
-    chosen = {**DIRECTIVES, **(UNCHECKED if has_arrays(path) else {})}
+def _lots(wanted: Mapping[str, Path]) -> Iterable[Mapping[str, Path]]:
+    """Modules that Cython reads in one process, which take the same directives and whose files have unlike names."""
+    lots: list[dict[str, Path]] = []
+    for name, path in wanted.items():
+        for lot in lots:
+            others = list(lot.values())
+            alike = has_arrays(others[0]) == has_arrays(path)
+            if alike and len(lot) < LOT and path.stem not in [other.stem for other in others]:
+                lot[name] = path
+                break
+        else:
+            lots.append({name: path})
+    return lots
+
+
+def _translate(lot: Mapping[str, Path], folder: Path) -> None:
+    """Write the C of each module of a lot into a folder of its own."""
+    folder.mkdir()
+    paths = list(lot.values())
+    chosen = {**DIRECTIVES, **(UNCHECKED if has_arrays(paths[0]) else {})}
     directives = [part for key, value in chosen.items() for part in ("-X", f"{key}={value}")]
-    command = [sys.executable, "-m", "cython", f"--shared={SHARED}", "--module-name", name, *directives]
-    _run([*command, str(path), "-o", str(c_file)])
-    _link([*compiler, ARRAYS if has_arrays(path) else OTHERS], c_file, target(path))
+    command = [sys.executable, "-m", "cython", f"--shared={SHARED}", *directives]
+    _run([*command, *map(str, paths), "-o", str(folder)])
+
+
+def _compile(compiler: list[str], path: Path, folder: Path, written: "Future[None]") -> None:
+    written.result()
+    _link([*compiler, ARRAYS if has_arrays(path) else OTHERS], folder / f"{path.stem}.c", target(path))
 
 
 def _link(compiler: list[str], c_file: Path, path: Path) -> None:
@@ -349,7 +383,9 @@ def _run(command: list[str]) -> None:
     done = subprocess.run(command, cwd=ROOT, capture_output=True, text=True)
     if done.returncode:
         said = (done.stderr or done.stdout).strip().splitlines()
-        raise BuildError("\n".join([f"'{shlex.join(command)}' fails:", *said[:MOST_LINES]]))
+        # Cython warns of all modules that it is given before it says what is wrong with one.
+        begin = next((number for number, line in enumerate(said) if line.startswith("Error")), 0)
+        raise BuildError("\n".join([f"'{shlex.join(command)}' fails:", *said[begin : begin + MOST_LINES]]))
 
 
 def _write_stamp(content: Mapping[str, str]) -> None:

@@ -11,6 +11,7 @@ ROOT = Path(__file__).parents[2]
 sys.path.insert(0, str(ROOT))
 
 from benchmarks import history  # noqa: E402  found by the line above
+from benchmarks.stopwatch import PARTS, TimedWalk  # noqa: E402
 from benchmarks.table import Section  # noqa: E402
 
 
@@ -38,6 +39,18 @@ def test_what_there_is_not_is_refused():
     done = bench("ticks")
     assert done.returncode == 2 and "there are tick, deadlines" in done.stderr
     assert bench("--quick", "--append", "counts").returncode == 2
+
+
+@pytest.mark.physics
+def test_the_stop_watch_sees_each_part_of_a_tick(tmp_path):
+    walk = TimedWalk("diagonal-walk", ["duration=0.1"])
+    ticks = list(walk.ticks(tmp_path / "log.mcap"))
+    assert all(walk.laps[part] for part in PARTS)
+    # Plans are seldom; what is logged and what is drawn has two methods. No part holds another, so all add up to less.
+    once = {"measure", "sensors", "estimator", "Pinocchio terms", "plan sampled", "whole-body QP", "physics steps"}
+    assert {part for part, laps in walk.laps.items() if len(laps) == len(ticks)} == once
+    assert [len(walk.laps[part]) for part in ("logging", "viewers' channels")] == [2 * len(ticks)] * 2
+    assert 0.5 * sum(ticks) < sum(sum(laps) for laps in walk.laps.values()) < sum(ticks)
 
 
 @pytest.mark.unit

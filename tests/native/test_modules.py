@@ -136,6 +136,21 @@ def test_what_is_compiled_stays_so_where_nothing_can_be_compiled_until_it_is_edi
     assert not path.exists()
 
 
+def test_modules_of_one_name_in_two_folders_are_each_compiled_and_one_that_fails_is_named(checkout):
+    COMPILER.or_skip()
+    folder = checkout / "surefoot" / "folder"
+    folder.mkdir()
+    (folder / "__init__.py").touch()
+    (folder / "law.py").write_text(LAW.replace("1.0", "2.0"))
+    (folder / "law.pxd").write_text(TYPES)
+    both = "from surefoot import law; from surefoot.folder import law as other; print(law.law(4.0), other.law(4.0))"
+    assert python(checkout, "-c", both) == "3.0 4.0\n"
+    assert [path.stem.split(".")[0] for path in folder.glob(f"*{modules.SUFFIX}")].count("law") == 1
+    (folder / "law.py").write_text(LAW.replace("math.sqrt(x)", "print(x) or x"))
+    said = python(checkout, "-m", "surefoot.native", code=1).splitlines()[: modules.MOST_LINES]
+    assert said[1].startswith("Error compiling") and any("folder/law.py:5" in line for line in said)
+
+
 LAST = "def last(them):\n    return them[-1]\n\n\ndef beyond(them):\n    return them[9]\n"
 LOOK = """
 import surefoot.law as it

@@ -46,6 +46,7 @@ class Policy:
         walk: what is walked.
         file: of the contract, or what `surefoot.scenarios.policy.files.read` takes for one.
         digest: of its files, which must be these; None for any.
+        known_as: name of the robot in contracts; None for its own.
 
     Attributes:
         contract: of the network.
@@ -61,7 +62,7 @@ class Policy:
         ParameterError: contract, network, robot and rates do not fit together, or onnxruntime is not installed.
     """
 
-    def __init__(self, walk: Walk, file: str, digest: str | None = None) -> None:
+    def __init__(self, walk: Walk, file: str, digest: str | None = None, known_as: str | None = None) -> None:
         files: Files = read(Path(file), walk.robot.joint_names)
         self.walk, self.contract = walk, files.contract
         self.network = Network(files.network)
@@ -70,13 +71,15 @@ class Policy:
             what = f"{file} is not the policy that made the log: its digest is {found[:12]}, not {digest[:12]}"
             raise ParameterError(KEY, what, "give the files of then, or leave out controller.digest")
         contract, robot = self.contract, walk.robot
-        if contract.robot is not None and contract.robot != robot.name:
-            what = f"{file} is the contract of robot {contract.robot}, and this is {robot.name}"
+        called = known_as or robot.name
+        if contract.robot is not None and contract.robot != called:
+            what = f"{file} is the contract of robot {contract.robot}, and this is {called}"
             raise ParameterError(KEY, what, "run it with its own robot")
         if contract.rate > walk.rates.control * (1.0 + _ROUNDING):
             what = f"{file} decides {contract.rate:g} times a second, under rates.control {walk.rates.control} Hz"
             raise ParameterError(KEY, what, "raise rates.control")
         self.joints, self._body = Joints(contract, robot), body_of(robot)
+        self._driven = np.zeros(len(contract.joints), dtype=bool)
         self.posture = self.joints.posture
         model, frames = self._body.model, self._body.frames
         self._data, self._torso = model.createData(), model.getFrameId(frames.torso)
@@ -160,6 +163,7 @@ class Policy:
         for feed in self.feeds.values():
             feed.reset()
         self.followed, self._marches = STANDING, False
+        self._walked = self._since = 0.0
         self.told: Mapping[str, Array] | None = None
 
     def step(self, readings: Readings | Measurement, command: Command | None = None) -> JointCommand:
@@ -174,10 +178,26 @@ class Policy:
         if now >= self._next:
             rate = self.contract.rate
             self._next = (math.floor(now * rate + _ROUNDING) + 1.0 - _ROUNDING) / rate
+            self._count()
             self._command = self._decided(now, state)
         if self._senses.listens:
             self._tell(state, estimate.contact)
         return self._command
+
+    def _count(self) -> None:
+        """Count how long it has walked by the decision that is due."""
+        if self.followed.is_zero and not self._marches:
+            self._since = 0.0
+        else:
+            self._walked, self._since = self._walked + 1.0 / self.contract.rate, self._since + 1.0 / self.contract.rate
+
+    def drive(self, joints: NDArray[np.bool_]) -> None:
+        """Tell which joints somebody else drives from now on; the contract says what is observed of them.
+
+        Args:
+            joints: of the robot, shape (nj,).
+        """
+        self._driven = joints[self.joints.named]
 
     def _within(self, twist: Twist) -> Twist:
         """A velocity within those that the policy was trained for."""
@@ -223,13 +243,25 @@ class Policy:
         return JointCommand(torque, Servo(position, np.zeros_like(position), stiffness, joints.damping))
 
     def _seen(self, now: float, state: RobotState) -> Seen:
-        q, v, named = state.q, state.v, self.joints.named
+        q, v = state.q, state.v
         x, y, z, w = q[3:7].tolist()
         R, spin = pin.Quaternion(w, x, y, z).matrix(), v[3:6]
         torso, torso_spin, height = self._looked_at(state) if self._looks else (R, spin, math.nan)
         stands = self.followed.is_zero and not self._marches
-        joints = q[7:][named], self.joints.default, v[6:][named]
-        return Seen(now, R, torso, spin, torso_spin, v[:3], height, *joints, self._action, self.followed, stands)
+        position, velocity = self._joints_seen(q[7:], v[6:])
+        joints, times = (position, self.joints.default, velocity), (now, self._walked, self._since)
+        return Seen(*times, R, torso, spin, torso_spin, v[:3], height, *joints, self._action, self.followed, stands)
+
+    def _joints_seen(self, position: Array, velocity: Array) -> tuple[Array, Array]:
+        """Angles and speeds of the contract's joints, of those that somebody else drives as the contract says."""
+        named, driven = self.joints.named, self._driven
+        kind = self.contract.driven
+        if kind == "as_is" or not driven.any():
+            return position[named], velocity[named]
+        told = self.joints.posture.copy()
+        if kind == "as_commanded" and self.contract.action.kind == "position":
+            told[self._moved] = self.target
+        return np.where(driven, told[named], position[named]), np.where(driven, 0.0, velocity[named])
 
     def _looked_at(self, state: RobotState) -> tuple[Array, Array, float]:
         """Orientation and angular velocity of the torso, in its frame, and height of the base over the lower sole."""

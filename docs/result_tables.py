@@ -7,6 +7,7 @@ from collections.abc import Callable, Iterator, Sequence
 from functools import partial
 from itertools import groupby
 from pathlib import Path
+from statistics import fmean
 from typing import Any
 
 from measured import HEEL_OFF, HIDDEN, RESULTS, ROUGH, SENSED, WITHOUT, head, limit_of, rows, searches
@@ -69,6 +70,17 @@ def search_table(name: str, head: str = "N·s/kg") -> str:
     shown = {(one.labels[down.name], one.labels[across.name]): _shown(one) for one in found}
     lines = [[str(row), *(shown[row, column] for column in across.values)] for row in down.values]
     return table([head, *across.values], lines)
+
+
+def rules_table() -> str:
+    """Mean and least threshold over all directions and phases, with one rule left out at a time; the dearest first."""
+    found, (rules, *_) = searches("rules")
+    by = {one: [each.shown for each in found if each.labels[rules.name] == one] for one in rules.values}
+    plain, *others = by
+    order = [plain, *sorted(others, key=lambda one: fmean(by[one]))]
+    lines = ([f"`{one.removeprefix('rule ')}`" if one.startswith("rule ") else one, f"{fmean(by[one]):.3f}",
+              f"{min(by[one]):.3f}"] for one in map(str, order))  # fmt: skip
+    return table(["left out", "mean, N·s/kg", "least, N·s/kg"], lines)
 
 
 def numbers_table() -> str:
@@ -397,6 +409,7 @@ TABLES: dict[str, tuple[str, Callable[[], str]]] = {
     "recovery-numbers": ("recovery-results.md", numbers_table),
     "known-falls": ("falling.md", known_table),
     "given-up": ("recovery.md", given_up_table),
+    "rules": ("recovery-results.md", rules_table),
     "abilities": ("recovery-results.md", partial(search_table, "abilities")),
     "profiles-walk": (
         "profiles.md",

@@ -139,7 +139,7 @@ class BenchOptions:
 
 @with_options(BenchOptions)
 def bench(options: BenchOptions) -> None:
-    """Send walkers of the G1 through the tour of a public benchmark, or lay them beside each other.
+    """Send walkers of the G1 through a public benchmark, or compare them.
 
     Begun again, it goes on where it stopped.
     """

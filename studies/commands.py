@@ -139,7 +139,7 @@ class BenchOptions:
 
 @with_options(BenchOptions)
 def bench(options: BenchOptions) -> None:
-    """Send walkers of the G1 through a public benchmark, or compare them.
+    """Send walkers of the G1 through a public benchmark.
 
     Begun again, it goes on where it stopped.
     """

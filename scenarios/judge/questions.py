@@ -12,7 +12,7 @@ import operator
 import re
 from collections.abc import Callable, Iterable, Iterator, Sequence
 from dataclasses import dataclass
-from typing import NamedTuple
+from typing import Any, NamedTuple
 
 import numpy as np
 
@@ -121,16 +121,16 @@ def stretches(
     Raises:
         LogError: the question is none, or the log has not got a quantity.
     """
+    common, units, until = [Stretch(-math.inf, math.inf)], [], math.inf
     asked = conditions(question)
-    every, units = [], []
     for condition in asked:
         values, unit = _quantity(log, condition, start, end, topics)
-        every.append(list(_holding(values, condition)))
+        found, last = _holding(values, condition)
+        common = found if len(asked) == 1 else list(_both(common, found))
         units.append(unit)
-    common = every[0]
-    for others in every[1:]:
-        common = list(_both(common, others))
-    return common, tuple(units)
+        until = min(until, last)
+    closed = (one._replace(end=min(one.end, until)) for one in common if one.start <= until)
+    return list(closed), tuple(units)
 
 
 _Parts = Iterable[tuple[Array, Array]]
@@ -197,11 +197,12 @@ def _meant(name: str, names: set[str]) -> str:
     return said if len(names) <= _MOST_NAMED or said.startswith("did") else "--topic lists the fields of one"
 
 
-def _holding(parts: _Parts, condition: Condition) -> Iterator[Stretch]:
-    """Find where one condition holds."""
-    compared, falling = _COMPARED[condition.sign], condition.sign in ("<", "<=")
-    worse = min if falling else max
-    first = worst = at = last = None
+def _holding(parts: _Parts, condition: Condition) -> tuple[list[Stretch], float]:
+    """Where one condition holds, without end where it does at the last message; and the time of that [s]."""
+    compared = _COMPARED[condition.sign]
+    worst_of = np.argmin if condition.sign in ("<", "<=") else np.argmax
+    found: list[Stretch] = []
+    last = -math.inf
     for time, values in parts:
         if not len(time):
             continue
@@ -209,19 +210,23 @@ def _holding(parts: _Parts, condition: Condition) -> Iterator[Stretch]:
         holds = compared(numbers, condition.bound) & np.isfinite(numbers)
         turns = np.flatnonzero(np.diff(holds)) + 1
         for rows in np.split(np.arange(len(time)), turns):
+            goes_on = bool(found) and found[-1].end == math.inf
             if holds[rows[0]]:
-                row = rows[int(np.argmin(numbers[rows]) if falling else np.argmax(numbers[rows]))]
-                value, when = float(numbers[row]), float(time[row])
-                if first is None or worst is None:
-                    first, worst, at = float(time[rows[0]]), value, when
-                elif worse(value, worst) != worst:
-                    worst, at = value, when
-            elif first is not None:
-                yield Stretch(first, float(time[rows[0]]), worst, at)
-                first = worst = at = None
+                row = rows[int(worst_of(numbers[rows]))]
+                here = Stretch(float(time[rows[0]]), math.inf, float(numbers[row]), float(time[row]))
+                if goes_on:
+                    here = _joined(found.pop(), here, worst_of)
+                found.append(here)
+            elif goes_on:
+                found[-1] = found[-1]._replace(end=float(time[rows[0]]))
         last = float(time[-1])
-    if first is not None and last is not None:
-        yield Stretch(first, last, worst, at)
+    return found, last
+
+
+def _joined(one: Stretch, other: Stretch, worst_of: Callable[[Any], Any]) -> Stretch:
+    """A stretch and its next part, with the worst value of both, the first of equal ones."""
+    worse = (one, other)[int(worst_of([one.worst, other.worst]))]
+    return other._replace(start=one.start, worst=worse.worst, at=worse.at)
 
 
 def _both(some: Sequence[Stretch], others: Sequence[Stretch]) -> Iterator[Stretch]:
@@ -229,7 +234,7 @@ def _both(some: Sequence[Stretch], others: Sequence[Stretch]) -> Iterator[Stretc
     one = other = 0
     while one < len(some) and other < len(others):
         start, end = max(some[one].start, others[other].start), min(some[one].end, others[other].end)
-        if start < end or some[one] == others[other]:
+        if start < end:
             yield Stretch(start, end)
         if some[one].end < others[other].end:
             one += 1

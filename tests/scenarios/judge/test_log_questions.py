@@ -24,7 +24,9 @@ VALUES = st.lists(st.sampled_from([0.0, 1.0, 2.0, float("nan")]), min_size=1, ma
 
 def holding(time, values, condition, cuts=()):
     parts = zip(np.split(time, cuts), np.split(values, cuts), strict=True)
-    return list(_holding(parts, condition))
+    found, last = _holding(parts, condition)
+    assert last == time[-1]
+    return found
 
 
 @given(values=VALUES, cuts=st.lists(st.integers(0, 30), max_size=3), sign=st.sampled_from(["<", ">=", "==", "!="]))
@@ -34,7 +36,7 @@ def test_a_tick_is_in_a_stretch_where_the_condition_holds_there(values, cuts, si
     holds = {"<": lambda v: v < 1, ">=": lambda v: v >= 1, "==": lambda v: v == 1, "!=": lambda v: v in (0.0, 2.0)}
     for at, value in zip(time[:-1], values[:-1], strict=True):
         assert any(one.start <= at < one.end for one in found) == holds[sign](value)
-    assert any(one.start == one.end == time[-1] or one.end == time[-1] for one in found) >= holds[sign](values[-1])
+    assert any(one.end == np.inf for one in found) == holds[sign](values[-1])
     assert found == holding(time, np.array(values), condition)
     assert all(one.end < other.start for one, other in pairwise(found))
 
@@ -44,7 +46,7 @@ def test_the_worst_value_is_the_one_farthest_beyond_the_bound():
     (low,) = holding(time, values, Condition("", "x", "<", 1.0), [2])
     assert low == (1.0, 4.0, 0.2, 2.0)
     first, last = holding(time, values, Condition("", "x", ">", 1.0))
-    assert (first.end, last.start, last.end, last.worst) == (1.0, 4.0, 4.0, 3.0)
+    assert (first.end, last.start, last.end, last.worst) == (1.0, 4.0, np.inf, 3.0)
 
 
 @given(some=VALUES, others=VALUES)
@@ -85,6 +87,14 @@ def test_columns_of_topics_are_asked_by_name(log):
     assert (found.start, found.end) == (0.2, 0.202)
     (found,), _ = stretches(log, "a_1 < 300", topics=("/x",), start=0.1, end=0.3)
     assert (found.start, found.end) == (0.1, 0.3)
+
+
+def test_what_holds_at_the_last_message_alone_is_a_stretch(log):
+    (found,), _ = stretches(log, "/x:a_1 >= 999")
+    assert found == (1.998, 1.998, 999.0, 1.998)
+    (found,), _ = stretches(log, "/x:a_1 >= 999 and n == 5")
+    assert (found.start, found.end) == (1.998, 1.998)
+    assert stretches(log, "/x:a_1 >= 999 and n == 4")[0] == []
 
 
 def test_the_answer_is_that_of_a_log_in_parts(log, monkeypatch):

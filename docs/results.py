@@ -36,7 +36,7 @@ RUN = ("surefoot.studies.campaigns.sweep", "surefoot.scenarios.run.run", "surefo
 CHECK = ("surefoot.scenarios.check.command", "surefoot.scenarios.run.run", "surefoot.scenarios.judge.verdict")
 """Sources that a baseline follows from."""
 
-AFTER = ("python docs/reference.py", "python docs/told.py")
+AFTER = ("python docs/reference.py", "python docs/texts.py")
 """Write tables, numbers and texts from the results."""
 
 

@@ -116,6 +116,11 @@ def test_those_that_are_stale_are_made_and_then_the_tables(one, tree, results, m
     assert capsys.readouterr().out.endswith("one: fresh\n")
 
 
+def test_what_follows_from_results_is_there(results):
+    scripts = [command.split()[1] for command in results.AFTER]
+    assert scripts and all((DOCS.parent / script).is_file() for script in scripts)
+
+
 def test_every_kept_result_and_baseline_has_a_maker_whose_inputs_are_there(results):
     every = results.results()
     written = {path for result in every.values() for path in result.writes}

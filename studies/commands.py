@@ -3,7 +3,7 @@
 import json
 from dataclasses import dataclass
 from pathlib import Path
-from typing import Annotated
+from typing import TYPE_CHECKING, Annotated
 
 import typer
 
@@ -19,6 +19,9 @@ from surefoot.scenarios.show.options import (
     with_options,
 )
 
+if TYPE_CHECKING:
+    from surefoot.studies.campaigns.campaign import Campaign
+
 
 def _campaigns_from(incomplete: str) -> list[str]:
     """Campaigns that begin so."""
@@ -33,31 +36,37 @@ def _interrupted(folder: Path) -> typer.Exit:
     return typer.Exit(INTERRUPTED)
 
 
-def sweep(
+@dataclass(frozen=True, slots=True)
+class SweepOptions:
+    """The arguments of `surefoot sweep`."""
+
     spec: Annotated[
         str,
         typer.Argument(help="A campaign's name, or its specification, a YAML file.", autocompletion=_campaigns_from),
-    ],
-    policy: SeatOf = None,
+    ]
+    policy: SeatOf = None
     beside: Annotated[
         str | None,
         typer.Option(metavar="ROBOT", help="With --policy: Surefoot's own walk of this robot, under the same pushes."),
-    ] = None,
-    set_: Annotated[list[str] | None, settings("Fix a key, even one that varies")] = None,
-    seeds: Annotated[int | None, typer.Option(min=1, help="Runs of each, over those of the campaign.")] = None,
-    jobs: Jobs = None,
+    ] = None
+    set_: Annotated[list[str] | None, settings("Fix a key, even one that varies")] = None
+    seeds: Annotated[int | None, typer.Option(min=1, help="Runs of each, over those of the campaign.")] = None
+    jobs: Jobs = None
     cluster: Annotated[
         str | None, typer.Option(metavar="ADDRESS", help="Run on the cluster of this dask scheduler instead.")
-    ] = None,
-    out: Annotated[Path | None, typer.Option(help="Directory of the results; runs/NAME by default.")] = None,
+    ] = None
+    out: Annotated[Path | None, typer.Option(help="Directory of the results; runs/NAME by default.")] = None
     against: Annotated[
         str | None,
         typer.Option(
             metavar="TABLE", help="Hold the thresholds against this table of them; `baseline` for the stored one."
         ),
-    ] = None,
-    as_json: AsJson = False,
-) -> None:
+    ] = None
+    as_json: AsJson = False
+
+
+@with_options(SweepOptions)
+def sweep(options: SweepOptions) -> None:
     """Run a campaign: a grid, samples or thresholds over any key.
 
     Begun again, it goes on where it stopped.
@@ -65,40 +74,46 @@ def sweep(
     with importing():
         from surefoot.scenarios.run.processes import cores
         from surefoot.studies.campaigns import against as holding
-        from surefoot.studies.campaigns.beside import Beside
-        from surefoot.studies.campaigns.campaign import read_campaign
         from surefoot.studies.campaigns.journal import overlooked
         from surefoot.studies.campaigns.sweep import InterruptedRunsError
         from surefoot.studies.campaigns.sweep import sweep as run_sweep
 
-    if jobs is not None and cluster is not None:
+    if options.jobs is not None and options.cluster is not None:
         raise typer.BadParameter("--jobs is of this machine; give it without --cluster")
-    if beside is None:
-        campaign = read_campaign(spec, overrides(set_, policy=policy), seeds)
-    elif policy is None or against is not None:
-        raise typer.BadParameter("--beside lays a walk beside a policy; give it with --policy and without --against")
-    else:
-        campaign = read_campaign(spec, overrides(set_), seeds, Beside(policy, beside))
-    before = None if against is None else holding.table(campaign, against)
-    folder = out or Path("runs") / campaign.spec.name
+    campaign = _campaign(options)
+    before = None if options.against is None else holding.table(campaign, options.against)
+    folder = options.out or Path("runs") / campaign.spec.name
     for text in overlooked(campaign):
         typer.echo(text, err=True)
     try:
-        swept = run_sweep(campaign, folder, jobs or cores(), cluster)
+        swept = run_sweep(campaign, folder, options.jobs or cores(), options.cluster)
     except InterruptedRunsError:
         raise _interrupted(folder) from None
     for text in swept.notes():
         typer.echo(text, err=True)
-    if as_json:
+    if options.as_json:
         typer.echo(json.dumps(swept.to_json(), allow_nan=False))
     else:
         typer.echo("\n".join(swept.lines()))
     good = swept.complete and swept.ran
     if before is not None and good:
         held = before.against(swept.outcomes)
-        typer.echo("\n".join(held.lines()), err=as_json)
+        typer.echo("\n".join(held.lines()), err=options.as_json)
         good = not held.worse
     raise typer.Exit(0 if good else MISSED)
+
+
+def _campaign(options: SweepOptions) -> "Campaign":
+    """The campaign that is asked for, with a policy alone or beside a walk."""
+    from surefoot.studies.campaigns.beside import Beside
+    from surefoot.studies.campaigns.campaign import read_campaign
+
+    if options.beside is None:
+        return read_campaign(options.spec, overrides(options.set_, policy=options.policy), options.seeds)
+    if options.policy is None or options.against is not None:
+        raise typer.BadParameter("--beside lays a walk beside a policy; give it with --policy and without --against")
+    beside = Beside(options.policy, options.beside)
+    return read_campaign(options.spec, overrides(options.set_), options.seeds, beside)
 
 
 BENCHES = ("g1-tour", "g1-side")

@@ -142,7 +142,9 @@ def follow(course: Quintic, length: float, begun: float, time: Array, out: Array
     """
     for k in range(time.shape[0]):
         way, rate, bend = followed(course, length, time[k])
-        out[0, k], out[1, k], out[2, k] = begun + way, rate, bend
+        out[0, k] = begun + way
+        out[1, k] = rate
+        out[2, k] = bend
 
 
 def followed(course: Quintic, length: float, time: float) -> tuple[float, float, float]:

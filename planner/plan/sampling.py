@@ -132,16 +132,19 @@ class PlanSampler:
     def _move(self, com: Array, velocity: Array, acceleration: Array, jerk: Array, i: int) -> None:
         """The CoM: a cubic with the sample's jerk on each axis of the ground, and a quintic for the height."""
         for axis in range(2):
-            self._table[0, LINEAR + axis], self._table[1, LINEAR + axis] = com[i, axis], velocity[i, axis]
-            self._table[2, LINEAR + axis], self._table[3, LINEAR + axis] = (
-                0.5 * acceleration[i, axis],
-                jerk[i, axis] / 6.0,
-            )
+            self._table[0, LINEAR + axis] = com[i, axis]
+            self._table[1, LINEAR + axis] = velocity[i, axis]
+            self._table[2, LINEAR + axis] = 0.5 * acceleration[i, axis]
+            self._table[3, LINEAR + axis] = jerk[i, axis] / 6.0
         here = com[i, 2], velocity[i, 2], acceleration[i, 2]
         there = com[i + 1, 2], velocity[i + 1, 2], acceleration[i + 1, 2]
         a, b, c, d, e, f = quintic.between(here, there, self._length)
-        self._table[0, HEIGHT], self._table[1, HEIGHT], self._table[2, HEIGHT] = a, b, c
-        self._table[3, HEIGHT], self._table[4, HEIGHT], self._table[5, HEIGHT] = d, e, f
+        self._table[0, HEIGHT] = a
+        self._table[1, HEIGHT] = b
+        self._table[2, HEIGHT] = c
+        self._table[3, HEIGHT] = d
+        self._table[4, HEIGHT] = e
+        self._table[5, HEIGHT] = f
 
     def _derive(self) -> None:
         """First and second derivatives of the polynomials."""

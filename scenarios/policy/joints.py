@@ -1,7 +1,6 @@
 """The joints of a contract in those of a robot: where they are, and with what gains they are driven."""
 
 import math
-import re
 from collections.abc import Mapping, Sequence
 
 import numpy as np
@@ -11,6 +10,7 @@ from surefoot.errors import ParameterError
 from surefoot.models.types import RobotDescription
 from surefoot.scenarios.errors import nearest
 from surefoot.scenarios.policy.contract import KEY, Contract, Others, PerJoint
+from surefoot.scenarios.run.output import matching
 
 Array = NDArray[np.float64]
 
@@ -27,7 +27,7 @@ def spread(value: PerJoint, names: Sequence[str], what: str) -> Array:
     if isinstance(value, Mapping):
         found = np.full(len(names), np.nan)
         for pattern, number in value.items():
-            chosen = _matching(pattern, names, what)
+            chosen = matching(pattern, names, KEY, f"{what}: ")
             found[chosen] = number
         missing = [name for name, number in zip(names, found, strict=True) if math.isnan(number)]
         if missing:
@@ -38,16 +38,6 @@ def spread(value: PerJoint, names: Sequence[str], what: str) -> Array:
             raise ParameterError(KEY, f"{what} has {len(value)} numbers for {len(names)} joints", "give one for each")
         return np.array(value, dtype=np.float64)
     return np.full(len(names), float(value))
-
-
-def _matching(pattern: str, names: Sequence[str], what: str) -> list[int]:
-    try:
-        found = [index for index, name in enumerate(names) if re.fullmatch(pattern, name)]
-    except re.error as error:
-        raise ParameterError(KEY, f"{what}: '{pattern}' is no regular expression, {error}", "mend it") from None
-    if not found:
-        raise ParameterError(KEY, f"{what}: no joint is called '{pattern}'", nearest(pattern, names))
-    return found
 
 
 def indices(names: Sequence[str], among: Sequence[str], what: str) -> NDArray[np.intp]:
@@ -98,7 +88,7 @@ def _held(others: Others, robot: RobotDescription, named: set[str]) -> tuple[Arr
     names = robot.joint_names
     posture = np.array(robot.nominal_joint_positions, dtype=np.float64)
     for pattern, angle in others.position.items():
-        posture[_matching(pattern, names, "others.position")] = angle
+        posture[matching(pattern, names, KEY, "others.position: ")] = angle
     limit = np.asarray(robot.torque_limit, dtype=np.float64)
     stiffness = limit.copy() if others.stiffness is None else _given(others.stiffness, names, named, "stiffness")
     damping = HELD_DAMPING * stiffness

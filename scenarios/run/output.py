@@ -2,7 +2,7 @@
 
 import math
 import re
-from collections.abc import Mapping
+from collections.abc import Mapping, Sequence
 
 import numpy as np
 
@@ -94,8 +94,14 @@ class Output:
         return JointCommand(torque.copy(), Servo(place, speed, stiffness, damping))
 
 
-def matching(pattern: str, names: tuple[str, ...], key: tuple[str | int, ...]) -> list[int]:
+def matching(pattern: str, names: Sequence[str], key: tuple[str | int, ...], where: str = "") -> list[int]:
     """Indices of the joints whose whole name a regular expression matches.
+
+    Args:
+        pattern: the expression.
+        names: of the joints.
+        key: that it is of, for messages.
+        where: beginning of a message, where a key holds many expressions.
 
     Raises:
         ParameterError: it is none, or matches none.
@@ -103,7 +109,7 @@ def matching(pattern: str, names: tuple[str, ...], key: tuple[str | int, ...]) -
     try:
         found = [index for index, name in enumerate(names) if re.fullmatch(pattern, name)]
     except re.error as error:
-        raise ParameterError(key, f"'{pattern}' is no regular expression, {error}", "mend it") from None
+        raise ParameterError(key, f"{where}'{pattern}' is no regular expression, {error}", "mend it") from None
     if not found:
-        raise ParameterError(key, f"no joint is called '{pattern}'", nearest(pattern, names))
+        raise ParameterError(key, f"{where}no joint is called '{pattern}'", nearest(pattern, names))
     return found

@@ -4,7 +4,7 @@ import json
 import math
 from dataclasses import dataclass
 from pathlib import Path
-from typing import TYPE_CHECKING, Annotated
+from typing import TYPE_CHECKING, Annotated, Any
 
 import typer
 
@@ -14,6 +14,7 @@ from surefoot.scenarios.show.options import MISSED, AsJson, From, LogFile, Repla
 
 if TYPE_CHECKING:
     from surefoot.scenarios.log import Log
+    from surefoot.scenarios.show.export import Selection
 
 app = typer.Typer()
 
@@ -79,7 +80,7 @@ def _show_topics(log: "Log", topics: list[str], options: InspectOptions) -> None
     """Summarise topics, or export them and say where they are; what is said in words is printed."""
     from surefoot.scenarios.judge.inspection import topic_summary
     from surefoot.scenarios.show.console import print_topic
-    from surefoot.scenarios.show.export import Joined, export, prefixed, selected
+    from surefoot.scenarios.show.export import Joined, export, selected
 
     if EVENTS in topics and EVENTS in log:
         if len(topics) > 1:
@@ -93,23 +94,29 @@ def _show_topics(log: "Log", topics: list[str], options: InspectOptions) -> None
     chosen = [selected(log, topic, options.start, options.end, options.field) for topic in topics]
     one, *others = chosen
     if options.export is not None:
-        count, file = (
-            export(Joined(tuple(chosen)) if others else one, options.export, options.force),
-            str(options.export),
-        )
+        count = export(Joined(tuple(chosen)) if others else one, options.export, options.force)
+        file = str(options.export)
         typer.echo(json.dumps({"file": file, "messages": count}) if options.as_json else file)
     else:
-        summary = topic_summary(one)
-        if others:
-            named = [(each, [field.name for field in prefixed(each.topic, each.fields)]) for each in chosen]
-            rows = [zip(names, topic_summary(each).values(), strict=True) for each, names in named]
-            summary = {name: row for part in rows for name, row in part}
+        summary = _summary_of(chosen) if others else topic_summary(one)
         if options.as_json:
             typer.echo(json.dumps(summary, allow_nan=False))
         else:
             print_topic(", ".join(topics), summary)
     for loss in log.damage:
         typer.echo(f"not read: {loss}", err=True)
+
+
+def _summary_of(chosen: "list[Selection]") -> dict[str, Any]:
+    """Summaries of several topics, by fields that are called by their topic."""
+    from surefoot.scenarios.judge.inspection import topic_summary
+    from surefoot.scenarios.show.export import prefixed
+
+    found = {}
+    for one in chosen:
+        names = (field.name for field in prefixed(one.topic, one.fields))
+        found |= dict(zip(names, topic_summary(one).values(), strict=True))
+    return found
 
 
 def _show_stretches(log: "Log", question: str, topics: list[str], options: InspectOptions) -> None:
@@ -142,10 +149,8 @@ def _show_events(log: "Log", options: InspectOptions) -> None:
     if options.field is not None or options.export is not None:
         option = "--field" if options.field is not None else "--export"
         raise LogError(f"{option} is of topics with numbers; {EVENTS} has words, which --json gives for programs")
-    first, last = (
-        -math.inf if options.start is None else options.start,
-        math.inf if options.end is None else options.end,
-    )
+    first = -math.inf if options.start is None else options.start
+    last = math.inf if options.end is None else options.end
     found = list(events(log, first, last))
     if options.as_json:
         typer.echo(json.dumps([one._asdict() for one in found], allow_nan=False))

@@ -130,7 +130,9 @@ def print_valueless(names: Collection[str]) -> None:
 
 def _health_lines(found: "Inspection") -> list[str]:
     """Every warning with its evidence, its relation to a fall and where to see it, and how many found nothing."""
-    lines, has_moment, warnings = [], False, [one for one in found.health if one.status != "ok"]
+    lines, warnings = [], [one for one in found.health if one.status != "ok"]
+    # A command is as long as a finding, and the replay that the first one makes is linked to by all.
+    first = next((one for one in warnings if one.time is not None), None)
     for finding in warnings:
         when = "" if finding.time is None else f" from {finding.time:.3f} s on"
         value = "" if finding.value is None else f", value {finding.value:.4g}"
@@ -138,9 +140,8 @@ def _health_lines(found: "Inspection") -> list[str]:
         lines.append(f"health: {relation}{finding.check}{when}{value}: {finding.cause}")
         if finding.time is not None:
             moment = Moment(Path(found.log), finding.time)
-            # The command that makes a replay is as long as the finding: that of the first one makes the replay of all.
-            lines += [f"  look at: {moment.link or moment.command}"] if moment.link or not has_moment else []
-            has_moment = True
+            if moment.link or finding is first:
+                lines.append(f"  look at: {moment.text}")
     count = len(found.health)
     return [*lines, f"health: {count - len(warnings)} of {count} checks found nothing"]
 

@@ -1,6 +1,5 @@
 """``surefoot bench g1-tour``: many tours, kept as they come, and the table of what they say."""
 
-import csv
 import json
 import math
 from collections.abc import Callable, Iterator, Mapping, Sequence
@@ -12,11 +11,10 @@ from typing import Any
 
 import yaml
 
-from surefoot.scenarios.output import write_whole
 from surefoot.scenarios.record.provenance import relevant_versions
 from surefoot.scenarios.run.processes import side_by_side
 from surefoot.scenarios.run.run import made_folder
-from surefoot.studies.tour.journal import Journal, digest
+from surefoot.studies.tour.journal import Journal, digest, write_files
 from surefoot.studies.tour.page import markdown
 from surefoot.studies.tour.results import RowResult, punches_table, to_json, tours_table
 from surefoot.studies.tour.ride import OWN, PunchTaken, Setting, TourResult, run_tour
@@ -137,12 +135,7 @@ class Bench:
         """
         record = self.to_json()
         texts = {RESULT: json.dumps(record, indent=1, allow_nan=False) + "\n", PAGE: markdown(record)}
-        for name, text in texts.items():
-            with write_whole(self._folder / name, replace=True) as temporary:
-                temporary.write_text(text, encoding="utf-8")
-        for name, table in ((TOURS, tours_table(self.tours())), (PUNCHES, punches_table(self.rows()))):
-            with write_whole(self._folder / name, replace=True) as temporary, temporary.open("w", newline="") as file:
-                csv.writer(file, lineterminator="\n").writerows(table)
+        write_files(self._folder, texts, {TOURS: tours_table(self.tours()), PUNCHES: punches_table(self.rows())})
         return self._folder / RESULT
 
     def _read(self) -> None:

@@ -1,13 +1,14 @@
-"""Results that are kept as they come, one line of JSON each, with what made them."""
+"""Files of a benchmark: its results as they come, one line of JSON each, and what is written of all of them."""
 
+import csv
 import hashlib
 import json
-from collections.abc import Iterator, Mapping
+from collections.abc import Iterable, Iterator, Mapping, Sequence
 from pathlib import Path
 from typing import Any
 
 from surefoot.scenarios.errors import LogError
-from surefoot.scenarios.output import reason
+from surefoot.scenarios.output import reason, write_whole
 
 
 class Journal:
@@ -51,6 +52,20 @@ class Journal:
                 return True
             file.seek(-1, 2)
             return file.read(1) == b"\n"
+
+
+def write_files(folder: Path, texts: Mapping[str, str], tables: Mapping[str, Iterable[Sequence[Any]]]) -> None:
+    """Write texts, and tables of cells as CSV, by their names; files of before are replaced.
+
+    Raises:
+        LogError: one cannot be written.
+    """
+    for name, text in texts.items():
+        with write_whole(folder / name, replace=True) as temporary:
+            temporary.write_text(text, encoding="utf-8")
+    for name, rows in tables.items():
+        with write_whole(folder / name, replace=True) as temporary, temporary.open("w", newline="") as file:
+            csv.writer(file, lineterminator="\n").writerows(rows)
 
 
 def digest(written: Mapping[str, Any]) -> str:

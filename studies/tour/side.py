@@ -1,6 +1,5 @@
 """``surefoot bench g1-side``: walkers beside each other on one robot, by pushes, velocities and places."""
 
-import csv
 import json
 from collections.abc import Callable, Iterator, Mapping, Sequence
 from dataclasses import asdict, dataclass
@@ -15,7 +14,7 @@ from surefoot.scenarios.record.provenance import relevant_versions
 from surefoot.scenarios.run.processes import side_by_side
 from surefoot.scenarios.run.run import made_folder
 from surefoot.studies.tour.drill import DIRECTIONS, PHASES, followed, largest
-from surefoot.studies.tour.journal import Journal, digest
+from surefoot.studies.tour.journal import Journal, digest, write_files
 from surefoot.studies.tour.ride import Setting, run_tour
 from surefoot.studies.tour.side_page import figure, markdown
 from surefoot.studies.tour.walker import Entrant
@@ -67,16 +66,16 @@ def pushes() -> list[tuple[str, str]]:
 def done(task: Task) -> dict[str, Any]:
     """Do it; gives its result as JSON has it."""
     row, kind, which = task.key
-    one: dict[str, Any] = {"row": row, "kind": kind, "which": which}
+    place_of: dict[str, Any] = {"row": row, "kind": kind, "which": which}
     if kind == "velocities":
-        return {**one, **plain(asdict(followed(task.entrant, which)))}
+        return {**place_of, **plain(asdict(followed(task.entrant, which)))}
     if kind == "push":
-        return {**one, "threshold": largest(task.entrant, *pushes()[which])}
+        return {**place_of, "threshold": largest(task.entrant, *pushes()[which])}
     result = run_tour(task.entrant, which, PLACES_TIME, Setting(punched=False))
     place, turn = (
         float(np.mean(errors)) if errors else None for errors in (result.position_errors, result.heading_errors)
     )
-    return {**one, "fell": not result.completed, "place_error": place, "turn_error": turn}
+    return {**place_of, "fell": not result.completed, "place_error": place, "turn_error": turn}
 
 
 class Side:
@@ -97,9 +96,9 @@ class Side:
         self._made_by = {one.name: digest({"versions": versions, "walker": one.digest()}) for one in entrants}
         self._journal = Journal(self._folder / JOURNAL)
         self._results: dict[tuple[str, str, int], Mapping[str, Any]] = {}
-        for one, made_by in self._journal.lines():
-            if made_by == self._made_by.get(one.get("row", "")):
-                self._results[one["row"], one["kind"], one["which"]] = one
+        for result, made_by in self._journal.lines():
+            if made_by == self._made_by.get(result.get("row", "")):
+                self._results[result["row"], result["kind"], result["which"]] = result
 
     def left(self) -> list[Task]:
         """Tasks that are still to be done, of every walker the same piece together."""
@@ -114,32 +113,32 @@ class Side:
 
         Args:
             workers: processes.
-            on_task: is called each time that one is done.
+            on_task: called each time that one is done.
 
         Raises:
             LogError: a result cannot be written.
         """
         left = [(task,) for task in self.left()]
-        for one in side_by_side(done, left, workers, lambda *_: {}) if left else ():
-            if one:
-                self._results[one["row"], one["kind"], one["which"]] = one
-                self._journal.add(one, self._made_by[one["row"]])
+        for result in side_by_side(done, left, workers, lambda *_: {}) if left else ():
+            if result:
+                self._results[result["row"], result["kind"], result["which"]] = result
+                self._journal.add(result, self._made_by[result["row"]])
             on_task()
 
     def to_json(self) -> dict[str, Any]:
         """All that is known of each walker."""
         rows = [self._row(entrant) for entrant in self._entrants]
-        one = {"bench": "g1-side", "seeds": self._seeds, "rows": rows, "versions": dict(relevant_versions())}
-        return {**one, "measures": MEASURES, "pushes": pushes()}
+        head = {"bench": "g1-side", "seeds": self._seeds, "rows": rows, "versions": dict(relevant_versions())}
+        return {**head, "measures": MEASURES, "pushes": pushes()}
 
     def _row(self, entrant: Entrant) -> dict[str, Any]:
-        of = [one for key, one in sorted(self._results.items()) if key[0] == entrant.name]
+        of = [result for key, result in sorted(self._results.items()) if key[0] == entrant.name]
         found: dict[str, Any] = {"row": entrant.name, "meaning": entrant.meaning}
         for name in MEASURES:
-            values = [one[name] for one in of if one.get(name) is not None and not one.get("fell")]
+            values = [result[name] for result in of if result.get(name) is not None and not result.get("fell")]
             found[name] = {"value": float(np.mean(values)) if values else None, "count": len(values)}
-        found["fell"] = [sum(bool(one.get("fell")) for one in of), sum("fell" in one for one in of)]
-        known = {one["which"]: one["threshold"] for one in of if one["kind"] == "push"}
+        found["fell"] = [sum(bool(result.get("fell")) for result in of), sum("fell" in result for result in of)]
+        known = {result["which"]: result["threshold"] for result in of if result["kind"] == "push"}
         return {**found, "thresholds": [known.get(number) for number in range(len(pushes()))]}
 
     def write(self) -> Path:
@@ -148,27 +147,23 @@ class Side:
         Returns:
             path of the first.
         """
-        one = self.to_json()
-        texts = {RESULT: json.dumps(one, indent=1, allow_nan=False) + "\n", PAGE: markdown(one)}
-        for name, text in texts.items():
-            with write_whole(self._folder / name, replace=True) as temporary:
-                temporary.write_text(text, encoding="utf-8")
-        with write_whole(self._folder / TABLE, replace=True) as temporary, temporary.open("w", newline="") as file:
-            csv.writer(file, lineterminator="\n").writerows(table(one))
+        record = self.to_json()
+        texts = {RESULT: json.dumps(record, indent=1, allow_nan=False) + "\n", PAGE: markdown(record)}
+        write_files(self._folder, texts, {TABLE: table(record)})
         with write_whole(self._folder / FIGURE, replace=True) as temporary:
-            figure(one).savefig(temporary, format="svg")
+            figure(record).savefig(temporary, format="svg")
         return self._folder / RESULT
 
 
-def table(one: Mapping[str, Any]) -> Iterator[Sequence[Any]]:
+def table(record: Mapping[str, Any]) -> Iterator[Sequence[Any]]:
     """Rows of cells, of which the first is the heading: walker, what, value, of how many."""
     yield "row", "what", "value", "count"
-    for row in one["rows"]:
-        for name in one["measures"]:
+    for row in record["rows"]:
+        for name in record["measures"]:
             value = row[name]["value"]
             yield row["row"], name, "" if value is None else f"{value:.5g}", row[name]["count"]
         yield row["row"], "fell", *row["fell"]
-        for (phase, direction), threshold in zip(one["pushes"], row["thresholds"], strict=True):
+        for (phase, direction), threshold in zip(record["pushes"], row["thresholds"], strict=True):
             yield row["row"], f"push {phase} {direction}", "" if threshold is None else f"{threshold:.4g}", 1
 
 

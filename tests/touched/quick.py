@@ -49,8 +49,8 @@ def choose(changed: Iterable[Edit], known: Touches, root: Path, processor_time: 
     ranks: dict[str, int] = {}
     unknown = []
     for edit in changed:
-        tests = known.of(edit, root)
         near = (frozenset(), named(edit.path, root), mirrored(edit.path, root))
+        tests = known.of(edit, root, near[1] | near[2])
         if not tests:
             unknown.append(edit.path)
         for test in tests:

@@ -5,7 +5,7 @@ import subprocess
 import pytest
 import quick
 from edited import MODULE, Edit, edits, functions
-from touches import READ, Touches, read, write
+from touches import READ, Touches, mirrored, named, read, write
 
 from surefoot.native.modules import sources
 
@@ -72,7 +72,7 @@ def tree(tmp_path, monkeypatch):
 
 def touched(root):
     (edit,) = edits(root, "HEAD")
-    return KNOWN.of(edit, root)
+    return KNOWN.of(edit, root, named(edit.path, root) | mirrored(edit.path, root))
 
 
 @pytest.mark.parametrize(
@@ -196,5 +196,5 @@ def test_the_kept_map_sees_calls_in_compiled_modules():
     files = [(root / path).resolve().relative_to(root).with_suffix(".py").as_posix() for path in sources().values()]
     called = [path for path in files if known.entries(Edit(path, path, None), root).keys() - {READ}]
     assert len(called) > 0.5 * len(files)
-    tests = known.of(Edit("planner/laws/footstep_tvmpc.py", "planner/laws/footstep_tvmpc.py", None), root)
+    tests = known.of(Edit("planner/laws/footstep_tvmpc.py", "planner/laws/footstep_tvmpc.py", None), root, frozenset())
     assert "tests/planner/laws/test_tvmpc.py" in tests

@@ -35,11 +35,11 @@ class Touches:
     seconds: Mapping[str, float]
     files: Mapping[str, Mapping[str, frozenset[str]]]
 
-    def of(self, edit: Edit, root: Path) -> frozenset[str]:
-        """Test modules that an edit touches; empty where nothing is known of it."""
+    def of(self, edit: Edit, root: Path, near: frozenset[str]) -> frozenset[str]:
+        """Test modules that an edit touches, those near its file among them; empty where nothing is known of it."""
         if is_test(edit.path):
             return frozenset({edit.path} if (root / edit.path).exists() else ())
-        known, near = self.entries(edit, root), named(edit.path, root) | mirrored(edit.path, root)
+        known = self.entries(edit, root)
         found = self._there((test for name in _names(edit, known) for test in known.get(name, ())), root)
         if known and not edit.functions and edit.functions is not None:
             return found  # words alone: whoever reads them

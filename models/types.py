@@ -1,7 +1,7 @@
 """A robot for the rest of the stack: one MJCF text and the numbers that were written into it."""
 
 import difflib
-from collections.abc import Callable, Iterable
+from collections.abc import Callable, Iterable, Sequence
 from dataclasses import dataclass, fields
 
 import numpy as np
@@ -43,7 +43,7 @@ def _one_line(text: str) -> str:
     return shown if len(text) <= LONGEST else f"{shown[:LONGEST]}..."
 
 
-def nearest(name: str, valid: tuple[str, ...]) -> str:
+def nearest(name: str, valid: Sequence[str]) -> str:
     """A hint for an unknown name: the nearest valid one, or all of them."""
     close = difflib.get_close_matches(name, valid, n=1)
     return f"did you mean '{close[0]}'?" if close else f"choose from {', '.join(valid)}"

@@ -198,7 +198,7 @@ def _meant(name: str, names: set[str]) -> str:
 
 
 def _holding(parts: _Parts, condition: Condition) -> tuple[list[Stretch], float]:
-    """Where one condition holds, without end where it does at the last message; and the time of that [s]."""
+    """Stretches in which one condition holds, without end if it holds at the last message, and the time of that [s]."""
     compared = _COMPARED[condition.sign]
     worst_of = np.argmin if condition.sign in ("<", "<=") else np.argmax
     found: list[Stretch] = []

@@ -112,7 +112,7 @@ def _summary_of(chosen: "list[Selection]") -> dict[str, Any]:
     from surefoot.scenarios.judge.inspection import topic_summary
     from surefoot.scenarios.show.export import prefixed
 
-    found = {}
+    found: dict[str, Any] = {}
     for one in chosen:
         names = (field.name for field in prefixed(one.topic, one.fields))
         found |= dict(zip(names, topic_summary(one).values(), strict=True))

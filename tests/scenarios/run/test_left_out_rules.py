@@ -1,4 +1,4 @@
-"""Rules of recovery that a scenario leaves out: a pushed walk falls without them, as its log does when it runs again."""
+"""Rules of recovery that a scenario leaves out: a pushed walk falls without them, and its log falls when run again."""
 
 import pytest
 

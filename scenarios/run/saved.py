@@ -17,8 +17,8 @@ from collections import deque
 from collections.abc import Iterator, Mapping
 from dataclasses import dataclass, fields, is_dataclass
 from enum import Enum
-from functools import lru_cache
-from types import BuiltinFunctionType, FunctionType, MappingProxyType, MethodType, ModuleType
+from functools import lru_cache, partial
+from types import BuiltinFunctionType, CellType, FunctionType, MappingProxyType, MethodType, ModuleType
 from typing import Any
 
 import numpy as np
@@ -37,7 +37,8 @@ _ATOMS = (int, float, complex, str, bytes, type(None), Enum, np.generic, np.dtyp
 """Values without parts."""
 
 _FIXED = (
-    Walk, WalkModel, RobotDescription, BaseModel, Registry, Guard, LogWriter, mujoco.MjModel, FunctionType, memoryview,
+    Walk, WalkModel, RobotDescription, BaseModel, Registry, Guard, LogWriter, mujoco.MjModel, FunctionType, partial,
+    memoryview,
 )  # fmt: skip
 """What stays the same for a walk, or is scratch memory of it."""
 
@@ -97,6 +98,10 @@ class Reached:
         kind = type(found)
         if id(found) in self._lasting or _stays(found):
             self.fixed.add(len(self.parts))
+            yield from _closed_over(found)
+        elif isinstance(found, CellType):
+            self.kept[len(self.parts)] = None
+            yield from enumerate(_cell(found))
         elif isinstance(found, np.ndarray):
             root = _root(found)
             if root is not found or found.base is not None:
@@ -136,6 +141,31 @@ class Reached:
             yield from enumerate(state) if isinstance(state, tuple) else state.items()
 
 
+def _closed_over(found: Any) -> Iterator[tuple[Any, Any]]:
+    """Parts of what can be called and stays: variables of the function around it, values that it is given."""
+    if isinstance(found, FunctionType):
+        yield from enumerate(found.__closure__ or ())
+    elif isinstance(found, partial):
+        yield from (("func", found.func), ("args", found.args), ("keywords", found.keywords))
+
+
+class _Variable:
+    """Stands in a state for the class of a function's variable, which pickle cannot name."""
+
+
+def _kind(found: Any) -> type:
+    """The class of an object, as a state names it."""
+    return _Variable if isinstance(found, CellType) else type(found)
+
+
+def _cell(found: CellType) -> list[Any]:
+    """The value of a function's variable, if it has one yet."""
+    try:
+        return [found.cell_contents]
+    except ValueError:
+        return []
+
+
 def _stays(found: Any) -> bool:
     module = type(found).__module__ or ""
     library = module.partition(".")[0] in _LIBRARIES and not isinstance(found, mujoco.MjData)
@@ -173,10 +203,19 @@ def _state(found: Any) -> Any:
         return reduced[2] if len(reduced) > 2 else reduced[1][2]
     own = getattr(found, "__dict__", None)
     names = [name for base in kind.__mro__ for name in _slots(base)]
-    if own is None and not names:
+    if (own is None and not names) or _hides(found):
         what = f"the state of a {kind.__module__}.{kind.__qualname__}, which nobody knows"
         raise ParameterError(("state",), what, "save a simulation without the part that holds it")
     return {**(own or {}), **{name: getattr(found, name) for name in names if hasattr(found, name)}}
+
+
+def _hides(found: Any) -> bool:
+    """Return true if a class in C under an object keeps what Python cannot see, by the judgement of pickle."""
+    try:
+        object.__reduce_ex__(found, 2)
+    except (TypeError, pickle.PicklingError):
+        return True
+    return False
 
 
 def _slots(kind: type) -> tuple[str, ...]:
@@ -189,6 +228,8 @@ def _content(found: Any) -> Any:
     """A copy of what an object holds, which does not change with it; parts that are kept themselves are not copied."""
     if isinstance(found, np.ndarray | mujoco.MjData):
         return copy.copy(found)
+    if isinstance(found, CellType):
+        return _cell(found)
     if isinstance(found, np.random.Generator):
         return found.bit_generator.state
     if isinstance(found, np.random.BitGenerator):
@@ -205,6 +246,9 @@ def _put(found: Any, content: Any) -> None:
     if isinstance(found, np.ndarray):
         if found.flags.writeable:
             np.copyto(found, content)
+    elif isinstance(found, CellType):
+        if content:
+            found.cell_contents = content[0]
     elif isinstance(found, mujoco.MjData):
         mujoco.mj_copyData(found, content.model, content)
     elif isinstance(found, np.random.Generator):
@@ -338,7 +382,7 @@ def _node(number: int, kept: bool, reached: Reached) -> _Node:
     if isinstance(found, np.ndarray):
         shape, exported = (found.shape, found.dtype), id(found) in reached.exported
         return _Node(np.ndarray, told, kept, shape, exported, kept and found.base is not None)
-    kind = type(found)
+    kind = _kind(found)
     return _Node(kind if kept or _is_made_of_memory(kind) else object, told, kept)
 
 
@@ -367,7 +411,7 @@ def _matched(nodes: tuple[_Node, ...], root: object) -> list[Any]:
 
 
 def _fits(node: _Node, there: Reached, place: int) -> bool:
-    return not node.kept or type(there.objects[place]) is node.kind
+    return not node.kept or _kind(there.objects[place]) is node.kind
 
 
 def _object_for(node: _Node, place: int | None, there: Reached) -> Any:
@@ -388,7 +432,7 @@ def _object_for(node: _Node, place: int | None, there: Reached) -> Any:
     if issubclass(kind, mujoco.MjData | np.random.Generator | np.random.BitGenerator):
         what = f"a state with a {kind.__name__} that is not there"
         raise ParameterError(("state",), what, "put it into a simulation of the same scenario and parts")
-    return kind.__new__(kind)
+    return CellType() if kind is _Variable else kind.__new__(kind)
 
 
 @lru_cache(maxsize=1)

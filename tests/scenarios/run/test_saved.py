@@ -159,17 +159,17 @@ class Connected(Counting):
 def test_a_part_of_others_goes_on_and_one_that_nobody_knows_is_refused():
     scenario, _ = loaded("truth")
     with at(scenario, 0.55, estimator=Counting) as sim:
-        state, went = sim.save(), goes_on(sim, 60)
+        state, went = sim.save(), goes_on(sim, 64)
         sim.restore(state)
-        assert goes_on(sim, 60) == went
+        assert goes_on(sim, 64) == went
         with at(scenario, 0.1, estimator=Counting) as other:
             other.restore(pickle.loads(pickle.dumps(state)))
-            assert goes_on(other, 60) == went
+            assert goes_on(other, 64) == went
         with surefoot.Simulation(scenario) as plain, pytest.raises(surefoot.ParameterError, match="set of parts"):
             plain.restore(state)
     with at(scenario, 0.01, estimator=Connected) as sim, pytest.raises(surefoot.ParameterError) as refused:
         sim.save()
-    assert "the state of a _socket.socket, which nobody knows" in str(refused.value)
+    assert "the state of a socket.socket, which nobody knows" in str(refused.value)
     assert str(refused.value).count("\n") == 0
 
 
@@ -177,7 +177,7 @@ def test_a_state_of_something_else_is_refused_and_nothing_changes(tmp_path):
     scenario, time = loaded("truth")
     with at(scenario, time) as sim:
         state = sim.save()
-        assert isinstance(state, State) and f"{time:.1f}" in repr(state)[:40]
+        assert isinstance(state, State) and repr(state) == f"<State after the tick at {state.time:.3f} s>"
         for keys in ({"seed": 7}, {"robot": "g1"}, {"gait.steps": 3}):
             with surefoot.Simulation(surefoot.load("walk", {**WALKS["truth"][1], **keys})) as other:
                 before = goes_on(other, 5)

@@ -210,7 +210,12 @@ def _state(found: Any) -> Any:
 
 
 def _hides(found: Any) -> bool:
-    """Return true if a class in C under an object keeps what Python cannot see, by the judgement of pickle."""
+    """Return true if a class in C under an object keeps what Python cannot see, by the judgement of pickle.
+
+    Classes of the libraries keep scratch memory there.
+    """
+    if any(base.__module__.partition(".")[0] in _LIBRARIES for base in type(found).__mro__):
+        return False
     try:
         object.__reduce_ex__(found, 2)
     except (TypeError, pickle.PicklingError):

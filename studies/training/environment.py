@@ -94,7 +94,8 @@ class WalkEnv(gymnasium.Env[Observation, NDArray[np.float32]]):
     ) -> None:
         if driver not in ("agent", "built-in"):
             raise ParameterError(("driver",), f"driver {driver!r}", "give agent or built-in")
-        self._scenario, self._reward, self._agent, self._judged = scenario, reward, driver == "agent", verdict
+        self._scenario, self._reward = scenario, reward
+        self._agent, self._judged = driver == "agent", verdict
         self.render_mode = render_mode
         draws, own = Spec(), dict[str, Any]()
         if isinstance(sample, str):

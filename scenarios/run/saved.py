@@ -212,9 +212,9 @@ def _state(found: Any) -> Any:
 def _hides(found: Any) -> bool:
     """Return true if a class in C under an object keeps what Python cannot see, by the judgement of pickle.
 
-    Classes of the libraries keep scratch memory there.
+    Classes of Surefoot hide nothing but scratch memory of libraries.
     """
-    if any(base.__module__.partition(".")[0] in _LIBRARIES for base in type(found).__mro__):
+    if type(found).__module__.partition(".")[0] == "surefoot":
         return False
     try:
         object.__reduce_ex__(found, 2)
@@ -313,8 +313,8 @@ class State:
         owner: stands for the simulation whose state it is.
 
     Attributes:
-        of: likewise.
-        time: likewise.
+        of: text of the scenario, and what made it.
+        time: of the last tick, None before the first [s].
 
     Raises:
         ParameterError: a part holds something of which nobody knows what its state is.

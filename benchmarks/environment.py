@@ -1,4 +1,4 @@
-"""What an environment costs over the `Simulation` that it is made of: CPU time of the same episode, in turns.
+"""Cost of an environment over the `Simulation` that it is made of: CPU time of the same episode, in turns.
 
 python -m benchmarks.environment
 """

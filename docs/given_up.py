@@ -97,14 +97,14 @@ def pushed(folder: Path, jobs: int) -> Iterator[Watched]:
 def toured(seed: int) -> Watched:
     """A tour of the row `torque`."""
     ride, plans, height = Ride(ROWS["torque"], seed), {}, []
-    while len(height) < round(DURATION * ride.row.rate) and (not height or height[-1] >= 0.2):
+    while len(height) < round(DURATION * ride.entrant.rate) and (not height or height[-1] >= 0.2):
         ride.step()
-        plan = ride.controller.planning.plan
+        plan = ride.walker.controller.planning.plan
         plans[plan.time] = plan.balance.movable
         height.append(float(ride.world.pelvis[2]))
     upright = np.flatnonzero(np.array(height) > LOW)[-1] + 1
-    fall = None if upright == len(height) else upright / ride.row.rate
-    return Watched("tours", np.array([*plans]), np.array([*plans.values()]), fall, ride.controller.walk.size)
+    fall = None if upright == len(height) else upright / ride.entrant.rate
+    return Watched("tours", np.array([*plans]), np.array([*plans.values()]), fall, ride.walker.controller.walk.size)
 
 
 def spells(walk: Watched, numbers: RecoveryParameters) -> list[tuple[float, float]]:

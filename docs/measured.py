@@ -74,6 +74,7 @@ MADE = {
     "random-punches": Made("random-punches", columns=PUNCHED),
     "recovery-numbers": Made("recovery-numbers"),
     "abilities": Made("docs/campaigns/abilities.yaml"),
+    "rules": Made("docs/campaigns/rules.yaml"),
     "profiles": _of_page("profiles", "profile", "fidelity", *_PLANNED),
     "profiles-on-stairs": _of_page("profiles-on-stairs", "terrain.riser", "planner.profile", *_ZMP),
     "heel-off": _of_page("heel-off", "gait.heel_off", *HEEL_OFF),

@@ -7,6 +7,7 @@ from collections.abc import Callable, Iterator, Sequence
 from functools import partial
 from itertools import groupby
 from pathlib import Path
+from statistics import fmean
 from typing import Any
 
 from measured import HEEL_OFF, HIDDEN, RESULTS, ROUGH, SENSED, WITHOUT, head, limit_of, rows, searches
@@ -16,6 +17,11 @@ from surefoot.models.robot_file import magnitudes
 from surefoot.scenarios.judge.metrics import OWN
 from surefoot.studies.campaigns.spec import text
 from surefoot.studies.campaigns.thresholds import Found
+from surefoot.studies.tour.bench import published
+from surefoot.studies.tour.results import RowResult, read_tours
+from surefoot.studies.tour.ride import TourResult
+from surefoot.studies.tour.side import read_table
+from surefoot.studies.tour.side_page import markdown
 
 LIMITS = Path(__file__).parents[1] / "benchmarks" / "limits.json"
 
@@ -64,6 +70,17 @@ def search_table(name: str, head: str = "N·s/kg") -> str:
     shown = {(one.labels[down.name], one.labels[across.name]): _shown(one) for one in found}
     lines = [[str(row), *(shown[row, column] for column in across.values)] for row in down.values]
     return table([head, *across.values], lines)
+
+
+def rules_table() -> str:
+    """Mean and least threshold over all directions and phases, with one rule left out at a time; the dearest first."""
+    found, (rules, *_) = searches("rules")
+    by = {one: [each.shown for each in found if each.labels[rules.name] == one] for one in rules.values}
+    plain, *others = by
+    order = [plain, *sorted(others, key=lambda one: fmean(by[one]))]
+    lines = ([f"`{one.removeprefix('rule ')}`" if one.startswith("rule ") else one, f"{fmean(by[one]):.3f}",
+              f"{min(by[one]):.3f}"] for one in map(str, order))  # fmt: skip
+    return table(["left out", "mean, N·s/kg", "least, N·s/kg"], lines)
 
 
 def numbers_table() -> str:
@@ -133,6 +150,70 @@ def _survived(some: Sequence[dict[str, str]]) -> Iterator[str]:
     for strong in (False, True):
         runs = [row["status"] for row in some if (float(row["pushes.0.impulse"]) >= 0.5) is strong]
         yield f"{runs.count('pass')} of {len(runs)}"
+
+
+def tour_table() -> str:
+    """Walkers that began on the crane with the benchmark's draws, beside what it has published of them."""
+    theirs = {row["name"]: row for row in published()["rows"]}
+    lines = []
+    for name, group in groupby(read_tours([list(rows(TOURS)[0]), *(list(row.values()) for row in rows(TOURS))]), _row):
+        tours = list(group)
+        lines.append([f"`{name}`", *_tour_cells(tours, RowResult.of(tours), theirs.get(name))])
+    heads = ["walker", "tours", "survival [s]", "published", "off", "completed", "published"]
+    heads += ["place [cm]", "published", "heading [deg]", "published", "energy [kJ]", "published"]
+    return table(heads, lines)
+
+
+TOURS = "g1-tour-crane"
+
+
+def _row(tour: TourResult) -> str:
+    return tour.row
+
+
+def _tour_cells(tours: Sequence[TourResult], of: RowResult, theirs: dict[str, Any] | None) -> Iterator[str]:
+    """Numbers of a walker, each before the published one; errors as there, with that at the fall."""
+    told = theirs or {}
+    survival, done = of.survival, of.completed
+    yield str(of.tours)
+    yield f"{survival.value:.1f} ({survival.low:.1f} to {survival.high:.1f})"
+    yield str(told.get("survival", ""))
+    yield f"{100 * (survival.value / told['survival'] - 1):+.0f} %".replace("-0 ", "0 ") if told else ""
+    yield f"{100 * done.kept / done.count:.0f} % ({100 * done.low:.0f} to {100 * done.high:.0f})"
+    yield f"{told['completed']} %" if told else ""
+    for at, (name, factor) in enumerate((("position", 100.0), ("heading", math.degrees(1.0)))):
+        ended = [error for tour in tours for error in getattr(tour, f"{name}_errors")]
+        ended += [tour.left_over[at] for tour in tours if tour.left_over]
+        yield f"{factor * sum(ended) / len(ended):.0f}"
+        yield str(told.get(name, ""))
+    whole = [1e-3 * sum(tour.energy) for tour in tours if tour.completed]
+    yield f"{sum(whole) / len(whole):.1f}" if whole else ""
+    yield str(told.get("energy", ""))
+
+
+def side_tables() -> str:
+    """Walkers beside each other, and who is best in how many lines."""
+    told = rows("g1-side")
+    return markdown(read_table([list(told[0]), *(list(row.values()) for row in told)])).rstrip("\n")
+
+
+def beside_table() -> str:
+    """The largest push that each of two walkers survives, by direction and phase; the larger one bold."""
+    found: dict[tuple[str, str], dict[str, float]] = {}
+    for row in rows("ladder-beside"):
+        found.setdefault((row["direction"], row["phase"]), {})[row["walker"]] = float(row["threshold [N·s/kg]"])
+    phases = list(dict.fromkeys(phase for _, phase in found))
+    names = list(dict.fromkeys(row["walker"] for row in rows("ladder-beside")))
+    lines = []
+    for direction in dict.fromkeys(direction for direction, _ in found):
+        pairs = (found[direction, phase] for phase in phases)
+        lines.append([direction, *(", ".join(_larger(pair, name) for name in names) for pair in pairs)])
+    return table([f"{' and '.join(f'`{name}`' for name in names)} [N·s/kg]", *phases], lines)
+
+
+def _larger(pair: dict[str, float], name: str) -> str:
+    text = f"{pair[name]:.2f}"
+    return f"**{text}**" if pair[name] == max(pair.values()) else text
 
 
 def fastest_table() -> str:
@@ -328,6 +409,7 @@ TABLES: dict[str, tuple[str, Callable[[], str]]] = {
     "recovery-numbers": ("recovery-results.md", numbers_table),
     "known-falls": ("falling.md", known_table),
     "given-up": ("recovery.md", given_up_table),
+    "rules": ("recovery-results.md", rules_table),
     "abilities": ("recovery-results.md", partial(search_table, "abilities")),
     "profiles-walk": (
         "profiles.md",
@@ -356,6 +438,7 @@ TABLES: dict[str, tuple[str, Callable[[], str]]] = {
             ("foreign", "sensors.md"),
             ("poor-line", "serve.md"),
             ("policy-faults", "policies.md"),
+            ("policies-catalogue", "policies-beside.md"),
             ("sabotage", "checking.md"),
             ("criteria", "scenarios.md"),
             ("public-humanoids", "robots.md"),
@@ -364,6 +447,9 @@ TABLES: dict[str, tuple[str, Callable[[], str]]] = {
             ("mechanisms-walking", "recovery-results.md"),
         )
     },
+    "g1-tour-crane": ("benchmark-g1.md", tour_table),
+    "g1-side": ("policies-beside.md", side_tables),
+    "ladder-beside": ("policies-beside.md", beside_table),
     "startup": ("benchmarks.md", startup_table),
     "tick": ("benchmarks.md", tick_table),
     "solvers": ("benchmarks.md", solvers_table),

@@ -39,6 +39,10 @@ def sweep(
         typer.Argument(help="A campaign's name, or its specification, a YAML file.", autocompletion=_campaigns_from),
     ],
     policy: SeatOf = None,
+    beside: Annotated[
+        str | None,
+        typer.Option(metavar="ROBOT", help="With --policy: Surefoot's own walk of this robot, under the same pushes."),
+    ] = None,
     set_: Annotated[list[str] | None, settings("Fix a key, even one that varies")] = None,
     seeds: Annotated[int | None, typer.Option(min=1, help="Runs of each, over those of the campaign.")] = None,
     jobs: Jobs = None,
@@ -61,6 +65,7 @@ def sweep(
     with importing():
         from surefoot.scenarios.run.processes import cores
         from surefoot.studies.campaigns import against as holding
+        from surefoot.studies.campaigns.beside import Beside
         from surefoot.studies.campaigns.campaign import read_campaign
         from surefoot.studies.campaigns.journal import overlooked
         from surefoot.studies.campaigns.sweep import InterruptedRunsError
@@ -68,7 +73,12 @@ def sweep(
 
     if jobs is not None and cluster is not None:
         raise typer.BadParameter("--jobs is of this machine; give it without --cluster")
-    campaign = read_campaign(spec, overrides(set_, policy=policy), seeds)
+    if beside is None:
+        campaign = read_campaign(spec, overrides(set_, policy=policy), seeds)
+    elif policy is None or against is not None:
+        raise typer.BadParameter("--beside lays a walk beside a policy; give it with --policy and without --against")
+    else:
+        campaign = read_campaign(spec, overrides(set_), seeds, Beside(policy, beside))
     before = None if against is None else holding.table(campaign, against)
     folder = out or Path("runs") / campaign.spec.name
     for text in overlooked(campaign):
@@ -91,7 +101,7 @@ def sweep(
     raise typer.Exit(0 if good else MISSED)
 
 
-BENCHES = ("g1-tour",)
+BENCHES = ("g1-tour", "g1-side")
 """Benchmarks, by name."""
 
 
@@ -111,46 +121,80 @@ def _rows_from(incomplete: str) -> list[str]:
 class BenchOptions:
     """The arguments of `surefoot bench`."""
 
-    name: Annotated[str, typer.Argument(help="Of the benchmark: g1-tour.", autocompletion=_benches_from)]
+    name: Annotated[str, typer.Argument(help="Of the benchmark: g1-tour or g1-side.", autocompletion=_benches_from)]
     row: Annotated[
         list[str] | None, typer.Option(help="This row alone; repeatable, all by default.", autocompletion=_rows_from)
     ] = None
+    policy: Annotated[
+        list[Path] | None, typer.Option(help="A policy's contract or folder, in place of all rows; repeatable.")
+    ] = None
+    start: Annotated[str, typer.Option(help="On the feet, or let go by the crane of the benchmark.")] = "feet"
+    draws: Annotated[str, typer.Option(help="own random numbers, or those of the benchmark's runs.")] = "own"
     seeds: Annotated[int, typer.Option(min=1, max=100_000, help="Tours of each row.")] = 24
     seconds: Annotated[float, typer.Option(min=1.0, max=90.0, help="After which a tour is over.")] = 90.0
     workers: Jobs = None
-    out: Annotated[Path, typer.Option(help="Directory that keeps every tour.")] = Path("runs/g1-tour")
+    out: Annotated[Path | None, typer.Option(help="Directory of the results; runs/NAME by default.")] = None
     as_json: AsJson = False
 
 
 @with_options(BenchOptions)
 def bench(options: BenchOptions) -> None:
-    """Send a walker through the tour of a public benchmark, many times.
+    """Send walkers of the G1 through the tour of a public benchmark, or lay them beside each other.
 
     Begun again, it goes on where it stopped.
     """
     with importing():
         from surefoot.scenarios.errors import ScenarioError, nearest
-        from surefoot.scenarios.run.processes import cores
-        from surefoot.studies.campaigns.sweep import CampaignBar
-        from surefoot.studies.tour.bench import Bench, lines
-        from surefoot.studies.tour.rows import ROWS
 
     if options.name not in BENCHES:
         raise ScenarioError([f"there is no benchmark '{options.name}'; {nearest(options.name, BENCHES)}"])
-    for name in options.row or ():
-        if name not in ROWS:
-            raise ScenarioError([f"{options.name}: no row '{name}'; {nearest(name, ROWS)}"])
-    rows = [name for name in ROWS if name in (options.row or ROWS)]
-    tours = Bench(rows, options.seeds, options.out, options.seconds)
+    folder = options.out or Path("runs") / options.name
+    {"g1-tour": _tour, "g1-side": _side}[options.name](options, folder)
+
+
+def _tour(options: BenchOptions, folder: Path) -> None:
+    """Send walkers through the tour."""
+    with importing():
+        from surefoot.scenarios.run.processes import cores
+        from surefoot.studies.campaigns.sweep import CampaignBar
+        from surefoot.studies.tour.bench import Bench, lines
+        from surefoot.studies.tour.entrants import entrants, setting
+
+    taking_part = entrants(options.row or (), options.policy or ())
+    tours = Bench(taking_part, options.seeds, folder, options.seconds, setting(options.start, options.draws))
     try:
         with CampaignBar(len(tours.left()), "tours") as bar:
             tours.run(options.workers or cores(), lambda _: bar.cell())
     except KeyboardInterrupt:
-        raise _interrupted(options.out) from None
+        raise _interrupted(folder) from None
     tours.write()
     found = tours.to_json()
     typer.echo(json.dumps(found, allow_nan=False) if options.as_json else "\n".join(lines(found)))
     raise typer.Exit(MISSED if tours.left() else 0)
+
+
+def _side(options: BenchOptions, folder: Path) -> None:
+    """Lay walkers beside each other."""
+    with importing():
+        from surefoot.scenarios.errors import ScenarioError
+        from surefoot.scenarios.run.processes import cores
+        from surefoot.studies.campaigns.sweep import CampaignBar
+        from surefoot.studies.tour.entrants import entrants
+        from surefoot.studies.tour.side import Side
+        from surefoot.studies.tour.side_page import markdown
+
+    if (options.start, options.draws, options.seconds) != ("feet", "own", 90.0):
+        raise ScenarioError(["g1-side: has no start, draws or seconds; leave out --start, --draws and --seconds"])
+    side = Side(entrants(options.row or ("contract",), options.policy or ()), options.seeds, folder)
+    try:
+        with CampaignBar(len(side.left()), "pieces") as bar:
+            side.run(options.workers or cores(), bar.cell)
+    except KeyboardInterrupt:
+        raise _interrupted(folder) from None
+    side.write()
+    found = side.to_json()
+    typer.echo(json.dumps(found, allow_nan=False) if options.as_json else markdown(found))
+    raise typer.Exit(MISSED if side.left() else 0)
 
 
 def paper(

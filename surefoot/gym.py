@@ -20,7 +20,7 @@ if TYPE_CHECKING:
 __all__ = ["NAME", "Transition", "WalkEnv", "first_contract", "register", "upright_and_on_course"]
 
 NAME = "Surefoot-v0"
-"""Under which Gymnasium makes it."""
+"""Name under which Gymnasium makes it."""
 
 _HOMES = {
     "studies.training.environment": ("WalkEnv", "first_contract"),
@@ -29,14 +29,14 @@ _HOMES = {
 
 
 def register() -> None:
-    """Tell Gymnasium of the environment, once; its entry point of the group ``gymnasium.envs``."""
+    """Register the environment with Gymnasium, once; its entry point of the group ``gymnasium.envs``."""
     import gymnasium
 
     if NAME not in gymnasium.registry:
         gymnasium.register(NAME, entry_point="surefoot.studies.training.environment:WalkEnv")
 
 
-with suppress(ImportError):  # without the extra, whoever asks for the environment is told
+with suppress(ImportError):  # without the extra, the environment is refused in a sentence
     register()
 
 if not TYPE_CHECKING:

@@ -12,11 +12,13 @@ from PIL import Image
 from sources import FOLDER, save_png
 
 from surefoot.scenarios.show.kit.figures import PAGE_WIDTH, save
+from surefoot.studies.campaigns.beside_figure import turned
 from surefoot.studies.campaigns.campaign import read_campaign
-from surefoot.studies.campaigns.thresholds import bars
+from surefoot.studies.campaigns.spec import Axis
+from surefoot.studies.campaigns.thresholds import Found, Threshold, bars, compass
 
 sys.path.insert(0, str(FOLDER.parent))
-from measured import MADE, limit_of, searches
+from measured import MADE, limit_of, rows, searches
 
 WIDTH = 1300
 """Width of a picture that is as wide as a page [px]."""
@@ -33,6 +35,27 @@ def push_map(name: str) -> Any:
 PUSH_MAPS = ("push-map", "push-map-pendulum")
 
 
+def beside(name: str) -> Any:
+    """Thresholds of two walkers around the compass, a panel for each phase."""
+    kept = rows(name)
+    walkers = list(dict.fromkeys(row["walker"] for row in kept))
+    campaign = read_campaign("march-ladder")
+    found = [Found({key: row[key] for key in list(row)[:3]}, _threshold(row), (0.0, 10.0)) for row in kept]
+    axes = [Axis(axis, tuple(one.label for one in campaign.axes[axis])) for axis in ("direction", "phase")]
+    laid = turned(campaign, found, [Axis("walker", tuple(walkers)), *axes])
+    assert laid is not None
+    return compass(*laid, "pushes.0.impulse", lambda *_: None)
+
+
+def _threshold(row: dict[str, str]) -> Threshold:
+    value = row["threshold [N·s/kg]"]
+    return Threshold(float(value) if value else None, "inside")
+
+
+DRAWN = {**dict.fromkeys(PUSH_MAPS, push_map), "ladder-beside": beside}
+"""What draws each picture."""
+
+
 def _save(figure: Any, name: str) -> None:
     save(figure, FOLDER / name, replace=True)
     with Image.open(FOLDER / name) as drawn:
@@ -45,9 +68,9 @@ def _save(figure: Any, name: str) -> None:
 def main(arguments: Sequence[str] | None = None) -> None:
     """Draw the pictures that are asked for."""
     parser = argparse.ArgumentParser(description=__doc__, formatter_class=argparse.RawDescriptionHelpFormatter)
-    parser.add_argument("names", nargs="*", metavar="NAME", help=", ".join(PUSH_MAPS))
-    for name in parser.parse_args(arguments).names or PUSH_MAPS:
-        _save(push_map(name), f"{name}.png")
+    parser.add_argument("names", nargs="*", metavar="NAME", help=", ".join(DRAWN))
+    for name in parser.parse_args(arguments).names or DRAWN:
+        _save(DRAWN[name](name), f"{name}.png")
 
 
 if __name__ == "__main__":

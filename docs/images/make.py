@@ -123,11 +123,11 @@ PICTURES: dict[str, Callable[[], None]] = {
     "drive.webp": by("drive"),
     "courses.png": by("courses"),
     "gait-map.png": by("gait_map"),
-    **{f"{name}.png": by("campaigns", name) for name in ("push-map", "push-map-pendulum")},
+    **{f"{name}.png": by("campaigns", name) for name in ("push-map", "push-map-pendulum", "ladder-beside")},
 }
 """Functions that draw the pictures."""
 
-OF_CAMPAIGNS = ("gait-map.png", "push-map-pendulum.png", "push-map.png")
+OF_CAMPAIGNS = ("gait-map.png", "ladder-beside.png", "push-map-pendulum.png", "push-map.png")
 """Drawn from the results of campaigns in docs/results."""
 
 

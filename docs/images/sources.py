@@ -47,6 +47,7 @@ SOURCES: dict[str, tuple[str, ...]] = {
     "gait-map.png": (PALETTE, f"{_OWN}/gait_map.py", f"{_RESULTS}/gait-map.csv"),
     "push-map.png": (*_MAPS, f"{_RESULTS}/push-map.csv"),
     "push-map-pendulum.png": (*_MAPS, f"{_RESULTS}/push-map-pendulum.csv"),
+    "ladder-beside.png": (*_MAPS, "studies/campaigns/beside_figure.py", f"{_RESULTS}/ladder-beside.csv"),
 }
 """Files beside its run that a picture follows from: colours, camera, drawing code, and results that are kept."""
 

@@ -35,9 +35,9 @@ SHOWN, LENGTH = 0.4, 0.001
 def main(_: Sequence[str] = ()) -> None:
     """Ride and draw."""
     ride = Ride(ROWS[ROW], SEED)
-    every = round(PERIOD * ride.row.rate)
+    every = round(PERIOD * ride.entrant.rate)
     configurations, marks = [], []
-    for tick in range(math.ceil(END * ride.row.rate)):
+    for tick in range(math.ceil(END * ride.entrant.rate)):
         ride.step()
         time = ride.world.time
         if tick % every or time < START:
@@ -50,7 +50,7 @@ def main(_: Sequence[str] = ()) -> None:
             tail = head - LENGTH * punch.force * ride.world.direction(punch)
             arrow = [Mark("arrow", PUSH, 0.02, np.stack([tail, head]))]
         marks.append(arrow)
-    description = ride.controller.walk.robot
+    description = ride.walker.controller.walk.robot
     size = (2 * SIZE[0], 2 * SIZE[1])
     middle = [q[:3] - (0.0, 0.0, LOWER) for q in configurations]
     world = world_mjcf(description, flat(0.8), 0.001)

@@ -29,16 +29,17 @@ ROUNDING = 1e-6
 
 
 class Connection:
-    """What stands between a robot and what decides for it, a network or somebody who trains one.
+    """Link between a robot and its network, or somebody who trains one.
 
     Args:
         walk: what is walked.
         contract: of the network.
         inputs: names of what it observes; those of the contract, or ``observation``, if None.
         file: of the contract, for messages.
+        known_as: name of the robot in contracts; None for its own.
 
     Attributes:
-        contract: likewise.
+        contract: of the network.
         joints: of the contract in those of the robot.
         posture: of all joints at the start, shape (nj,) [rad].
         feeds: what each input is made of, by its name.
@@ -52,16 +53,23 @@ class Connection:
     """
 
     def __init__(
-        self, walk: Walk, contract: Contract, inputs: tuple[str, ...] | None = None, file: str = "the contract"
+        self,
+        walk: Walk,
+        contract: Contract,
+        inputs: tuple[str, ...] | None = None,
+        file: str = "the contract",
+        known_as: str | None = None,
     ) -> None:
         self.contract, robot = contract, walk.robot
-        if contract.robot is not None and contract.robot != robot.name:
-            what = f"{file} is the contract of robot {contract.robot}, and this is {robot.name}"
+        called = known_as or robot.name
+        if contract.robot is not None and contract.robot != called:
+            what = f"{file} is the contract of robot {contract.robot}, and this is {called}"
             raise ParameterError(KEY, what, "run it with its own robot")
         if contract.rate > walk.rates.control * (1.0 + ROUNDING):
             what = f"{file} decides {contract.rate:g} times a second, under rates.control {walk.rates.control} Hz"
             raise ParameterError(KEY, what, "raise rates.control")
         self.joints, self._body = Joints(contract, robot), body_of(robot)
+        self._driven = np.zeros(len(contract.joints), dtype=bool)
         self.posture = self.joints.posture
         model, frames = self._body.model, self._body.frames
         self._data, self._torso = model.createData(), model.getFrameId(frames.torso)
@@ -81,7 +89,7 @@ class Connection:
         self.reset()
 
     def _fed(self, inputs: tuple[str, ...] | None) -> dict[str, Feed]:
-        """What each input is made of."""
+        """Feeds of the inputs, by their names."""
         contract = self.contract
         names = tuple(contract.inputs) or ("observation",) if inputs is None else inputs
         fed = contract.inputs or ({names[0]: contract.observations} if len(names) == 1 else {})
@@ -94,6 +102,7 @@ class Connection:
         """Forget what was observed, decided and commanded."""
         self.action, self.target = np.zeros(len(self.moved)), self._offset.copy()
         self.followed, self._marches = STANDING, False
+        self._walked = self._since = 0.0
         for feed in self.feeds.values():
             feed.reset()
 
@@ -104,8 +113,16 @@ class Connection:
         self.followed = Twist(*(one if pair is None else min(max(one, pair[0]), pair[1]) for one, pair in pairs))
         self._marches = march
 
+    def drive(self, joints: NDArray[np.bool_]) -> None:
+        """Tell which joints somebody else drives from now on; the contract says what is observed of them.
+
+        Args:
+            joints: of the robot, shape (nj,).
+        """
+        self._driven = joints[self.joints.named]
+
     def sizes(self) -> dict[str, tuple[int, list[tuple[str, int]]]]:
-        """How many numbers each input has, and each of its terms without history."""
+        """Count the numbers of each input, and of each of its terms without history."""
         still = RobotState(np.concatenate((_UPRIGHT, self.posture)), np.zeros(6 + len(self.posture)))
         seen, found = self._seen(0.0, still), {}
         for name, feed in self.feeds.items():
@@ -116,17 +133,21 @@ class Connection:
         return found
 
     def due(self, now: float) -> float:
-        """When the next decision after one at an instant is due [s]."""
+        """Time at which the next decision after one at an instant is due [s]."""
         rate = self.contract.rate
         return (math.floor(now * rate + ROUNDING) + 1.0 - ROUNDING) / rate
 
     def observe(self, now: float, state: RobotState) -> dict[str, Array]:
-        """What each input observes of a state at an instant since the reset [s], with what it observed before."""
+        """Observe a state for the decision at an instant since the reset [s], once for each decision.
+
+        Each input's values are joined to its history, and the clocks of the walk go on by a period.
+        """
+        self._count()
         seen = self._seen(now, state)
         return {name: feed.observe(feed.values(seen)) for name, feed in self.feeds.items()}
 
     def command(self, output: Array) -> JointCommand:
-        """What an output, shape (m,), means for all joints."""
+        """Command of all joints that an output, shape (m,), means."""
         action, joints = self.contract.action, self.joints
         self.action = output
         used = output if action.clip is None else np.clip(output, *action.clip)
@@ -144,20 +165,45 @@ class Connection:
             position[self.moved] = target
         return JointCommand(torque, Servo(position, np.zeros_like(position), stiffness, joints.damping))
 
-    def told(self, observed: Mapping[str, Array]) -> dict[str, Array]:
+    def reported(self, observed: Mapping[str, Array]) -> dict[str, Array]:
         """A decision for the log, by name."""
         alone = len(observed) == 1
         named = {"observation" if alone else f"observation_{name}": values for name, values in observed.items()}
         return {**named, "action": self.action}
 
+    @property
+    def _stands(self) -> bool:
+        """True if the robot is to stand."""
+        return self.followed.is_zero and not self._marches
+
+    def _count(self) -> None:
+        """Count how long it has walked by the decision that is due."""
+        period = 1.0 / self.contract.rate
+        if self._stands:
+            self._since = 0.0
+        else:
+            self._walked, self._since = self._walked + period, self._since + period
+
     def _seen(self, now: float, state: RobotState) -> Seen:
-        q, v, named = state.q, state.v, self.joints.named
+        q, v = state.q, state.v
         x, y, z, w = q[3:7].tolist()
         R, spin = pin.Quaternion(w, x, y, z).matrix(), v[3:6]
         torso, torso_spin, height = self._looked_at(state) if self._looks else (R, spin, math.nan)
-        stands = self.followed.is_zero and not self._marches
-        joints = q[7:][named], self.joints.default, v[6:][named]
-        return Seen(now, R, torso, spin, torso_spin, v[:3], height, *joints, self.action, self.followed, stands)
+        position, velocity = self._joints_seen(q[7:], v[6:])
+        joints, times = (position, self.joints.default, velocity), (now, self._walked, self._since)
+        demand = self.action, self.followed, self._stands
+        return Seen(*times, R, torso, spin, torso_spin, v[:3], height, *joints, *demand)
+
+    def _joints_seen(self, position: Array, velocity: Array) -> tuple[Array, Array]:
+        """Angles and speeds of the contract's joints, of those that somebody else drives as the contract says."""
+        named, driven = self.joints.named, self._driven
+        kind = self.contract.driven
+        if kind == "as_is" or not driven.any():
+            return position[named], velocity[named]
+        shown = self.joints.posture.copy()
+        if kind == "as_commanded" and self.contract.action.kind == "position":
+            shown[self.moved] = self.target
+        return np.where(driven, shown[named], position[named]), np.where(driven, 0.0, velocity[named])
 
     def _looked_at(self, state: RobotState) -> tuple[Array, Array, float]:
         """Orientation and angular velocity of the torso, in its frame, and height of the base over the lower sole."""

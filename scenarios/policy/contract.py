@@ -15,6 +15,7 @@ KEY = ("controller", "policy")
 Value = Annotated[float, Field(ge=-1e6, le=1e6)]
 PerJoint = Annotated[float | tuple[float, ...] | dict[str, float], BeforeValidator(as_tuple)]
 """One number for all joints, one for each in the order of `joints`, or by regular expressions of their names."""
+Positive = Annotated[float, Field(gt=0, le=1e6)]
 Pair = Annotated[tuple[float, float], BeforeValidator(as_tuple)]
 
 
@@ -74,6 +75,30 @@ class CommandRange(Group):
     yaw_rate: Pair | None = key(None, "of the heading, left positive [rad/s], null: any")
 
 
+class Places(Group):
+    """How it is led to a place that it is told of, where something does so: the tour of a benchmark."""
+
+    gain: Positive = key(1.5, "velocity over the distance [1/s]")
+    turn_gain: Positive = key(1.5, "yaw rate over the angle [1/s]")
+    speed: Positive | None = key(None, "most of the level velocity [m/s], null: any")
+    keeps_speed: bool = key(False, "a velocity that was cut to its ranges is lengthened to its speed, and cut again")
+    v_x: Pair | None = key(None, "forward [m/s], null: that of command")
+    v_y: Pair | None = key(None, "to the left [m/s], null: that of command")
+    yaw_rate: Pair | None = key(None, "of the heading [rad/s], null: that of command")
+    near: Pair = key((0.1, 0.2), "distances at which it stops, and from which on it goes again [m]")
+    turned: Pair = key((0.05, 0.12), "angles at which it stops turning, and from which on it turns again [rad]")
+    faces: Pair | None = key(None, "distances from which on it begins to look, and fully looks, where it goes [m]")
+    waits: Annotated[float, Field(ge=0, le=1000)] = key(0.0, "how long it stands at first [s]")
+
+    @model_validator(mode="after")
+    def _in_order(self) -> "Places":
+        for name in ("near", "turned", "faces"):
+            pair = getattr(self, name)
+            if pair is not None and not 0.0 <= pair[0] < pair[1]:
+                raise ValueError(f"{name} must be two numbers from 0 on, the lesser first")
+        return self
+
+
 class Recurrent(Group):
     """A state that the network hands to itself, zero at first."""
 
@@ -97,6 +122,10 @@ class Contract(Group):
     inputs: dict[str, Many[Term]] = key({}, "what each input is made of, by its name")
     history: History = key(History.model_construct(), "last values of the terms")
     command: CommandRange = key(CommandRange.model_construct(), "velocities that it follows")
+    driven: Literal["as_is", "at_rest", "as_commanded"] = key(
+        "as_is", "what it is told of joints that somebody else drives: their state, the default posture, or its action"
+    )
+    places: Places = key(Places.model_construct(), "how it is led to a place")
     recurrent: Many[Recurrent] = key((), "states that it hands to itself")
 
     @model_validator(mode="after")

@@ -32,10 +32,13 @@ Array = NDArray[np.float64]
 class Policy:
     """A network that walks a robot; see `surefoot.scenarios.run.seat.SeatedController`.
 
+    Its `told` has observation and action of the last decision, for the log.
+
     Args:
         walk: what is walked.
         file: of the contract, or what `surefoot.scenarios.policy.files.read` takes for one.
         digest: of its files, which must be these; None for any.
+        known_as: name of the robot in contracts; None for its own.
 
     Attributes:
         contract: of the network.
@@ -44,13 +47,12 @@ class Policy:
         reads: whether it is given what sensors say, in place of the truth.
         parameters: for the log.
         posture: of all joints at the start, shape (nj,) [rad].
-        told: observation and action of the last decision, for the log.
 
     Raises:
         ParameterError: contract, network, robot and rates do not fit together, or onnxruntime is not installed.
     """
 
-    def __init__(self, walk: Walk, file: str, digest: str | None = None) -> None:
+    def __init__(self, walk: Walk, file: str, digest: str | None = None, known_as: str | None = None) -> None:
         files: Files = read(Path(file), walk.robot.joint_names)
         self.walk, self.contract = walk, files.contract
         self.network = Network(files.network)
@@ -59,7 +61,7 @@ class Policy:
             what = f"{file} is not the policy that made the log: its digest is {found[:12]}, not {digest[:12]}"
             raise ParameterError(KEY, what, "give the files of then, or leave out controller.digest")
         contract = self.contract
-        self.connection = Connection(walk, contract, self._observed(), file)
+        self.connection = Connection(walk, contract, self._observed(), file, known_as)
         self._output = self._decided_output()
         self.posture = self.connection.posture
         self._senses = senses_of(walk, Parts())
@@ -116,7 +118,7 @@ class Policy:
 
     @property
     def target(self) -> Array:
-        """Of the joints that it moves, as last decided, shape (m,) [rad, N·m]."""
+        """Targets of the joints that it moves, as last decided, shape (m,) [rad, N·m]."""
         return self.connection.target
 
     def reset(self, q: Array | None) -> None:
@@ -149,7 +151,7 @@ class Policy:
         return self._command
 
     def _decided(self, now: float, state: RobotState) -> JointCommand:
-        """What the network makes of the state."""
+        """The decision of the network on the state."""
         observed = self.connection.observe(now, state)
         given = dict(self._states)
         for name, values in observed.items():
@@ -161,7 +163,7 @@ class Policy:
         if len(output) != len(self.connection.moved) or not np.isfinite(output).all():
             raise PartError(f"the network of {self.network.path.name} gave no finite action at {now:.3f} s", "mend it")
         command = self.connection.command(output)
-        self.told = self.connection.told(observed)
+        self.told = self.connection.reported(observed)
         return command
 
     def _tell(self, state: RobotState, contact: tuple[bool, bool] | None) -> None:

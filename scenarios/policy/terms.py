@@ -3,17 +3,20 @@
 import math
 from collections.abc import Callable, Mapping, Sequence
 from dataclasses import dataclass
-from typing import Any
+from typing import Any, Literal
 
 import numpy as np
 from numpy.typing import NDArray
 
+from surefoot.errors import ParameterError
 from surefoot.maths import algebra
 from surefoot.parts.plugins import Registry
 from surefoot.planner.types import Twist
 from surefoot.scenarios.documented import doc_of
 
 Array = NDArray[np.float64]
+
+_KEY = ("controller", "policy")
 
 
 @dataclass(frozen=True, slots=True)
@@ -22,6 +25,8 @@ class Seen:
 
     Attributes:
         time: since the policy was reset [s].
+        walked: time in which it was not to stand, of it [s].
+        since: time since it was last to stand [s].
         rotation: orientation of the base in the world, shape (3, 3).
         torso_rotation: orientation of the torso in the world, shape (3, 3).
         angular_velocity: of the base in its frame, shape (3,) [rad/s].
@@ -37,6 +42,8 @@ class Seen:
     """
 
     time: float
+    walked: float
+    since: float
     rotation: Array
     torso_rotation: Array
     angular_velocity: Array
@@ -118,6 +125,7 @@ def phase(
     begin: float = 0.0,
     stance: float = 0.5,
     rest: float | None = None,
+    clock: Literal["always", "walking", "anew"] = "always",
 ) -> Array:
     """Sine and cosine of a clock at each offset, or all sines first, 2 for each [-].
 
@@ -129,9 +137,14 @@ def phase(
         grouped: wave by wave, else offset by offset.
         begin: share at the reset [-].
         stance: share that is taken for the first half turn [-].
-        rest: share at which the clock stands while the robot is to stand; None where it goes on [-].
+        rest: share at which the clock stands while the robot is to stand; None where it is told as it is [-].
+        clock: runs always, only while the robot is to walk, or anew from when it last was to stand.
     """
-    shares = [rest if seen.stands and rest is not None else (begin + seen.time / period + one) % 1.0 for one in offsets]
+    times = {"always": seen.time, "walking": seen.walked, "anew": seen.since}
+    if clock not in times:
+        raise ParameterError(_KEY, f"term phase has no clock '{clock}'", "give always, walking or anew")
+    turn = begin + times[clock] / period
+    shares = [rest if seen.stands and rest is not None else (turn + one) % 1.0 for one in offsets]
     turns = [
         math.pi * (share / stance if share < stance else 1.0 + (share - stance) / (1.0 - stance)) for share in shares
     ]

@@ -40,13 +40,13 @@ _FIXED = (
     Walk, WalkModel, RobotDescription, BaseModel, Registry, Guard, LogWriter, mujoco.MjModel, FunctionType, partial,
     memoryview,
 )  # fmt: skip
-"""What stays the same for a walk, or is scratch memory of it."""
+"""Classes whose objects stay the same for a walk, or are scratch memory of it."""
 
 _FIXED_MODULES = ("surefoot.scenarios.record", "surefoot.scenarios.log")
-"""What writes the log holds nothing that a run goes by."""
+"""Modules that write the log, which hold nothing that a run goes by."""
 
 _LIBRARIES = frozenset(("pinocchio", "coal", "mujoco", "onnxruntime", "mcap"))
-"""Whose objects are models and scratch memory, MuJoCo's data aside, which is the state of the physics."""
+"""Packages whose objects are models and scratch memory, but for MuJoCo's data, the state of the physics."""
 
 _RANDOM = (np.random.Generator, np.random.BitGenerator)
 
@@ -174,12 +174,12 @@ def _stays(found: Any) -> bool:
 
 
 def _is_view(kind: type) -> bool:
-    """Whether something is a compiled object's look into an array."""
+    """Return true if something is a compiled object's look into an array."""
     return kind.__name__ in ("_memoryviewslice", "memoryview")
 
 
 def _is_made_of_memory(kind: type) -> bool:
-    """Whether a compiled object says by itself what pickle keeps of it: arrays that stay where they are."""
+    """Return true if a compiled object says by itself what pickle keeps of it: arrays that stay where they are."""
     own = "__reduce__" in vars(kind) and "__setstate_cython__" not in dir(kind)
     return own and kind.__module__.startswith("surefoot") and not kind.__dictoffset__
 
@@ -196,7 +196,7 @@ def _root(array: np.ndarray[Any, Any]) -> np.ndarray[Any, Any]:
 
 
 def _state(found: Any) -> Any:
-    """What pickle would keep of an object: of a compiled one a tuple, of others a dictionary."""
+    """Content that pickle would keep of an object: of a compiled one a tuple, of others a dictionary."""
     kind = type(found)
     if hasattr(kind, "__reduce_cython__"):
         reduced = found.__reduce_cython__()
@@ -299,7 +299,7 @@ class _Node:
     foreign: bool = False
 
 
-_Told = tuple[tuple[_Node, ...], bytes]
+_Packed = tuple[tuple[_Node, ...], bytes]
 """Nodes of a state, and their contents."""
 
 
@@ -325,7 +325,7 @@ class State:
         self._reached: Reached | None = Reached(root)
         self._root: Any = root
         self._contents: list[Any] | None = [_content(one) for one in self._kept()]
-        self._told: _Told | None = None
+        self._packed: _Packed | None = None
 
     def _kept(self) -> list[Any]:
         """The objects whose content is kept."""
@@ -334,7 +334,7 @@ class State:
         return [reached.objects[number] for number in reached.kept]
 
     def is_of(self, owner: object) -> bool:
-        """Whether it is a state of this very simulation, in this process."""
+        """Return true if it is a state of this very simulation, in this process."""
         return self._owner is owner
 
     def put_back(self) -> Any:
@@ -350,45 +350,45 @@ class State:
         Raises:
             ParameterError: something is missing there.
         """
-        nodes, told = self._told or self._pickled()
+        nodes, pickled = self._packed or self._pickled()
         objects = _matched(nodes, root)
-        contents = _Unpickler(io.BytesIO(told), objects).load()
+        contents = _Unpickler(io.BytesIO(pickled), objects).load()
         kept = (found for found, node in zip(objects, nodes, strict=True) if node.kept)
         for found, content in zip(kept, contents, strict=True):
             _put(found, content)
 
-    def _pickled(self) -> _Told:
+    def _pickled(self) -> _Packed:
         reached = self._reached
         assert reached is not None
-        told = io.BytesIO()
+        file = io.BytesIO()
         nodes = tuple(_node(number, number in reached.kept, reached) for number in range(len(reached.objects)))
-        _Pickler(told, reached).dump(self._contents)
-        return nodes, told.getvalue()
+        _Pickler(file, reached).dump(self._contents)
+        return nodes, file.getvalue()
 
     def __reduce__(self) -> tuple[Any, ...]:
         """See `pickle`: of the objects themselves another process has its own."""
-        return _unpickled, (self.of, self.time, self._told or self._pickled())
+        return _unpickled, (self.of, self.time, self._packed or self._pickled())
 
     def __repr__(self) -> str:
-        """What it is the state of."""
+        """The time of the state, in words."""
         return "<State before the first tick>" if self.time is None else f"<State after the tick at {self.time:.3f} s>"
 
 
-def _unpickled(of: Mapping[str, str], time: float | None, told: _Told) -> State:
+def _unpickled(of: Mapping[str, str], time: float | None, packed: _Packed) -> State:
     state = State.__new__(State)
-    state.of, state.time, state._told = dict(of), time, told
+    state.of, state.time, state._packed = dict(of), time, packed
     state._reached, state._contents, state._root, state._owner = None, None, None, None
     return state
 
 
 def _node(number: int, kept: bool, reached: Reached) -> _Node:
     found, parts = reached.objects[number], reached.parts[number]
-    told = {key: part for key, part in parts.items() if isinstance(key, int | str)}
+    named = {key: part for key, part in parts.items() if isinstance(key, int | str)}
     if isinstance(found, np.ndarray):
         shape, exported = (found.shape, found.dtype), id(found) in reached.exported
-        return _Node(np.ndarray, told, kept, shape, exported, kept and found.base is not None)
+        return _Node(np.ndarray, named, kept, shape, exported, kept and found.base is not None)
     kind = _kind(found)
-    return _Node(kind if kept or _is_made_of_memory(kind) else object, told, kept)
+    return _Node(kind if kept or _is_made_of_memory(kind) else object, named, kept)
 
 
 def _matched(nodes: tuple[_Node, ...], root: object) -> list[Any]:
@@ -456,7 +456,7 @@ def lasting(_modules: int) -> Mapping[int, tuple[str, str]]:
 
 
 class _Pickler(pickle.Pickler):
-    """Writes contents, in which kept and fixed objects are told by their places."""
+    """Writes contents, in which kept and fixed objects are named by their places."""
 
     def __init__(self, file: io.BytesIO, reached: Reached) -> None:
         super().__init__(file, protocol=5)
@@ -493,7 +493,7 @@ def _looking(root: Any, offset: int, shape: tuple[int, ...], strides: tuple[int,
 
 
 class _Look:
-    """What numpy makes an array of that looks into another one, whatever the order of its numbers."""
+    """Description of an array that looks into another one, for numpy, whatever the order of its numbers."""
 
     def __init__(self, root: Any, offset: int, shape: tuple[int, ...], strides: tuple[int, ...], kind: str) -> None:
         self.base = root
@@ -515,11 +515,11 @@ class _Unpickler(pickle.Unpickler):
         super().__init__(file)
         self._objects = objects
 
-    def persistent_load(self, told: Any) -> Any:
+    def persistent_load(self, key: Any) -> Any:
         """See `pickle`."""
-        if isinstance(told, tuple):
-            return getattr(sys.modules[told[0]], told[1])
-        found = self._objects[told]
+        if isinstance(key, tuple):
+            return getattr(sys.modules[key[0]], key[1])
+        found = self._objects[key]
         if found is None:
             what = "a state with a part that is not there"
             raise ParameterError(("state",), what, "put it into a simulation of the same scenario and parts")

@@ -254,7 +254,7 @@ class Seated(Moved):
         self._waiting.appendleft(replace(command, time=now))
 
     def sees(self, now: float) -> tuple[Readings | Measurement, Command | None]:
-        """What the controller will be given at an instant [s] that has been sensed: readings, and the last command."""
+        """Readings and last command that the controller will be given at an instant [s] that has been sensed."""
         found = None
         for command in self._waiting:
             if command.time * self._rate <= now * self._rate + ROUNDING:

@@ -184,7 +184,7 @@ class Simulation:
 
     @property
     def measurement(self) -> Measurement:
-        """What was measured last, with the true state; its arrays are overwritten by the next tick.
+        """The last measurement, with the true state; its arrays are overwritten by the next tick.
 
         Raises:
             AttributeError: a pendulum has none, nor is there one before the first tick.
@@ -401,7 +401,7 @@ class Simulation:
 
     @cached_property
     def _identity(self) -> dict[str, str]:
-        """What has to be the same where a state is put back."""
+        """Texts that have to be the same where a state is put back."""
         parts = {name: shown(part) for name, part in self._given.items() if part is not None}
         return {"scenario": self.walk.text, "set of parts": str(parts), "version": str(relevant_versions())}
 

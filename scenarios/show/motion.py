@@ -53,7 +53,7 @@ def sampled(log: Log, fps: float, start: float | None = None, end: float | None 
         log: of full physics.
         fps: frames per second [Hz].
         start: time of the first frame at the earliest, that of the log if None [s].
-        end: time of the last frame at the latest, likewise [s].
+        end: time of the last frame at the latest, that of the log's end if None [s].
 
     Raises:
         LogError: it has no such motion, or has gaps that are longer than a frame.
@@ -163,7 +163,7 @@ def write_motion(
     end: float | None = None,
     replace: bool = False,
 ) -> Sampled:
-    """Write the true motion of a log for trainers, in the layout that the file's name says; errors as of `sampled`.
+    """Write the true motion of a log for trainers, in the layout that the file's name says.
 
     Args:
         log: of full physics.
@@ -178,7 +178,8 @@ def write_motion(
         what is written.
 
     Raises:
-        LogError: a joint is not the robot's, the kind of file is unknown, or it exists or cannot be written.
+        LogError: the log has no such motion, or has gaps that are longer than a frame; a joint is not the robot's; the
+            kind of file is unknown, or it exists or cannot be written.
     """
     kind = out.suffix.lower()
     if kind not in FPS:

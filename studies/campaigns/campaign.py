@@ -14,6 +14,7 @@ from surefoot.scenarios.file.source import Source, decoded, parse, plain_scalar,
 from surefoot.scenarios.file.translate import problems_of
 from surefoot.scenarios.setup.load import Written, for_robot, key_problems, written
 from surefoot.scenarios.setup.robot.robots import Robots, is_known
+from surefoot.studies.campaigns.beside import Beside
 from surefoot.studies.campaigns.shipped import ENDING, shipped
 from surefoot.studies.campaigns.spec import MOST_RUNS, Bisect, Spec
 
@@ -95,7 +96,9 @@ class Campaign:
         return {key: sized.get(key, value) for key, value in keys.items() if key not in own or key in sized}
 
 
-def read_campaign(reference: str, overrides: Sequence[str] = (), seeds: int | None = None) -> Campaign:
+def read_campaign(
+    reference: str, overrides: Sequence[str] = (), seeds: int | None = None, beside: Beside | None = None
+) -> Campaign:
     """Read and check a specification.
 
     Args:
@@ -103,6 +106,7 @@ def read_campaign(reference: str, overrides: Sequence[str] = (), seeds: int | No
         overrides: ``key=value``: values of scenario keys in every run, over those that the specification sets or
             varies; of an axis with named settings, the name of the one to keep; of any axis a list of those to keep.
         seeds: over those of the specification.
+        beside: two walkers that are laid beside each other; None for the one that the specification has.
 
     Raises:
         ScenarioError: it cannot be read or run; lists every fault with its place.
@@ -114,6 +118,8 @@ def read_campaign(reference: str, overrides: Sequence[str] = (), seeds: int | No
     spec = _overridden(spec, overrides)
     if seeds is not None:
         spec = spec.model_copy(update={"seeds": seeds})
+    if beside is not None:
+        spec = beside.laid(spec, place)
     campaign = Campaign(spec, place, {name: _settings(name, axis) for name, axis in spec.grid.items()}, fixed, {})
     campaign = replace(campaign, bases=_bases(campaign, source))
     problems = list(_twice(campaign)) or list(_faults(campaign))

@@ -213,6 +213,9 @@ def _halve(cell: Cell, bisect: Bisect) -> Search:
     low, high = bisect.low, bisect.high
     at_low = yield from _passes(cell, bisect, low)
     at_high = yield from _passes(cell, bisect, high)
+    while at_low and at_high and bisect.most is not None and high < bisect.most:
+        low, high = high, min(2.0 * high, bisect.most)
+        at_high = yield from _passes(cell, bisect, high)
     if at_low == at_high:
         return Threshold(None, "above" if at_low else "below")
     while high - low > bisect.tolerance:

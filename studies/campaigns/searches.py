@@ -5,6 +5,7 @@ from typing import TYPE_CHECKING, Protocol
 
 from surefoot.scenarios.show.kit.html import MISSING, PageTable, TableCell, TableRow, escape, number, section, tag
 from surefoot.scenarios.show.kit.svg import figure_html
+from surefoot.studies.campaigns.beside_figure import turned
 from surefoot.studies.campaigns.capturability import LIMIT_NOTE, Limits
 from surefoot.studies.campaigns.points import Cell, Point, Record, Runs
 from surefoot.studies.campaigns.spec import Axis, angle_of, is_around, text, with_unit
@@ -51,7 +52,11 @@ def _figure(swept: "Swept", found: Sequence[Found], axes: Sequence[Axis], limits
     assert swept.campaign.spec.bisect is not None
     key, records = swept.campaign.spec.bisect.key, swept.campaign.spec.records
     varied = [axis for axis in axes if len({one.labels[axis.name] for one in found}) > 1]
-    if are_named(axes):
+    laid = turned(swept.campaign, found, axes)
+    if laid is not None:
+        drawn = compass(*laid, key, lambda *_: None)
+        caption = f"The largest survived of {key} by direction in the world, of both walkers. Hollow marks{_BEYOND}"
+    elif are_named(axes):
         drawn, caption = bars(found, axes, key, limits.at, records), "Thresholds. Hollow bars" + _BEYOND
         caption += " Black: the most that a linear inverted pendulum survives by one step." if limits else ""
         caption = " ".join((caption, *(f"{one}." for one in sorted({f"{one.name}: {one.source}" for one in records}))))

@@ -60,6 +60,18 @@ class Bisect(Group):
         default=None, description="of a rung over the one below it; the ladder is climbed as long as every seed passes"
     )
 
+    most: BoundedNumber | None = Field(
+        default=None, description="where the whole range passes it goes on upwards, doubled each time, to here"
+    )
+
+    @model_validator(mode="after")
+    def _goes_on(self) -> Self:
+        if self.most is not None and (self.tolerance is None or self.low < 0.0 or self.most < self.high):
+            raise ValueError(
+                "most is of a range from 0 on that is halved, and above it; give tolerance, or leave it out"
+            )
+        return self
+
     @model_validator(mode="after")
     def _a_range(self) -> Self:
         if (self.tolerance is None) == (self.ratio is None):

@@ -1,9 +1,9 @@
 """``surefoot bench g1-tour``: many tours, kept as they come, and the table of what they say."""
 
-import hashlib
+import csv
 import json
 import math
-from collections.abc import Callable, Iterator, Sequence
+from collections.abc import Callable, Iterator, Mapping, Sequence
 from dataclasses import asdict
 from functools import lru_cache
 from importlib import resources
@@ -12,20 +12,20 @@ from typing import Any
 
 import yaml
 
-from surefoot.scenarios.errors import LogError
-from surefoot.scenarios.output import reason, write_whole
+from surefoot.scenarios.output import write_whole
 from surefoot.scenarios.record.provenance import relevant_versions
 from surefoot.scenarios.run.processes import side_by_side
 from surefoot.scenarios.run.run import made_folder
+from surefoot.studies.tour.journal import Journal, digest
 from surefoot.studies.tour.page import markdown
-from surefoot.studies.tour.results import RowResult, to_json
-from surefoot.studies.tour.ride import PunchTaken, TourResult, run_tour
-from surefoot.studies.tour.rows import ROWS
+from surefoot.studies.tour.results import RowResult, punches_table, to_json, tours_table
+from surefoot.studies.tour.ride import OWN, PunchTaken, Setting, TourResult, run_tour
 from surefoot.studies.tour.rules import DURATION
+from surefoot.studies.tour.walker import Entrant
 
-NOTE = "Own implementation, not calibrated: no learned policy has been run in it yet."
+NOTE = "Own implementation. Policies that were run in it stand beside their published rows in docs/benchmark-g1.md."
 
-JOURNAL, RESULT, PAGE = "tours.jsonl", "result.json", "result.md"
+JOURNAL, RESULT, PAGE, TOURS, PUNCHES = "tours.jsonl", "result.json", "result.md", "tours.csv", "punches.csv"
 
 
 @lru_cache(maxsize=1)
@@ -35,35 +35,54 @@ def published() -> dict[str, Any]:
     return found
 
 
+def differences(setting: Setting) -> list[str]:
+    """Differences from the benchmark in a setting."""
+    told: list[Any] = published()["differences"]
+    ours = [one if isinstance(one, dict) else {"what": one} for one in told]
+    return [one["what"] for one in ours if all(asdict(setting)[key] == one[key] for key in one if key != "what")]
+
+
 def _text(name: str) -> str:
     return resources.files(__package__).joinpath(name).read_text(encoding="utf-8")
 
 
 class Bench:
-    """Tours of some rows, of which those in the folder are not run again.
+    """Tours of some walkers, of which those in the folder are not run again.
 
     Args:
-        rows: names of them.
+        entrants: walkers that take part.
         seeds: tours of each.
         folder: that keeps every tour as soon as it is over.
         duration: after which a tour is over [s].
+        setting: how a tour begins, and what draws it.
 
     Raises:
         LogError: the folder cannot be written.
     """
 
-    def __init__(self, rows: Sequence[str], seeds: int, folder: Path, duration: float = DURATION) -> None:
-        self._rows, self._seeds, self._duration = tuple(rows), seeds, duration
+    def __init__(
+        self,
+        entrants: Sequence[Entrant],
+        seeds: int,
+        folder: Path,
+        duration: float = DURATION,
+        setting: Setting = OWN,
+    ) -> None:
+        self._entrants = {entrant.name: entrant for entrant in entrants}
+        self._seeds, self._duration, self._setting = seeds, duration, setting
         self._folder = made_folder(folder)
+        self._journal = Journal(self._folder / JOURNAL)
         texts = [_text(name) for name in ("g1.yaml", "tour.yaml")]
-        self._made_by = _digest({"versions": dict(relevant_versions()), "duration": duration, "texts": texts})
+        made = {"versions": dict(relevant_versions()), "duration": duration, "texts": texts, **asdict(setting)}
+        self._made_by = {name: digest({**made, "walker": one.digest()}) for name, one in self._entrants.items()}
         self._results: dict[tuple[str, int], TourResult] = {}
         self._read()
 
-    def left(self) -> list[tuple[str, int, float]]:
-        """Tours that are still to be run: row, seed, duration; of every row those of a seed together."""
-        tours = [(row, seed) for seed in range(self._seeds) for row in self._rows]
-        return [(*tour, self._duration) for tour in tours if tour not in self._results]
+    def left(self) -> list[tuple[Entrant, int, float, Setting]]:
+        """Tours that are still to be run, as `run_tour` takes them; of every walker those of a seed together."""
+        tours = [(row, seed) for seed in range(self._seeds) for row in self._entrants]
+        left = [tour for tour in tours if tour not in self._results]
+        return [(self._entrants[row], seed, self._duration, self._setting) for row, seed in left]
 
     def run(self, workers: int, on_tour: Callable[[TourResult], None] = lambda _: None) -> None:
         """Run what is left.
@@ -79,17 +98,22 @@ class Bench:
         for result in side_by_side(run_tour, left, workers, _lost) if left else ():
             if result.fault != _LOST:
                 self._results[result.row, result.seed] = result
-                self._write(result)
+                self._journal.add(asdict(result), self._made_by[result.row])
             on_tour(result)
 
     def rows(self) -> list[RowResult]:
         """Results of the tours of each row together."""
         found = []
-        for row in self._rows:
+        for row in self._entrants:
             results = [self._results[row, seed] for seed in range(self._seeds) if (row, seed) in self._results]
             if results:
                 found.append(RowResult.of(results, self._duration))
         return found
+
+    def tours(self) -> list[TourResult]:
+        """Results of the tours that were asked for, one walker after the other."""
+        asked = ((row, seed) for row in self._entrants for seed in range(self._seeds))
+        return [self._results[tour] for tour in asked if tour in self._results]
 
     def to_json(self) -> dict[str, Any]:
         """All that the bench says."""
@@ -97,15 +121,16 @@ class Bench:
             "bench": "g1-tour",
             "note": NOTE,
             "seconds": self._duration,
-            "rows": [{**to_json(row), "meaning": ROWS[row.row].meaning} for row in self.rows()],
+            **asdict(self._setting),
+            "rows": [{**to_json(row), "meaning": self._entrants[row.row].meaning} for row in self.rows()],
             "published": published()["rows"],
             "source": published()["source"].strip(),
-            "differences": published()["differences"],
+            "differences": differences(self._setting),
             "versions": dict(relevant_versions()),
         }
 
     def write(self) -> Path:
-        """Write the result into the folder, in JSON and in Markdown.
+        """Write the result into the folder: in JSON and in Markdown, and its tours and punches as tables.
 
         Returns:
             path of the former.
@@ -115,47 +140,35 @@ class Bench:
         for name, text in texts.items():
             with write_whole(self._folder / name, replace=True) as temporary:
                 temporary.write_text(text, encoding="utf-8")
+        for name, table in ((TOURS, tours_table(self.tours())), (PUNCHES, punches_table(self.rows()))):
+            with write_whole(self._folder / name, replace=True) as temporary, temporary.open("w", newline="") as file:
+                csv.writer(file, lineterminator="\n").writerows(table)
         return self._folder / RESULT
 
     def _read(self) -> None:
-        """Find the tours that the folder has of these versions."""
-        path = self._folder / JOURNAL
-        if not path.is_file():
-            return
-        for line in path.read_text(encoding="utf-8").splitlines():
+        """Find the tours that the folder has of this making."""
+        for told, made_by in self._journal.lines():
             try:
-                record = json.loads(line)
-                if record.pop("made_by") == self._made_by:
-                    result = _result(record)
+                if made_by == self._made_by.get(told["row"]):
+                    result = _result(told)
                     self._results[result.row, result.seed] = result
-            except (ValueError, TypeError, KeyError):  # the last line of a process that was killed
+            except (TypeError, KeyError):
                 continue
-
-    def _write(self, result: TourResult) -> None:
-        path = self._folder / JOURNAL
-        try:
-            with path.open("a", encoding="utf-8") as file:
-                file.write(json.dumps({**asdict(result), "made_by": self._made_by}) + "\n")
-        except OSError as error:
-            raise LogError(f"{path}: cannot be written, {reason(error)}; choose another --out") from None
 
 
 _LOST = "lost"
 
 
-def _lost(row: str, seed: int, duration: float, record: str) -> TourResult:
+def _lost(entrant: Entrant, seed: int, duration: float, setting: Setting, told: str) -> TourResult:
     """In place of a tour whose process ended unexpectedly, which is run again when the command is given again."""
-    return TourResult(row, seed, 0.0, False, (), (), (), (), _LOST, 0, None)
+    return TourResult(entrant.name, seed, 0.0, False, (), (), (), (), _LOST, 0, None)
 
 
-def _digest(record: dict[str, Any]) -> str:
-    return hashlib.sha256(json.dumps(record, sort_keys=True).encode()).hexdigest()[:16]
-
-
-def _result(record: dict[str, Any]) -> TourResult:
-    punches = (PunchTaken(**{**punch, "direction": tuple(punch["direction"])}) for punch in record["punches"])
-    lists: dict[str, Any] = {name: tuple(record[name]) for name in ("position_errors", "heading_errors", "energy")}
-    return TourResult(**{**record, **lists, "punches": tuple(punches)})
+def _result(told: Mapping[str, Any]) -> TourResult:
+    punches = (PunchTaken(**{**punch, "direction": tuple(punch["direction"])}) for punch in told["punches"])
+    lists: dict[str, Any] = {name: tuple(told[name]) for name in ("position_errors", "heading_errors", "energy")}
+    left_over = told["left_over"] and tuple(told["left_over"])
+    return TourResult(**{**told, **lists, "punches": tuple(punches), "left_over": left_over})
 
 
 def lines(record: dict[str, Any]) -> Iterator[str]:

@@ -1,7 +1,7 @@
 """The results of many tours: survival and errors with intervals, the curve of punches, and causes of falls."""
 
 import math
-from collections.abc import Callable, Sequence
+from collections.abc import Callable, Iterable, Iterator, Sequence
 from dataclasses import asdict, dataclass
 from typing import Any
 
@@ -187,6 +187,55 @@ def cause(result: TourResult) -> str:
         return "no punch"
     limb = "arm" if link(last) in ("shoulder", "elbow", "wrist") else "leg or waist"
     return f"{direction(last)}, on {limb}"
+
+
+SLOTS = {"position_errors": "m", "heading_errors": "rad", "energy": "J"}
+"""What a tour has of each slot that was brought to its end, with its unit."""
+
+COLUMNS = (
+    "row",
+    "seed",
+    "survival [s]",
+    "completed",
+    *(f"{name} [{unit}]" for name, unit in SLOTS.items()),
+    "left_over",
+)
+"""Of the table of tours; what is left over is a distance [m] and an angle [rad]."""
+
+
+def tours_table(tours: Sequence[TourResult]) -> Iterator[Sequence[Any]]:
+    """Rows of cells, of which the first is the heading; numbers of slots stand in one cell, with spaces."""
+    yield COLUMNS
+    for tour in tours:
+        lists = (" ".join(f"{number:.4g}" for number in getattr(tour, name)) for name in SLOTS)
+        over = " ".join(f"{number:.4g}" for number in tour.left_over or ())
+        yield tour.row, tour.seed, f"{tour.survival:.6g}", int(tour.completed), *lists, over
+
+
+def read_tours(rows: Iterable[Sequence[str]]) -> list[TourResult]:
+    """Tours of such a table, without their punches.
+
+    Raises:
+        ValueError: it is none.
+    """
+    head, *rest = rows
+    if tuple(head) != COLUMNS:
+        raise ValueError(f"columns {', '.join(head)}, not {', '.join(COLUMNS)}")
+    found = []
+    for row, seed, survival, completed, *cells in rest:
+        position, heading, energy, over = (tuple(map(float, cell.split())) for cell in cells)
+        left_over = (over[0], over[1]) if over else None
+        errors = (position, heading, energy)
+        found.append(TourResult(row, int(seed), float(survival), completed == "1", *errors, (), "", 0, None, left_over))
+    return found
+
+
+def punches_table(rows: Sequence[RowResult]) -> Iterator[Sequence[Any]]:
+    """Likewise how many punches of each kind were survived."""
+    yield "row", "kind", "of", "survived", "punches"
+    for row in rows:
+        for kind, shares in row.punches.items():
+            yield from ((row.row, kind, share.of, share.kept, share.count) for share in shares)
 
 
 def to_json(result: RowResult) -> dict[str, Any]:

@@ -6,13 +6,15 @@ from dataclasses import dataclass, replace
 import numpy as np
 from numpy.typing import NDArray
 
+from surefoot.errors import PartError
 from surefoot.joints import JointCommand, Servo
 from surefoot.planner.geometry.plane import wrap_angle
 from surefoot.planner.types import PhaseKind
 from surefoot.scenarios.run.planning import RunFault
-from surefoot.studies.tour.robot import ARM_JOINTS, TourRobot, tour_robot
-from surefoot.studies.tour.rows import COMMAND_RATE, ROWS, Row, command_to
-from surefoot.studies.tour.rules import DURATION, LOWEST, SLOT, ArmWalk, Punch, drawn
+from surefoot.studies.tour.draws import DRAWS, Steps
+from surefoot.studies.tour.robot import ARM_JOINTS, TourRobot, arms_of, tour_robot
+from surefoot.studies.tour.rules import DURATION, LOWEST, SLOT, ArmWalk, Punch
+from surefoot.studies.tour.walker import Entrant, Goal
 from surefoot.studies.tour.world import RATE, TourWorld
 
 Array = NDArray[np.float64]
@@ -60,7 +62,8 @@ class TourResult:
         punches: in order; the one that came last before a fall was not survived.
         fault: what ended the controller's work, in words; else empty.
         unsolved: control ticks before the fall whose QP had no solution [-].
-        warned: how long before the fall the planner was sure of it; nan where it never was [s].
+        warned: how long before the fall the planner was sure of it; None where it never was [s].
+        left_over: distance from the place [m] and from its heading [rad] at the fall; None where there was none.
     """
 
     row: str
@@ -74,33 +77,56 @@ class TourResult:
     fault: str
     unsolved: int
     warned: float | None
+    left_over: tuple[float, float] | None = None
+
+
+@dataclass(frozen=True, slots=True)
+class Setting:
+    """How a tour begins, and whose random numbers it has.
+
+    Attributes:
+        start: on the ``feet``, or on the ``crane`` of the benchmark, which lets go.
+        draws: of Surefoot's ``own`` streams, or of those of the ``benchmark``.
+        punched: whether there are punches.
+    """
+
+    start: str = "feet"
+    draws: str = "own"
+    punched: bool = True
+
+
+OWN = Setting()
+STARTS = ("feet", "crane")
+
+HUNG = 3.0
+"""How long the crane holds the robot [s]."""
 
 
 class Ride:
     """A tour that goes on control tick by control tick.
 
     Args:
-        row: that takes part.
+        entrant: that takes part.
         seed: of the tour.
+        setting: how it begins, and what draws it.
 
     Attributes:
         tour: what was drawn.
         world: that is simulated.
-        controller: that walks.
+        walker: in its seat.
     """
 
-    def __init__(self, row: Row, seed: int) -> None:
-        self.row, robot = row, tour_robot()
-        self.controller = row.controller()
-        description = self.controller.walk.robot
+    def __init__(self, entrant: Entrant, seed: int, setting: Setting = OWN) -> None:
+        self.entrant, robot = entrant, tour_robot()
+        self.walker, draws = entrant.walker(), DRAWS[setting.draws]
+        description = self.walker.robot
         self._names, self._mass = description.joint_names, float(description.mass)
-        self.world, self.tour = TourWorld(description, robot), drawn(seed, len(self._names))
-        self._arms = _Arms(robot, self.world, self._names, seed) if row.drives_arms else None
-        q = self.controller.posture.copy()
-        if self._arms is not None:
-            q[7:][self._arms.joints] = self._arms.start
-        self.world.reset(q)
-        self.controller.reset(q)
+        self.world, self.tour = TourWorld(description, robot), draws.tour(seed, len(self._names))
+        if not setting.punched:
+            self.tour = replace(self.tour, punches=())
+        steps = draws.arm_steps(seed)
+        self._arms = Arms(robot, self.world, self._names, steps) if entrant.drives_arms else None
+        {"feet": self._stand, "crane": self._hang}[setting.start]()
         self._anchor = (*self.world.pelvis[:2].tolist(), self.world.heading)
         self._punches: list[PunchTaken] = []
         self._errors: list[tuple[float, float]] = []
@@ -108,18 +134,43 @@ class Ride:
         self._fault, self._unsolved, self._warned = "", 0, math.nan
         self._tick = 0
 
+    def _stand(self) -> None:
+        """Begin on the feet, in the posture of the walker."""
+        q = self.walker.posture.copy()
+        if self._arms is not None:
+            q[7:][self._arms.joints] = self._arms.start
+        self.world.reset(q)
+        self.walker.reset(q)
+
+    def _hang(self) -> None:
+        """Hang on the crane, and be let go; the walker begins where its feet will be on the ground."""
+        robot, world = tour_robot(), self.world
+        q = np.zeros(7 + len(self._names))
+        q[2], q[6] = robot.crane_height, 1.0
+        for number, name in enumerate(self._names):
+            ends = [angle for end, angle in robot.leg_stance.items() if name.endswith(end)]
+            q[7 + number] = ends[0] if ends else 0.0
+        arms = self._arms or Arms(robot, world, self._names, lambda joints: np.zeros((1, joints)))
+        q[7:][arms.joints] = arms.start
+        gains = np.array([robot.drive_gains(float(armature)) for armature in world.model.dof_armature[6:]])
+        still = np.zeros(len(self._names))
+        hung = world.hang(q, JointCommand(still, Servo(q[7:].copy(), still, *gains.T)), HUNG)
+        hung[2] -= world.lowest()
+        self.walker.reset(hung)
+
     def run(self, duration: float = DURATION) -> TourResult:
         """Go on until the robot falls, or so long [s]."""
-        ticks = round(duration * self.row.rate)
+        rate = self.entrant.rate
+        ticks = round(duration * rate)
         while self._tick < ticks and self.world.pelvis[2] >= LOWEST:
             self.step()
-        time, fell = self._tick / self.row.rate, bool(self.world.pelvis[2] < LOWEST)
+        time, fell = self._tick / rate, bool(self.world.pelvis[2] < LOWEST)
         if not fell:
             self._close_slots(time)
         if fell and self._punches:
             self._punches[-1] = replace(self._punches[-1], survived=False)
         return TourResult(
-            row=self.row.name,
+            row=self.entrant.name,
             seed=self.tour.seed,
             survival=time,
             completed=not fell,
@@ -130,11 +181,13 @@ class Ride:
             fault=self._fault,
             unsolved=self._unsolved,
             warned=time - self._warned if fell and math.isfinite(self._warned) else None,
+            left_over=self._error(time) if fell else None,
         )
 
     def step(self) -> None:
-        """Go through one tick of the controller's clock."""
-        time, rate = self._tick / self.row.rate, self.row.rate
+        """Go through one tick of the walker's clock."""
+        rate = self.entrant.rate
+        time = self._tick / rate
         self._close_slots(time)
         arms = None if self._arms is None else self._arms.command(time)
         command = self._controlled(time, arms)
@@ -146,21 +199,17 @@ class Ride:
         self._tick += 1
 
     def _controlled(self, time: float, arms: JointCommand | None) -> JointCommand:
-        """Command of the joints; nothing but damping once the controller has given up."""
-        controller, joints = self.controller, len(self._names)
+        """Command of the joints; nothing but damping once the walker has given up."""
         if self._fault:
             return JointCommand(-self.world.data.qvel[6:].copy())
-        orders = None
-        if self._tick % (self.row.rate // COMMAND_RATE) == 0:
-            orders = command_to(*self._way(time))
+        walker = self.walker
         try:
-            seen = self.world.contracted() if self.row.contract else self.world.measure()
-            command = controller.step(seen, orders, arms)
-        except RunFault as fault:
+            command = walker.step(self.world, Goal(self.tour.slot(time), *self._way(time)), arms)
+        except (RunFault, PartError) as fault:
             self._fault = str(fault)
-            return JointCommand(np.zeros(joints))
-        self._unsolved += int(controller.report.status) > 1
-        if not controller.planning.plan.status.falling:
+            return JointCommand(np.zeros(len(self._names)))
+        self._unsolved += walker.unsolved
+        if not walker.falling:
             self._warned = math.nan
         elif math.isnan(self._warned):
             self._warned = time
@@ -185,13 +234,17 @@ class Ride:
         """Write down how far from its place the robot is when a slot is over."""
         ended = int((time + 1e-6) / SLOT)
         if ended > len(self._errors):
-            (x, y), turn = self._way((len(self._errors) + 0.5) * SLOT)
-            self._errors.append((math.hypot(x, y), abs(turn)))
+            self._errors.append(self._error((len(self._errors) + 0.5) * SLOT))
             self._energy.append(float(self.world.energy.sum()) - sum(self._energy))
+
+    def _error(self, time: float) -> tuple[float, float]:
+        """Distance from the place of an instant [m], and from its heading [rad]."""
+        (x, y), turn = self._way(time)
+        return math.hypot(x, y), abs(turn)
 
     def _described(self, punch: Punch) -> PunchTaken:
         """The state as a punch begins, which counts as survived until the robot falls."""
-        heading, phase = self.world.heading, self.controller.planning.plan.phase
+        heading, phase = self.world.heading, self.walker.gait
         cos, sin = math.cos(heading), math.sin(heading)
         x, y, z = self.world.direction(punch).tolist()
         impulse, single = punch.impulse / self._mass, phase.kind is PhaseKind.SINGLE
@@ -209,22 +262,22 @@ class Ride:
         )
 
 
-class _Arms:
+class Arms:
     """Drives the arms as the harness does."""
 
-    def __init__(self, robot: TourRobot, world: TourWorld, names: tuple[str, ...], seed: int) -> None:
-        arm = np.array(["shoulder" in name or "elbow" in name or "wrist" in name for name in names])
+    def __init__(self, robot: TourRobot, world: TourWorld, names: tuple[str, ...], steps: Steps) -> None:
+        arm = arms_of(names)
         left, right = (np.flatnonzero(arm & [name.startswith(side) for name in names]) for side in ("left", "right"))
         assert len(left) == len(right) == ARM_JOINTS
         self.joints, self._left, self._right = arm, left, right
         self._mirror = np.array(robot.arm_mirror)
         model = world.model
-        gains = np.array([robot.arm_gains(float(armature)) for armature in model.dof_armature[6:]])
+        gains = np.array([robot.drive_gains(float(armature)) for armature in model.dof_armature[6:]])
         self._stiffness, self._damping = np.where(arm, gains[:, 0], 0.0), np.where(arm, gains[:, 1], 0.0)
         stance = np.array(robot.arm_stance)
         self._target = np.zeros(len(names))
         lower, upper = model.jnt_range[1:][left].T
-        self._walk = ArmWalk(seed, stance, lower, upper, world.hands_allowed(robot, left, right))
+        self._walk = ArmWalk(steps, stance, lower, upper, world.hands_allowed(robot, left, right))
         self.start = self._both(stance)[arm]
 
     def _both(self, left: Array) -> Array:
@@ -238,12 +291,13 @@ class _Arms:
         return JointCommand(still, Servo(target, still, self._stiffness, self._damping))
 
 
-def run_tour(row: str, seed: int, duration: float = DURATION) -> TourResult:
+def run_tour(entrant: Entrant, seed: int, duration: float = DURATION, setting: Setting = OWN) -> TourResult:
     """A tour from its beginning.
 
     Args:
-        row: name of the row.
+        entrant: that takes part.
         seed: of the tour.
         duration: after which it is over, shorter than a whole one in tests [s].
+        setting: how it begins, and what draws it.
     """
-    return Ride(ROWS[row], seed).run(duration)
+    return Ride(entrant, seed, setting).run(duration)

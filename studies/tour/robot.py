@@ -1,5 +1,6 @@
 """The robot of the tour, out of Unitree's own model by what a file says is different about it."""
 
+from collections.abc import Sequence
 from functools import lru_cache
 from importlib import resources
 from pathlib import Path
@@ -58,6 +59,9 @@ class TourRobot(BaseModel):
         friction_loss: of every joint [N·m].
         contact_radius: of the balls that a foot touches the ground with [m].
         contact_points: where they are in the frame of the foot's link [m].
+        stands_for: robot for which contracts of policies are written that walk this one.
+        leg_stance: angles of the legs on the crane by the ends of their joints' names, others straight [rad].
+        crane_height: of the pelvis there [m].
         arm_frequency: natural frequency that the arms' drives would have on their armature alone [Hz].
         arm_damping: damping ratio that they would have on their armature alone [-].
         arm_stance: angles of the left arm at the start [rad].
@@ -82,6 +86,9 @@ class TourRobot(BaseModel):
     friction_loss: float
     contact_radius: float
     contact_points: tuple[Triple, ...]
+    stands_for: str
+    leg_stance: dict[str, float]
+    crane_height: float
     arm_frequency: float
     arm_damping: float
     arm_stance: tuple[float, ...]
@@ -89,8 +96,8 @@ class TourRobot(BaseModel):
     hand_box: tuple[Triple, Triple]
     head_bottom: float
 
-    def arm_gains(self, armature: float) -> tuple[float, float]:
-        """Stiffness and damping of the drive of an arm's joint with that armature [N·m/rad, N·m·s/rad]."""
+    def drive_gains(self, armature: float) -> tuple[float, float]:
+        """Stiffness and damping of a drive of the harness for a joint with that armature [N·m/rad, N·m·s/rad]."""
         omega = 2.0 * np.pi * self.arm_frequency
         return float(armature * omega**2), float(2.0 * self.arm_damping * armature * omega)
 
@@ -112,6 +119,11 @@ def tour_robot() -> TourRobot:
     """The robot by the harness."""
     text = resources.files(__package__).joinpath("g1.yaml").read_text(encoding="utf-8")
     return TourRobot.model_validate(yaml.safe_load(text))
+
+
+def arms_of(names: Sequence[str]) -> NDArray[np.bool_]:
+    """Which joints are the arms', by their names, shape (nj,)."""
+    return np.array([any(part in name for part in ("shoulder", "elbow", "wrist")) for name in names])
 
 
 def robot_file() -> Path:

@@ -1,20 +1,25 @@
 """The rows of the benchmark: what a controller is given of the robot, and what it gives."""
 
 from dataclasses import dataclass
-from functools import lru_cache
 from importlib import resources
 from typing import Any
 
 import numpy as np
+from numpy.typing import NDArray
 
+from surefoot.joints import JointCommand
 from surefoot.planner.steps.commands import Command
-from surefoot.planner.types import Twist
+from surefoot.planner.types import PhaseInfo, Twist
 from surefoot.scenarios.file.schema import Scenario
 from surefoot.scenarios.run.assembly import Parts
 from surefoot.scenarios.run.controller import Controller
 from surefoot.scenarios.setup.load import load
 from surefoot.studies.tour.odometry import LegOdometry
 from surefoot.studies.tour.robot import robot_file
+from surefoot.studies.tour.walker import Goal
+from surefoot.studies.tour.world import TourWorld
+
+Array = NDArray[np.float64]
 
 GAIN = 1.0
 """Gains of the velocity towards a place over the distance from it, and of the yaw rate over the angle [1/s]."""
@@ -52,9 +57,69 @@ class Row:
         Raises:
             ScenarioError: the walk cannot be walked by the robot of the tour.
         """
-        scenario = _scenario(self.name)
+        scenario = scenario_of(self.keys)
         parts = Parts(estimator=LegOdometry) if self.contract else None
         return Controller(scenario.robot, scenario, parts=parts)
+
+    def digest(self) -> str:
+        """See `Entrant`; all of it is part of this code."""
+        return ""
+
+    def walker(self) -> "Planned":
+        """See `Entrant`."""
+        return Planned(self)
+
+
+class Planned:
+    """Planner and whole-body controller that go through a ride; see `TourWalker`.
+
+    Args:
+        row: that takes part.
+
+    Attributes:
+        controller: that walks.
+        robot: of it.
+        posture: configuration in which it begins on its feet, shape (nq,).
+    """
+
+    def __init__(self, row: Row) -> None:
+        self.row, self.controller = row, row.controller()
+        self.robot, self.posture = self.controller.walk.robot, self.controller.posture
+        self._ticks = 0
+
+    @property
+    def gait(self) -> PhaseInfo:
+        """See `TourWalker`; that which is planned."""
+        return self.controller.planning.plan.phase
+
+    @property
+    def unsolved(self) -> bool:
+        """See `TourWalker`."""
+        return int(self.controller.report.status) > 1
+
+    @property
+    def falling(self) -> bool:
+        """See `TourWalker`."""
+        return bool(self.controller.planning.plan.status.falling)
+
+    def reset(self, q: Array) -> None:
+        """See `TourWalker`."""
+        self._ticks = 0
+        self.controller.reset(q)
+
+    def step(self, world: TourWorld, goal: Goal, arms: JointCommand | None) -> JointCommand:
+        """See `TourWalker`."""
+        return self._told(world, command_to(goal.way, goal.turn), arms)
+
+    def follow(self, world: TourWorld, twist: Twist, arms: JointCommand | None) -> JointCommand:
+        """See `TourWalker`."""
+        return self._told(world, Command(twist=twist, march=True), arms)
+
+    def _told(self, world: TourWorld, command: Command, arms: JointCommand | None) -> JointCommand:
+        due = self._ticks % (self.row.rate // COMMAND_RATE) == 0
+        self._ticks += 1
+        seen = world.contracted() if self.row.contract else world.measure()
+        return self.controller.step(seen, command if due else None, arms)
 
 
 DRIVES = {".*_(shoulder_.*|elbow|wrist_roll)_joint": (14.2506, 0.9072), ".*_wrist_(pitch|yaw)_joint": (16.7784, 1.0681)}
@@ -100,10 +165,10 @@ ROWS: dict[str, Row] = {
 """All of them, by name."""
 
 
-@lru_cache(maxsize=4)
-def _scenario(row: str) -> Scenario:
+def scenario_of(keys: tuple[tuple[str, Any], ...]) -> Scenario:
+    """The walk of a tour with keys over those of ``tour.yaml``."""
     with resources.as_file(resources.files(__package__).joinpath("tour.yaml")) as path:
-        return load(str(path), {"robot": str(robot_file()), **dict(ROWS[row].keys)})
+        return load(str(path), {"robot": str(robot_file()), **dict(keys)})
 
 
 def command_to(way: tuple[float, float], turn: float) -> Command:

@@ -41,14 +41,16 @@ class Punch:
     Attributes:
         time: of its beginning [s].
         joint: index of the joint whose child link it acts on, at the joint's anchor.
-        direction: in the frame of that link, of length 1, shape (3,).
+        direction: in the frame of that link, or of the one that it hangs from, of length 1, shape (3,).
         force: [N].
+        of_parent: whether the direction is fixed to the latter.
     """
 
     time: float
     joint: int
     direction: Array
     force: float
+    of_parent: bool = False
 
     @property
     def impulse(self) -> float:
@@ -83,7 +85,9 @@ class Tour:
         return min(int((time + _ROUNDING) / SLOT), len(self.places) - 1)
 
     def punch(self, time: float) -> Punch | None:
-        """The punch that acts at an instant [s]."""
+        """The punch that acts at an instant [s]; None of a tour without punches, too."""
+        if not self.punches:
+            return None
         punch = self.punches[self.slot(time)]
         return punch if punch.acts(time) else None
 
@@ -103,25 +107,36 @@ def _punch(time: float, joints: int, rng: np.random.Generator) -> Punch:
     joint = int(rng.integers(joints))
     z, turn = rng.uniform(-1.0, 1.0), rng.uniform(0.0, math.tau)
     level = math.sqrt(1.0 - z * z)
-    grown = min((time - DELAY) / RAMP, 1.0)
-    greatest = STRONGEST * (WEAKEST + (1.0 - WEAKEST) * grown)
     direction = np.array([level * math.cos(turn), level * math.sin(turn), z])
-    return Punch(time, joint, direction, greatest * rng.uniform(LEAST, 1.0))
+    return Punch(time, joint, direction, greatest(time) * rng.uniform(LEAST, 1.0))
+
+
+def greatest(time: float) -> float:
+    """Greatest force of a punch at an instant [N]."""
+    grown = min((time - DELAY) / RAMP, 1.0)
+    return STRONGEST * (WEAKEST + (1.0 - WEAKEST) * grown)
 
 
 class ArmWalk:
     """The left arm's angles as somebody else moves them; the right arm mirrors them.
 
     Args:
-        seed: of the tour.
+        steps: draws the steps to the next pose of so many joints, shape (steps, joints) [rad].
         start: angles at the start, shape (7,) [rad].
         lower: lower limits of the joints, shape (7,) [rad].
         upper: upper limits of the joints, shape (7,) [rad].
         allowed: whether both hands may be where these angles put them.
     """
 
-    def __init__(self, seed: int, start: Array, lower: Array, upper: Array, allowed: Callable[[Array], bool]) -> None:
-        self._rng = generator(seed, Stream.TOUR, 2)
+    def __init__(
+        self,
+        steps: Callable[[int], Array],
+        start: Array,
+        lower: Array,
+        upper: Array,
+        allowed: Callable[[Array], bool],
+    ) -> None:
+        self._steps = steps
         self._lower, self._upper, self._allowed = lower, upper, allowed
         self._from, self._to, self._slot = start.copy(), start.copy(), -1
 
@@ -139,7 +154,7 @@ class ArmWalk:
         """The next pose, or the same where none was found."""
         for _ in range(ARM_DRAWS):
             moved = angles
-            for step in self._rng.uniform(-ARM_STEP, ARM_STEP, (ARM_STEPS, len(angles))):
+            for step in self._steps(len(angles)):
                 moved = np.clip(moved + step, self._lower, self._upper)
             if self._allowed(moved):
                 return moved

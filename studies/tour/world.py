@@ -45,6 +45,7 @@ class TourWorld:
         self._soles = [self.model.site(name).id for name in description.sole_sites]
         self._feet = [int(self.model.site_bodyid[sole]) for sole in self._soles]
         self._links = self.model.jnt_bodyid[1:].tolist()
+        self._parents = self.model.body_parentid[self._links].tolist()
         self._q, self._v = np.zeros(self.model.nq), np.zeros(self.model.nv)
         self.energy, self.torque = np.zeros(len(self._limit)), np.zeros(len(self._limit))
 
@@ -70,6 +71,45 @@ class TourWorld:
         pinocchio_to_mujoco(q, self._v * 0.0, self.data.qpos, self.data.qvel)
         self.energy[:] = 0.0
         mujoco.mj_forward(self.model, self.data)
+
+    def hang(self, q: Array, command: JointCommand, time: float) -> Array:
+        """Hang by the pelvis, which does not move, for so long [s], and be let go; time begins then.
+
+        Args:
+            q: configuration in Pinocchio's convention, shape (7 + nj,).
+            command: of the joints, which servos follow.
+            time: how long [s].
+
+        Returns:
+            configuration at the end, in which nothing holds the pelvis any more, shape (7 + nj,).
+        """
+        self.reset(q)
+        held = self.data.qpos[:7].copy()
+        for _ in range(round(time * RATE)):
+            self.data.qpos[:7], self.data.qvel[:6] = held, 0.0
+            self.advance(command, 1.0 / RATE)
+        self.data.time, self.energy[:] = 0.0, 0.0
+        mujoco_to_pinocchio(self.data.qpos, self.data.qvel, self._q, self._v)
+        return self._q.copy()
+
+    def lowest(self) -> float:
+        """Height of the lower sole's centre [m]."""
+        return float(min(self.data.site_xpos[sole, 2] for sole in self._soles))
+
+    def slipping(self, wrench: Array) -> Array:
+        """Level speed of each foot at the centre of its pressure, of one that carries nothing 0, shape (2,) [m/s].
+
+        Args:
+            wrench: of the soles at their centres in their frames, shape (2, 6) [N, N·m].
+        """
+        speed, found = np.zeros(6), np.zeros(2)
+        for foot, (site, (_, _, force, roll, pitch, _)) in enumerate(zip(self._soles, wrench.tolist(), strict=True)):
+            if force > 0.0:
+                mujoco.mj_objectVelocity(self.model, self.data, mujoco.mjtObj.mjOBJ_SITE, site, speed, 0)
+                R = self.data.site_xmat[site].reshape(3, 3)
+                arm = R @ (-pitch / force, roll / force, 0.0)
+                found[foot] = np.hypot(*(speed[3:] + np.cross(speed[:3], arm))[:2])
+        return found
 
     def measure(self) -> Measurement:
         """State, torques of the joints and wrenches of the soles, all true."""
@@ -105,9 +145,14 @@ class TourWorld:
             data.xfrc_applied[:] = 0.0
             self.energy += np.abs(self.torque * data.qvel[6:]) * h
 
+    def push(self, body: str, force: Array) -> None:
+        """Let a force act on a body's centre of mass in the next step, in the world, shape (3,) [N]."""
+        self.data.xfrc_applied[self.model.body(body).id, :3] = force
+
     def direction(self, punch: Punch) -> Array:
         """Direction of a punch in the world, shape (3,)."""
-        return np.array(self.data.xmat[self._links[punch.joint]]).reshape(3, 3) @ punch.direction
+        frame = (self._parents if punch.of_parent else self._links)[punch.joint]
+        return np.array(self.data.xmat[frame]).reshape(3, 3) @ punch.direction
 
     def hands_allowed(self, robot: TourRobot, left: NDArray[np.intp], right: NDArray[np.intp]) -> "Hands":
         """Limits of the hands, within which the harness lets arms put them.

@@ -13,7 +13,7 @@ from numpy.typing import NDArray
 
 from surefoot.errors import ParameterError
 from surefoot.models import RobotOptions, describe
-from surefoot.planner.types import Twist
+from surefoot.planner.types import PhaseKind, Twist
 from surefoot.scenarios.judge.verdict import judge
 from surefoot.scenarios.log import read
 from surefoot.scenarios.policy.connection import Connection
@@ -216,7 +216,7 @@ class WalkEnv(gymnasium.Env[Observation, NDArray[np.float32]]):
                 return
 
     def _seen(self) -> dict[str, NDArray[np.float64]]:
-        """What is observed before the next decision."""
+        """Observation before the next decision."""
         sim = self.simulation
         if self._agent:
             sim.sense()
@@ -224,7 +224,7 @@ class WalkEnv(gymnasium.Env[Observation, NDArray[np.float32]]):
             return self._last
         tick = sim.look()
         assert tick.state is not None
-        self._connection.follow(self._followed(), True)
+        self._connection.follow(self._followed(), tick.phase.kind is not PhaseKind.STAND)
         self._due = self._connection.due(sim.time)
         self._last = self._connection.observe(tick.time, tick.state)
         return self._last
@@ -243,7 +243,7 @@ class WalkEnv(gymnasium.Env[Observation, NDArray[np.float32]]):
         return self._folder / f"episode-{self._episode:06d}.mcap"
 
     def _judge(self, sim: Simulation) -> dict[str, Any]:
-        """What is known at the end of an episode, for which a robot that has fallen goes on falling."""
+        """Findings at the end of an episode, for which a robot that has fallen goes on falling."""
         while not sim.done:
             try:
                 sim.advance()

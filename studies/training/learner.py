@@ -1,4 +1,4 @@
-"""What has the seat of a robot under training: it observes by a contract, and is told what to do."""
+"""A controller in the seat of a robot under training: it observes by a contract, and does what is decided outside."""
 
 import math
 from collections.abc import Mapping
@@ -25,11 +25,13 @@ from surefoot.wbc.estimation.estimate import Estimate, Planned
 Array = NDArray[np.float64]
 
 NAME = "learner"
-"""Under which a scenario names it."""
+"""Name that it has in scenarios."""
 
 
 class Learner:
-    """Does what it was told last; see `surefoot.scenarios.run.seat.SeatedController`.
+    """Carries out the last decision that it was given; see `surefoot.scenarios.run.seat.SeatedController`.
+
+    Its `told` has observation and action of the last decision, for the log.
 
     Args:
         walk: what is walked.
@@ -40,7 +42,6 @@ class Learner:
         reads: whether it is given what sensors say, in place of the truth.
         parameters: for the log.
         posture: of all joints at the start, shape (nj,) [rad].
-        told: observation and action of the last decision, for the log.
 
     Raises:
         ParameterError: contract, robot and rates do not fit together.
@@ -73,18 +74,18 @@ class Learner:
         self.told: Mapping[str, Array] | None = None
 
     def is_due(self, time: float) -> bool:
-        """Whether a decision is due at an instant [s]."""
+        """Return true if a decision is due at an instant [s]."""
         return math.isnan(self._begin) or time - self._begin >= self._next
 
     def observe(self, readings: Readings | Measurement, command: Command | None) -> dict[str, Array]:
-        """What each input observes, once before each decision, of what `step` will be given."""
+        """Observe what `step` will be given, by each input, once before each decision."""
         self._hear(readings, command)
         state = self._found(readings).state
         self._observed = self.connection.observe(readings.time - self._begin, state)
         return self._observed
 
     def decide(self, output: Array) -> None:
-        """Tell what a network would give at the decision that comes next, shape (m,)."""
+        """Give the output of a network, shape (m,), for the decision that comes next."""
         if output.shape != self._output.shape or not np.isfinite(output).all():
             what = (
                 f"an action of shape {output.shape} that is not finite" if output.shape else "an action without shape"
@@ -102,7 +103,7 @@ class Learner:
             if not self._observed:
                 self._observed = self.connection.observe(now, estimate.state)
             self._command = self.connection.command(self._output)
-            self.told, self._observed = self.connection.told(self._observed), {}
+            self.told, self._observed = self.connection.reported(self._observed), {}
         if self._senses.listens:
             state = estimate.state
             torque = self._command.torque_at(state.q[7:], state.v[6:])

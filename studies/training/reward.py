@@ -15,7 +15,7 @@ ASTRAY = 0.25
 
 @dataclass(frozen=True, slots=True)
 class Transition:
-    """What came of an action.
+    """Outcome of an action.
 
     Attributes:
         simulation: that goes on; `Simulation.measurement` and `Simulation.look` tell the true state.

@@ -117,7 +117,7 @@ def command_keys(command: Command) -> dict[str, Any]:
 
 
 _DURABLE = ("single_support", "double_support", "swing_height")
-"""What of a gait a command changes, by the names that `Command` and the key have in common."""
+"""Values of a gait that a command changes, by the names that `Command` and the key have in common."""
 
 
 def waypoints_of(keys: schema.Gait, start: schema.Start) -> tuple[Twist, ...]:

@@ -28,24 +28,24 @@ WXYZ, _XYZW = [3, 0, 1, 2], [1, 2, 3, 0]
 """Places of a quaternion's numbers in the other order."""
 
 LAYER = "Reference"
-"""Of the marks."""
+"""Layer of the marks."""
 
 THICK = 0.012
 """Radius of the lines from joint to joint [m]."""
 
 SHORTEST = 1e-3
-"""Of a line that is drawn [m]."""
+"""Length of the shortest line that is drawn [m]."""
 
 
 @dataclass(frozen=True, slots=True)
 class Motion:
-    """How a robot moves, frame by frame.
+    """Movement of a robot, frame by frame.
 
     Attributes:
         fps: frames per second [Hz].
         joint_names: in the order of the angles.
         root_position: of the base in the world, shape (n, 3) [m].
-        root_quaternion: likewise, w x y z, shape (n, 4).
+        root_quaternion: of the base in the world, w x y z, shape (n, 4).
         joint_position: shape (n, k) [rad].
     """
 

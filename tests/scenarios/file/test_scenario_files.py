@@ -80,6 +80,8 @@ CASES = {
     "planner: {horizon: 10}": "f.yaml:1:20: planner.horizon 10 is shorter than the planner's blocks of moves; use at",
     "planner: {profile: paper, control_horizon: 60}": "control_horizon 60 exceeds the horizon of 50 samples; use at",
     "planner: {profile: dcm, control_horizon: 2}": "with profile 'dcm', which optimises no moves of the jerk; leave it",
+    "planner: {without: [goes_agin]}": "'goes_agin', which is no rule of profile 'default'; did you mean 'goes_again'?",
+    "planner: {without: goes_again}": "f.yaml:1:20: planner.without is 'goes_again'; give a list",
     "duration: 1.0e-6": "f.yaml:1:11: duration 1e-06 s is shorter than one control tick; use at least 0.002 s",
     "pushes: [{time: 1, force: [1, 0, 0], body: torzo}]": (
         "f.yaml:1:44: unknown body 'torzo' of humanoid100; did you mean 'torso'?"

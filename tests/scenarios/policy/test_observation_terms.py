@@ -4,6 +4,7 @@ import numpy as np
 import pytest
 from scipy.spatial.transform import Rotation
 
+from surefoot.errors import ParameterError
 from surefoot.planner.types import Twist
 from surefoot.scenarios.policy import terms
 from surefoot.scenarios.policy.history import Stack
@@ -17,12 +18,27 @@ STILL = Twist()
 def seen(rotation=None, time=0.0, command=STILL, **more):
     upright = np.eye(3) if rotation is None else rotation.as_matrix()
     values = {
-        "time": time, "rotation": upright, "torso_rotation": np.eye(3), "angular_velocity": np.array([1.0, 2.0, 3.0]),
+        "time": time, "walked": 0.0, "since": 0.0, "rotation": upright,
+        "torso_rotation": np.eye(3), "angular_velocity": np.array([1.0, 2.0, 3.0]),
         "torso_angular_velocity": np.array([4.0, 5.0, 6.0]), "linear_velocity": np.zeros(3), "height": 0.7,
         "position": np.array([0.5, 1.0]), "default": np.array([0.1, 0.2]), "velocity": np.array([3.0, 4.0]),
         "action": np.array([7.0]), "command": command, "stands": command.is_zero,
     }  # fmt: skip
     return Seen(**{**values, **more})
+
+
+@pytest.mark.parametrize(("clock", "share"), [("always", 0.9), ("walking", 0.5), ("anew", 0.1)])
+def test_a_clock_runs_always_or_while_it_walks_or_anew(clock, share):
+    now = seen(time=0.9, walked=0.5, since=0.1, stands=False)
+    told = terms.phase(now, period=1.0, clock=clock)
+    np.testing.assert_allclose(told, (np.sin(2.0 * np.pi * share), np.cos(2.0 * np.pi * share)), atol=1e-12)
+    begun = terms.phase(now, period=1.0, clock=clock, begin=0.3, waves=["sin"]).item()
+    assert begun == pytest.approx(np.sin(2.0 * np.pi * (share + 0.3)))
+
+
+def test_a_clock_that_is_none_is_refused():
+    with pytest.raises(ParameterError, match="no clock 'never'"):
+        terms.phase(seen(), clock="never")
 
 
 def test_gravity_is_down_in_the_frame_of_the_base():

@@ -31,7 +31,7 @@ WALKS = {
     "pendulum": ("walk", {"fidelity": "pendulum", "sensing": {"zmp_noise": 0.01}}, 1.6),
 }
 GOES_ON = 0.6
-"""How far it goes on [s]."""
+"""Time for which it goes on [s]."""
 
 
 def at(scenario, time, **parts):
@@ -43,7 +43,7 @@ def at(scenario, time, **parts):
 
 
 def goes_on(sim, ticks=None):
-    """What comes, as bits: the state, what the sensors said, what was commanded and planned."""
+    """Bits of the ticks that come: the state, what the sensors said, what was commanded and planned."""
     found = []
     for _ in range(ticks or round(GOES_ON * sim.walk.rates.control)):
         if sim.done:

@@ -77,7 +77,7 @@ def test_between_ticks_it_is_between_them(walked):
 
 
 def test_velocities_are_those_of_the_positions(walked):
-    """By differences: bodies with their rotation, joints, and the base, in the world."""
+    """Velocities agree with differences: bodies with their rotation, joints, and the base, in the world."""
     found = sampled(walked, 1.0 / np.diff(walked["/truth"].time).min())
     _, model = world(walked)
     assert Coordinates(model).size == found.q.shape[1]

@@ -20,8 +20,8 @@ from surefoot.studies.tour.rows import DRIVES, ROWS, command_to
 pytestmark = pytest.mark.unit
 
 
-def made_up(row, seed, duration):
-    return TourResult(row, seed, min(10.0 + seed, duration), False, (0.01,), (0.02,), (300.0,), (), "", 0, 0.3)
+def made_up(entrant, seed, duration, setting):
+    return TourResult(entrant.name, seed, min(10.0 + seed, duration), False, (0.01,), (0.02,), (300.0,), (), "", 0, 0.3)
 
 
 @pytest.fixture
@@ -38,29 +38,29 @@ def ran(monkeypatch):
 
 
 def test_it_goes_on_where_it_stopped(ran, tmp_path):
-    first = Bench(["torque"], 3, tmp_path)
+    first = Bench([ROWS["torque"]], 3, tmp_path)
     first.run(1)
-    again = Bench(["torque"], 5, tmp_path)
-    assert [seed for _, seed, _ in again.left()] == [3, 4]
+    again = Bench([ROWS["torque"]], 5, tmp_path)
+    assert [seed for _, seed, *_ in again.left()] == [3, 4]
     again.run(1)
-    assert [seed for _, seed, _ in ran] == [0, 1, 2, 3, 4]
+    assert [seed for _, seed, *_ in ran] == [0, 1, 2, 3, 4]
     assert again.rows()[0].survival.value == pytest.approx(12.0)
 
 
 def test_tours_of_another_length_or_of_other_code_are_run_again(ran, tmp_path):
-    Bench(["torque"], 2, tmp_path).run(1)
-    assert len(Bench(["torque"], 2, tmp_path, duration=20.0).left()) == 2
+    Bench([ROWS["torque"]], 2, tmp_path).run(1)
+    assert len(Bench([ROWS["torque"]], 2, tmp_path, duration=20.0).left()) == 2
     journal = tmp_path / module.JOURNAL
     told = [json.loads(line) for line in journal.read_text().splitlines()]
     journal.write_text(json.dumps({**told[0], "made_by": "others"}) + "\n" + json.dumps(told[1]) + "\n{half")
-    assert [seed for _, seed, _ in Bench(["torque"], 2, tmp_path).left()] == [0]
+    assert [seed for _, seed, *_ in Bench([ROWS["torque"]], 2, tmp_path).left()] == [0]
 
 
 def test_the_result_is_whole_and_tells_what_it_is(ran, tmp_path):
-    bench = Bench(["torque"], 4, tmp_path)
+    bench = Bench([ROWS["torque"]], 4, tmp_path)
     bench.run(1)
     told = json.loads(bench.write().read_text())
-    assert told["note"].startswith("Own implementation, not calibrated")
+    assert told["note"].startswith("Own implementation.")
     assert told["differences"] and told["source"] and told["versions"]["mujoco"]
     page = (tmp_path / module.PAGE).read_text()
     assert page == markdown(told)
@@ -109,7 +109,7 @@ def test_the_controller_is_told_the_drives_of_the_arms_as_they_are():
     assert len(arms) == 14
     for name, inertia in zip(description.joint_names, armature, strict=True):
         if name in arms:
-            assert arms[name] == pytest.approx(robot.arm_gains(inertia), abs=1e-4)
+            assert arms[name] == pytest.approx(robot.drive_gains(inertia), abs=1e-4)
 
 
 def test_the_contract_hands_over_no_place_and_no_speed_of_the_base():

@@ -63,7 +63,7 @@ def test_the_place_goes_on_with_the_base_and_knows_not_where_it_began(walk):
 
 def test_it_follows_a_robot_that_marches():
     ride, errors = Ride(ROWS["arms"], 2), []
-    odometry = LegOdometry(ride.controller.walk)
+    odometry = LegOdometry(ride.walker.controller.walk)
     while ride.world.time < 2.0:
         ride.step()
         errors.append(odometry.estimate(ride.world.contracted()).v[:3] - ride.world.measure().v[:3])

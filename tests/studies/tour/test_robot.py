@@ -44,5 +44,5 @@ def test_every_joint_has_its_armature_and_its_limit(described):
 
 
 def test_drives_of_the_arms_are_limp():
-    stiffness, damping = tour_robot().arm_gains(0.003609725)
+    stiffness, damping = tour_robot().drive_gains(0.003609725)
     assert stiffness == pytest.approx(14.25, abs=0.01) and damping == pytest.approx(0.907, abs=0.001)

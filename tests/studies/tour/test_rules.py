@@ -3,6 +3,7 @@
 import numpy as np
 import pytest
 
+from surefoot.studies.tour.draws import OwnDraws
 from surefoot.studies.tour.rules import (
     ARM_STEP,
     ARM_STEPS,
@@ -59,7 +60,7 @@ def test_a_seed_is_the_same_tour_each_time_and_no_other_is():
 
 
 def arms(allowed, seed=0):
-    return ArmWalk(seed, np.zeros(7), np.full(7, -1.0), np.full(7, 1.0), allowed)
+    return ArmWalk(OwnDraws().arm_steps(seed), np.zeros(7), np.full(7, -1.0), np.full(7, 1.0), allowed)
 
 
 def test_arms_go_from_pose_to_pose_and_are_never_still():

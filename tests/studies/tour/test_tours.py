@@ -13,7 +13,7 @@ pytestmark = pytest.mark.physics
 
 @pytest.mark.parametrize("seed", [0, 1])
 def test_the_first_ten_seconds_are_survived_and_places_are_reached(seed):
-    result = run_tour("torque", seed, 10.0)
+    result = run_tour(ROWS["torque"], seed, 10.0)
     assert result.completed and not result.fault
     assert len(result.punches) == len(result.position_errors) == 2
     assert max(result.position_errors) < 0.1 and max(result.heading_errors) < 0.1
@@ -25,8 +25,7 @@ def test_wrenches_that_follow_from_torques_push_nobody(monkeypatch):
     monkeypatch.setattr(Tour, "punch", lambda *_: None)
     row = ROWS["contract"]
     doubted = replace(row, name="doubted", keys=(*row.keys, ("sensing.force_estimate", True)))
-    monkeypatch.setitem(ROWS, doubted.name, doubted)
-    result = run_tour(doubted.name, 1, 11.0)
+    result = run_tour(doubted, 1, 11.0)
     assert result.completed
     assert max(result.position_errors) < 0.06
 

@@ -23,7 +23,6 @@ def walk_with(monkeypatch, *keys):
     """Let the robot of the row walk with these keys and a trunk that takes no part."""
     arms = rows.ROWS["arms"]
     monkeypatch.setitem(rows.ROWS, "arms", replace(arms, keys=(*arms.keys, *UPRIGHT, *keys)))
-    rows._scenario.cache_clear()
 
 
 def highest(monkeypatch, weight):
@@ -32,20 +31,13 @@ def highest(monkeypatch, weight):
     monkeypatch.setattr(rules, "WEAKEST", 1.0)
     walk_with(monkeypatch, ("wbc.weights.turning_catching", weight))
     tour = ride.Ride(rows.ROWS["arms"], SEED)
-    controller, most = tour.controller, -np.inf
+    controller, most = tour.walker.controller, -np.inf
     while True:
         tour.step()
-        plan, time = controller.planning.plan, tour._tick / tour.row.rate
+        plan, time = controller.planning.plan, tour._tick / tour.entrant.rate
         if plan.phase.landed > 0 or time > 1.0:
             return most, time
         most = max(most, float(controller.terms.com[2] - plan.com[0, 2]))
-
-
-@pytest.fixture(autouse=True)
-def forget():
-    """Let no other test walk a scenario of this one."""
-    yield
-    rows._scenario.cache_clear()
 
 
 def test_a_punch_on_a_limp_arm_does_not_lift_it_off_its_stance_foot(monkeypatch):

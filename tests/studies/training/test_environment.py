@@ -68,7 +68,7 @@ def test_under_the_built_in_controller_it_is_the_run_to_the_bit(robot, tmp_path,
 
 
 def test_a_network_here_is_the_policy_that_runs(tmp_path):
-    """By noisy sensors, under a command, with its history: the same states to the bit."""
+    """States are the same to the bit by noisy sensors, under a command, with its history."""
     import policies
     from needs import POLICY
 
@@ -95,6 +95,40 @@ def test_a_network_here_is_the_policy_that_runs(tmp_path):
     for name in ("observation", "action"):
         np.testing.assert_array_equal(ours["/controller"].field(name), theirs["/controller"].field(name))
     assert len(ours["/controller"]) == 30
+
+
+CLOCKS = [
+    {"term": "moving"},
+    *({"term": "phase", "options": {"period": 10.0, "clock": clock}} for clock in ("walking", "anew")),
+]
+BOUTS = [{"time": 0.1, "march": True}, {"time": 0.2, "v_x": 0.0}, {"time": 0.3, "v_x": 0.2}, {"time": 0.4, "v_x": 0.0}]
+STEPS = {"duration": 1.4, "gait.initial_stand": 0.2}
+
+
+@pytest.mark.parametrize(
+    ("scenario", "driver", "settings", "moves"),
+    [
+        ("stand", "agent", {**STANDS, "commands": BOUTS}, [False, True, False, True, False]),
+        ("walk", "built-in", STEPS, [False, True]),
+        ("stand", "built-in", STANDS, [False]),
+    ],
+)
+def test_clocks_count_the_decisions_at_which_it_walks(scenario, driver, settings, moves, tmp_path):
+    import policies
+
+    robot = policies.robot_of("g1")
+    file = policies.write(tmp_path, policies.contract(robot, robot.joint_names, observations=CLOCKS))
+    env = made(scenario=scenario, driver=driver, contract=file, settings=settings)
+    found = [episode(env, seed=3)[0][:-1].astype(float) for _ in range(2)]
+    env.close()
+    assert found[0].tobytes() == found[1].tobytes() and len(found[0]) > 25
+    moving, *waves = found[0].T
+    bouts = [moving[0], *moving[1:][np.diff(moving) != 0.0]]
+    assert bouts == moves
+    walked, since = (np.arctan2(sin, cos) / (2.0 * np.pi) * 10.0 for sin, cos in (waves[:2], waves[2:]))
+    np.testing.assert_allclose(walked, 0.02 * np.cumsum(moving), atol=1e-5)
+    rested = np.maximum.accumulate(np.where(moving == 0.0, np.cumsum(moving), 0.0))
+    np.testing.assert_allclose(since, 0.02 * (np.cumsum(moving) - rested), atol=1e-5)
 
 
 def test_an_episode_is_that_of_its_seed_and_draws_are_made_at_each_reset():

@@ -27,7 +27,7 @@ class CompiledModules(BuildHookInterface):
         return modules
 
     def dependencies(self) -> list[str]:
-        """What the build needs beside Cython: a C compiler as a wheel where the machine has none."""
+        """Needs of the build beside Cython: a C compiler as a wheel where the machine has none."""
         return [] if self._modules().has_compiler() else ["ziglang>=0.15"]
 
     def initialize(self, version: str, build_data: dict[str, Any]) -> None:

@@ -72,7 +72,7 @@ class TimedWalk:
                 yield time.thread_time() - start
 
     def _timed(self) -> dict[type | ModuleType, dict[str, Callable[..., Any]]]:
-        """What is timed in the place of each method, by its owner: a class may be watched in several parts."""
+        """Timed stand-ins of each method, by its owner: a class may be watched in several parts."""
         found: dict[type | ModuleType, dict[str, Callable[..., Any]]] = defaultdict(dict)
         for part, methods in PARTS.items():
             for owner, method in methods:

@@ -103,7 +103,7 @@ def _with_parents(name: str, root: Path) -> Iterator[Path]:
 
 
 def _homes(package: str, name: str, root: Path) -> Iterator[str]:
-    """Where a name that is imported comes from: a module of the package, or what its face imports for checkers."""
+    """Origin of a name that is imported: a module of the package, or what its face imports for checkers."""
     if _module(f"{package}.{name}", root) is not None:
         yield f"{package}.{name}"
         return

@@ -1,4 +1,4 @@
-"""Which results a change can have touched, and how they are made again.
+"""Results that a change can have touched, and the commands that make them again.
 
     python docs/results.py                          # fresh, stale or unknown, each with the time that it took last
     python docs/results.py --run [NAME]...          # make again what is stale, or what is named
@@ -31,10 +31,10 @@ OUT = Path("runs") / "results"
 KEPT = FOLDER / "results" / "made.json"
 
 RUN = ("surefoot.studies.campaigns.sweep", "surefoot.scenarios.run.run", "surefoot.scenarios.judge.verdict")
-"""What a campaign follows from."""
+"""Sources that a campaign follows from."""
 
 CHECK = ("surefoot.scenarios.check.command", "surefoot.scenarios.run.run", "surefoot.scenarios.judge.verdict")
-"""What a baseline follows from."""
+"""Sources that a baseline follows from."""
 
 AFTER = ("python docs/reference.py", "python docs/told.py")
 """Write tables, numbers and texts from the results."""
@@ -107,7 +107,7 @@ def _of(name: str, said: Mapping[str, Any]) -> Result:
 
 
 def kept(path: Path = KEPT) -> dict[str, Any]:
-    """What was kept when results were made, by their name: digests, and the time it took [s]."""
+    """Record of results when they were made, by their name: digests, and the time it took [s]."""
     return json.loads(path.read_text(encoding="utf-8")) if path.exists() else {}
 
 

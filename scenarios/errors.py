@@ -7,8 +7,6 @@ from dataclasses import dataclass, replace
 from types import ModuleType
 from typing import Any
 
-from surefoot.version import install_command
-
 Key = tuple[str | int, ...]
 """Path of a value in a scenario: keys and list indices."""
 
@@ -129,6 +127,8 @@ def require(module: str, extra: str, purpose: str, otherwise: str = "") -> Modul
     try:
         return importlib.import_module(module)
     except ImportError:
+        from surefoot.version import install_command  # which imports what reads distributions
+
         right = f"install it with: {install_command(extra)}" + (f", or {otherwise}" if otherwise else "")
         raise MissingExtraError(f"{purpose} needs the package {module}; {right}") from None
 

@@ -53,7 +53,7 @@ def _threshold(row: dict[str, str]) -> Threshold:
 
 
 DRAWN = {**dict.fromkeys(PUSH_MAPS, push_map), "ladder-beside": beside}
-"""What draws each picture."""
+"""Functions that draw each picture."""
 
 
 def _save(figure: Any, name: str) -> None:

@@ -59,7 +59,7 @@ class MotionProblem:
         fallback: the previous jerk sequence shifted by one sample, to go on with when no solver answers, shape (N, 2)
             [m/s^3].
         rotation: plan frame to world, shape (2, 2) [-].
-        memory: what the law's last motion left to be told, one vector or several, shape (..., 2); None where it left
+        memory: what the law's last motion left, one vector or several, shape (..., 2); None where it left
             nothing.
     """
 
@@ -112,7 +112,7 @@ class Motion:
         solver: the worse status of the two axes.
         infeasible: a hard problem had no solution and was softened.
         qps: the problems that were solved, x and y axis, to be looked at or stored; none where a law needs no QP.
-        memory: what the law is to be told in the next tick, one vector or several, shape (..., 2); a law itself
+        memory: what the law gets back in the next tick, one vector or several, shape (..., 2); a law itself
             remembers nothing.
     """
 

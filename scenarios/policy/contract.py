@@ -76,7 +76,7 @@ class CommandRange(Group):
 
 
 class Places(Group):
-    """How it is led to a place that it is told of, where something does so: the tour of a benchmark."""
+    """Law by which it is led to a place, where something does so: the tour of a benchmark."""
 
     gain: Positive = key(1.5, "velocity over the distance [1/s]")
     turn_gain: Positive = key(1.5, "yaw rate over the angle [1/s]")

@@ -137,7 +137,7 @@ def phase(
         grouped: wave by wave, else offset by offset.
         begin: share at the reset [-].
         stance: share that is taken for the first half turn [-].
-        rest: share at which the clock stands while the robot is to stand; None where it is told as it is [-].
+        rest: share at which the clock stands while the robot is to stand; None where it is given as it is [-].
         clock: runs always, only while the robot is to walk, or anew from when it last was to stand.
     """
     times = {"always": seen.time, "walking": seen.walked, "anew": seen.since}

@@ -22,7 +22,7 @@ FARTHER = 8.0
 
 @dataclass(frozen=True, slots=True)
 class Beside:
-    """Who stands beside whom.
+    """Names of the two walkers beside each other.
 
     Attributes:
         policy: file or folder of the policy, or the name of a controller.
@@ -34,7 +34,7 @@ class Beside:
 
     @property
     def name(self) -> str:
-        """Of the policy, by its file or folder."""
+        """Name of the policy, by its file or folder."""
         path = Path(self.policy)
         return path.resolve().parent.name if path.is_file() and path.stem in ("contract", "deploy") else path.stem
 

@@ -37,8 +37,8 @@ def published() -> dict[str, Any]:
 
 def differences(setting: Setting) -> list[str]:
     """Differences from the benchmark in a setting."""
-    told: list[Any] = published()["differences"]
-    ours = [one if isinstance(one, dict) else {"what": one} for one in told]
+    written: list[Any] = published()["differences"]
+    ours = [one if isinstance(one, dict) else {"what": one} for one in written]
     return [one["what"] for one in ours if all(asdict(setting)[key] == one[key] for key in one if key != "what")]
 
 
@@ -147,10 +147,10 @@ class Bench:
 
     def _read(self) -> None:
         """Find the tours that the folder has of this making."""
-        for told, made_by in self._journal.lines():
+        for kept, made_by in self._journal.lines():
             try:
-                if made_by == self._made_by.get(told["row"]):
-                    result = _result(told)
+                if made_by == self._made_by.get(kept["row"]):
+                    result = _result(kept)
                     self._results[result.row, result.seed] = result
             except (TypeError, KeyError):
                 continue
@@ -159,16 +159,16 @@ class Bench:
 _LOST = "lost"
 
 
-def _lost(entrant: Entrant, seed: int, duration: float, setting: Setting, told: str) -> TourResult:
+def _lost(entrant: Entrant, seed: int, duration: float, setting: Setting, why: str) -> TourResult:
     """In place of a tour whose process ended unexpectedly, which is run again when the command is given again."""
     return TourResult(entrant.name, seed, 0.0, False, (), (), (), (), _LOST, 0, None)
 
 
-def _result(told: Mapping[str, Any]) -> TourResult:
-    punches = (PunchTaken(**{**punch, "direction": tuple(punch["direction"])}) for punch in told["punches"])
-    lists: dict[str, Any] = {name: tuple(told[name]) for name in ("position_errors", "heading_errors", "energy")}
-    left_over = told["left_over"] and tuple(told["left_over"])
-    return TourResult(**{**told, **lists, "punches": tuple(punches), "left_over": left_over})
+def _result(kept: Mapping[str, Any]) -> TourResult:
+    punches = (PunchTaken(**{**punch, "direction": tuple(punch["direction"])}) for punch in kept["punches"])
+    lists: dict[str, Any] = {name: tuple(kept[name]) for name in ("position_errors", "heading_errors", "energy")}
+    left_over = kept["left_over"] and tuple(kept["left_over"])
+    return TourResult(**{**kept, **lists, "punches": tuple(punches), "left_over": left_over})
 
 
 def lines(record: dict[str, Any]) -> Iterator[str]:

@@ -30,7 +30,7 @@ class Draws(Protocol):
 
 
 class OwnDraws:
-    """By the streams of Surefoot."""
+    """Draws by the streams of Surefoot."""
 
     def tour(self, seed: int, joints: int) -> Tour:
         """See `Draws`."""
@@ -43,7 +43,7 @@ class OwnDraws:
 
 
 class BenchmarkDraws:
-    """By the streams of the benchmark, whose run of the same number has the same places, punches and poses.
+    """Draws by the streams of the benchmark, whose run of the same number has the same places, punches and poses.
 
     A punch points in the frame of the link that it hits, or of the one that this hangs from, at random.
     """
@@ -88,7 +88,7 @@ class Twister:
     """
 
     _WORDS = 624
-    """Of the state of the generator."""
+    """Words of the state of the generator."""
 
     def __init__(self, run: int, stream: int) -> None:
         key = np.array(seed_sequence((run % 2**32, stream), self._WORDS), dtype=np.uint32)
@@ -115,11 +115,12 @@ class Twister:
 
 
 def seed_sequence(given: tuple[int, ...], count: int) -> list[int]:
-    """What ``std::seed_seq`` makes of some 32-bit words: so many others, at least 624.
+    """Words that ``std::seed_seq`` makes of some 32-bit words: so many others, at least 624.
 
     Source: ISO/IEC 14882:2020, [rand.util.seedseq], paragraph 8.
     """
-    words, mask, s, t = [0x8B8B8B8B] * count, 2**32 - 1, len(given), 11
+    words, mask = [0x8B8B8B8B] * count, 2**32 - 1
+    s, t = len(given), 11
     p = (count - t) // 2
     q, rounds = p + t, max(s + 1, count)
 

@@ -22,30 +22,30 @@ from surefoot.studies.tour.world import RATE, TourWorld
 Array = NDArray[np.float64]
 
 MOST = (0.4, 0.25, 0.5)
-"""Of the velocities that are drawn: ahead, sideways [m/s], and of the heading [rad/s]."""
+"""Ranges of the velocities that are drawn: ahead, sideways [m/s], and of the heading [rad/s]."""
 
 VELOCITIES, HELD, SETTLED = 8, 4.0, 2.0
-"""How many of them, how long each is told, and from when on it is judged [-, s, s]."""
+"""Number of them, time for which each is commanded, and time from which on it is judged [-, s, s]."""
 
 AHEAD, PUSHED_STEP, PUSH_TIME, AFTER = 0.3, 5, 0.1, 3.0
 """Speed at which a pushed robot walks [m/s], the step in which it is pushed, for how long, and how long it must stay up
 from then on [-, s, s]."""
 
 LATEST = 12.0
-"""By when that step must have come [s]."""
+"""Time by which that step must have come [s]."""
 
 WEAKEST, STRONGEST, CLOSE = 0.1, 6.4, 0.075
 """Impulse of the first push, the one at which the search ends, and how well the threshold is known [N·s/kg]."""
 
 PHASES = {"mid-swing": (PhaseKind.SINGLE, 0.5), "double support": (PhaseKind.DOUBLE, 0.5)}
-"""When in the gait a push comes: the phase, and the elapsed share of it."""
+"""Moment of a push in the gait: the phase, and the elapsed share of it."""
 
 DIRECTIONS = {"forward": 0.0, "left": 0.5 * math.pi, "backward": math.pi, "right": -0.5 * math.pi}
-"""Of a push, from the heading of the start [rad]."""
+"""Direction of a push, from the heading of the start [rad]."""
 
 
 class Drill:
-    """A walker that is told velocities, its arms held where the tour begins them.
+    """A walker that follows commanded velocities, its arms held where the tour begins them.
 
     Args:
         entrant: that takes part.
@@ -92,7 +92,7 @@ class Drill:
 
 @dataclass(frozen=True, slots=True)
 class Followed:
-    """How velocities drawn at random were followed.
+    """Errors against velocities drawn at random.
 
     Attributes:
         fell: whether it fell, whereupon the rest is of what came before.
@@ -134,7 +134,7 @@ def followed(entrant: Entrant, seed: int) -> Followed:
 
 
 def velocities(seed: int) -> Iterator[Twist]:
-    """Those of a seed."""
+    """Velocities of a seed."""
     rng = generator(seed, Stream.TOUR, 3)
     for row in rng.uniform(np.negative(MOST), MOST, (VELOCITIES, 3)):
         yield Twist(*row.tolist())
@@ -146,7 +146,7 @@ def _pose(world: TourWorld) -> Array:
 
 
 def _error(before: Array, after: Array, time: float, twist: Twist) -> Array:
-    """Mean velocity in the heading in the middle less the one told, shape (3,)."""
+    """Mean velocity in the heading in the middle less the commanded one, shape (3,)."""
     turn = math.remainder(float(after[2] - before[2]), math.tau)
     middle = float(before[2]) + 0.5 * turn
     cos, sin = math.cos(middle), math.sin(middle)

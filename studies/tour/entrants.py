@@ -1,4 +1,4 @@
-"""Who takes part in the tour, and how it begins, by the words of a command."""
+"""Walkers of the tour and its beginning, by the words of a command."""
 
 from collections.abc import Sequence
 from pathlib import Path
@@ -37,7 +37,7 @@ def entrants(rows: Sequence[str], policies: Sequence[Path]) -> list[Entrant]:
 
 
 def setting(start: str, draws: str) -> Setting:
-    """How a tour begins, and what draws it.
+    """Beginning of a tour, and its random numbers.
 
     Raises:
         ScenarioError: one of them is not known.

@@ -26,12 +26,12 @@ class Journal:
             return
         for line in self._path.read_text(encoding="utf-8").splitlines():
             try:
-                told = json.loads(line)
-                yield told, told.pop("made_by")
+                written = json.loads(line)
+                yield written, written.pop("made_by")
             except (ValueError, TypeError, KeyError, AttributeError):  # the last line of a process that was killed
                 continue
 
-    def add(self, told: Mapping[str, Any], made_by: str) -> None:
+    def add(self, written: Mapping[str, Any], made_by: str) -> None:
         """Keep a result.
 
         Raises:
@@ -40,7 +40,7 @@ class Journal:
         try:
             with self._path.open("a", encoding="utf-8") as file:
                 file.write("" if self._ended() else "\n")
-                file.write(json.dumps({**told, "made_by": made_by}) + "\n")
+                file.write(json.dumps({**written, "made_by": made_by}) + "\n")
         except OSError as error:
             raise LogError(f"{self._path}: cannot be written, {reason(error)}; choose another --out") from None
 
@@ -53,6 +53,6 @@ class Journal:
             return file.read(1) == b"\n"
 
 
-def digest(told: Mapping[str, Any]) -> str:
+def digest(written: Mapping[str, Any]) -> str:
     """A short digest of values."""
-    return hashlib.sha256(json.dumps(told, sort_keys=True).encode()).hexdigest()[:16]
+    return hashlib.sha256(json.dumps(written, sort_keys=True).encode()).hexdigest()[:16]

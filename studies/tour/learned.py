@@ -64,7 +64,7 @@ class LearnedEntrant:
         return f"policy {self.name}: what its contract observes in, positions of its joints out"
 
     def digest(self) -> str:
-        """Of contract and network as they are now."""
+        """Digest of contract and network as they are now."""
         return digest_of(self.file)
 
     def walker(self) -> "Learned":

@@ -190,7 +190,7 @@ def cause(result: TourResult) -> str:
 
 
 SLOTS = {"position_errors": "m", "heading_errors": "rad", "energy": "J"}
-"""What a tour has of each slot that was brought to its end, with its unit."""
+"""Numbers of each slot of a tour that was brought to its end, with its unit."""
 
 COLUMNS = (
     "row",
@@ -200,7 +200,7 @@ COLUMNS = (
     *(f"{name} [{unit}]" for name, unit in SLOTS.items()),
     "left_over",
 )
-"""Of the table of tours; what is left over is a distance [m] and an angle [rad]."""
+"""Columns of the table of tours; what is left over is a distance [m] and an angle [rad]."""
 
 
 def tours_table(tours: Sequence[TourResult]) -> Iterator[Sequence[Any]]:
@@ -231,7 +231,7 @@ def read_tours(rows: Iterable[Sequence[str]]) -> list[TourResult]:
 
 
 def punches_table(rows: Sequence[RowResult]) -> Iterator[Sequence[Any]]:
-    """Likewise how many punches of each kind were survived."""
+    """Rows of the table of punches: how many of each kind were survived."""
     yield "row", "kind", "of", "survived", "punches"
     for row in rows:
         for kind, shares in row.punches.items():

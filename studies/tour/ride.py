@@ -82,7 +82,7 @@ class TourResult:
 
 @dataclass(frozen=True, slots=True)
 class Setting:
-    """How a tour begins, and whose random numbers it has.
+    """Beginning of a tour, and the origin of its random numbers.
 
     Attributes:
         start: on the ``feet``, or on the ``crane`` of the benchmark, which lets go.
@@ -99,7 +99,7 @@ OWN = Setting()
 STARTS = ("feet", "crane")
 
 HUNG = 3.0
-"""How long the crane holds the robot [s]."""
+"""Time for which the crane holds the robot [s]."""
 
 
 class Ride:

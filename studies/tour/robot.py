@@ -122,7 +122,7 @@ def tour_robot() -> TourRobot:
 
 
 def arms_of(names: Sequence[str]) -> NDArray[np.bool_]:
-    """Which joints are the arms', by their names, shape (nj,)."""
+    """Joints of the arms, by their names, shape (nj,)."""
     return np.array([any(part in name for part in ("shoulder", "elbow", "wrist")) for name in names])
 
 

@@ -109,13 +109,13 @@ class Planned:
 
     def step(self, world: TourWorld, goal: Goal, arms: JointCommand | None) -> JointCommand:
         """See `TourWalker`."""
-        return self._told(world, command_to(goal.way, goal.turn), arms)
+        return self._step(world, command_to(goal.way, goal.turn), arms)
 
     def follow(self, world: TourWorld, twist: Twist, arms: JointCommand | None) -> JointCommand:
         """See `TourWalker`."""
-        return self._told(world, Command(twist=twist, march=True), arms)
+        return self._step(world, Command(twist=twist, march=True), arms)
 
-    def _told(self, world: TourWorld, command: Command, arms: JointCommand | None) -> JointCommand:
+    def _step(self, world: TourWorld, command: Command, arms: JointCommand | None) -> JointCommand:
         due = self._ticks % (self.row.rate // COMMAND_RATE) == 0
         self._ticks += 1
         seen = world.contracted() if self.row.contract else world.measure()

@@ -23,7 +23,7 @@ from surefoot.studies.tour.walker import Entrant
 JOURNAL, RESULT, PAGE, TABLE, FIGURE = "side.jsonl", "result.json", "result.md", "side.csv", "side.svg"
 
 PLACES_TIME = 30.0
-"""How long it goes from place to place without punches [s]."""
+"""Time for which it goes from place to place without punches [s]."""
 
 MEASURES = {
     "velocity_error": "error of the velocity, RMS [m/s]",
@@ -67,16 +67,16 @@ def pushes() -> list[tuple[str, str]]:
 def done(task: Task) -> dict[str, Any]:
     """Do it; gives its result as JSON has it."""
     row, kind, which = task.key
-    told: dict[str, Any] = {"row": row, "kind": kind, "which": which}
+    one: dict[str, Any] = {"row": row, "kind": kind, "which": which}
     if kind == "velocities":
-        return {**told, **plain(asdict(followed(task.entrant, which)))}
+        return {**one, **plain(asdict(followed(task.entrant, which)))}
     if kind == "push":
-        return {**told, "threshold": largest(task.entrant, *pushes()[which])}
+        return {**one, "threshold": largest(task.entrant, *pushes()[which])}
     result = run_tour(task.entrant, which, PLACES_TIME, Setting(punched=False))
     place, turn = (
         float(np.mean(errors)) if errors else None for errors in (result.position_errors, result.heading_errors)
     )
-    return {**told, "fell": not result.completed, "place_error": place, "turn_error": turn}
+    return {**one, "fell": not result.completed, "place_error": place, "turn_error": turn}
 
 
 class Side:
@@ -97,9 +97,9 @@ class Side:
         self._made_by = {one.name: digest({"versions": versions, "walker": one.digest()}) for one in entrants}
         self._journal = Journal(self._folder / JOURNAL)
         self._results: dict[tuple[str, str, int], Mapping[str, Any]] = {}
-        for told, made_by in self._journal.lines():
-            if made_by == self._made_by.get(told.get("row", "")):
-                self._results[told["row"], told["kind"], told["which"]] = told
+        for one, made_by in self._journal.lines():
+            if made_by == self._made_by.get(one.get("row", "")):
+                self._results[one["row"], one["kind"], one["which"]] = one
 
     def left(self) -> list[Task]:
         """Tasks that are still to be done, of every walker the same piece together."""
@@ -114,32 +114,32 @@ class Side:
 
         Args:
             workers: processes.
-            on_task: is told each time that one is done.
+            on_task: is called each time that one is done.
 
         Raises:
             LogError: a result cannot be written.
         """
         left = [(task,) for task in self.left()]
-        for told in side_by_side(done, left, workers, lambda *_: {}) if left else ():
-            if told:
-                self._results[told["row"], told["kind"], told["which"]] = told
-                self._journal.add(told, self._made_by[told["row"]])
+        for one in side_by_side(done, left, workers, lambda *_: {}) if left else ():
+            if one:
+                self._results[one["row"], one["kind"], one["which"]] = one
+                self._journal.add(one, self._made_by[one["row"]])
             on_task()
 
     def to_json(self) -> dict[str, Any]:
         """All that is known of each walker."""
         rows = [self._row(entrant) for entrant in self._entrants]
-        told = {"bench": "g1-side", "seeds": self._seeds, "rows": rows, "versions": dict(relevant_versions())}
-        return {**told, "measures": MEASURES, "pushes": pushes()}
+        one = {"bench": "g1-side", "seeds": self._seeds, "rows": rows, "versions": dict(relevant_versions())}
+        return {**one, "measures": MEASURES, "pushes": pushes()}
 
     def _row(self, entrant: Entrant) -> dict[str, Any]:
-        of = [told for key, told in sorted(self._results.items()) if key[0] == entrant.name]
+        of = [one for key, one in sorted(self._results.items()) if key[0] == entrant.name]
         found: dict[str, Any] = {"row": entrant.name, "meaning": entrant.meaning}
         for name in MEASURES:
-            values = [told[name] for told in of if told.get(name) is not None and not told.get("fell")]
+            values = [one[name] for one in of if one.get(name) is not None and not one.get("fell")]
             found[name] = {"value": float(np.mean(values)) if values else None, "count": len(values)}
-        found["fell"] = [sum(bool(told.get("fell")) for told in of), sum("fell" in told for told in of)]
-        known = {told["which"]: told["threshold"] for told in of if told["kind"] == "push"}
+        found["fell"] = [sum(bool(one.get("fell")) for one in of), sum("fell" in one for one in of)]
+        known = {one["which"]: one["threshold"] for one in of if one["kind"] == "push"}
         return {**found, "thresholds": [known.get(number) for number in range(len(pushes()))]}
 
     def write(self) -> Path:
@@ -148,27 +148,27 @@ class Side:
         Returns:
             path of the first.
         """
-        told = self.to_json()
-        texts = {RESULT: json.dumps(told, indent=1, allow_nan=False) + "\n", PAGE: markdown(told)}
+        one = self.to_json()
+        texts = {RESULT: json.dumps(one, indent=1, allow_nan=False) + "\n", PAGE: markdown(one)}
         for name, text in texts.items():
             with write_whole(self._folder / name, replace=True) as temporary:
                 temporary.write_text(text, encoding="utf-8")
         with write_whole(self._folder / TABLE, replace=True) as temporary, temporary.open("w", newline="") as file:
-            csv.writer(file, lineterminator="\n").writerows(table(told))
+            csv.writer(file, lineterminator="\n").writerows(table(one))
         with write_whole(self._folder / FIGURE, replace=True) as temporary:
-            figure(told).savefig(temporary, format="svg")
+            figure(one).savefig(temporary, format="svg")
         return self._folder / RESULT
 
 
-def table(told: Mapping[str, Any]) -> Iterator[Sequence[Any]]:
+def table(one: Mapping[str, Any]) -> Iterator[Sequence[Any]]:
     """Rows of cells, of which the first is the heading: walker, what, value, of how many."""
     yield "row", "what", "value", "count"
-    for row in told["rows"]:
-        for name in told["measures"]:
+    for row in one["rows"]:
+        for name in one["measures"]:
             value = row[name]["value"]
             yield row["row"], name, "" if value is None else f"{value:.5g}", row[name]["count"]
         yield row["row"], "fell", *row["fell"]
-        for (phase, direction), threshold in zip(told["pushes"], row["thresholds"], strict=True):
+        for (phase, direction), threshold in zip(one["pushes"], row["thresholds"], strict=True):
             yield row["row"], f"push {phase} {direction}", "" if threshold is None else f"{threshold:.4g}", 1
 
 

@@ -7,56 +7,56 @@ from typing import TYPE_CHECKING, Any
 if TYPE_CHECKING:
     from matplotlib.figure import Figure
 
-Told = Mapping[str, Any]
+Found = Mapping[str, Any]
 
 CLOSE = 0.05
 """Share of the best within which others are as good [-]."""
 
 
-def markdown(told: Told) -> str:
+def markdown(found: Found) -> str:
     """Tables of a result, and who is best in each line."""
-    return "\n".join((*_table(told), "", *_pushes(told), "", *_winners(told))) + "\n"
+    return "\n".join((*_table(found), "", *_pushes(found), "", *_winners(found))) + "\n"
 
 
-def _table(told: Told) -> Iterator[str]:
-    names = [row["row"] for row in told["rows"]]
+def _table(found: Found) -> Iterator[str]:
+    names = [row["row"] for row in found["rows"]]
     yield _line(("less is better", *(f"`{name}`" for name in names)))
     yield "|" + "---|" * (1 + len(names))
-    for name, words in told["measures"].items():
-        values = [row[name]["value"] for row in told["rows"]]
+    for name, words in found["measures"].items():
+        values = [row[name]["value"] for row in found["rows"]]
         best = _best(values, least=True)
         yield _line((words, *(_cell(value, number in best) for number, value in enumerate(values))))
-    yield _line(("fell", *(f"{row['fell'][0]} of {row['fell'][1]}" for row in told["rows"])))
+    yield _line(("fell", *(f"{row['fell'][0]} of {row['fell'][1]}" for row in found["rows"])))
 
 
-def _pushes(told: Told) -> Iterator[str]:
-    names = [row["row"] for row in told["rows"]]
+def _pushes(found: Found) -> Iterator[str]:
+    names = [row["row"] for row in found["rows"]]
     yield _line(("largest push survived [N·s/kg]", *(f"`{name}`" for name in names)))
     yield "|" + "---|" * (1 + len(names))
-    for number, (phase, direction) in enumerate(told["pushes"]):
-        values = [row["thresholds"][number] for row in told["rows"]]
+    for number, (phase, direction) in enumerate(found["pushes"]):
+        values = [row["thresholds"][number] for row in found["rows"]]
         best = _best(values, least=False)
         yield _line((f"{direction}, {phase}", *(_cell(value, at in best) for at, value in enumerate(values))))
 
 
-def _winners(told: Told) -> Iterator[str]:
+def _winners(found: Found) -> Iterator[str]:
     yield "Best in so many lines, those within 5 % of the best among them:"
     yield ""
-    rows = told["rows"]
+    rows = found["rows"]
     walking, pushed = [0] * len(rows), [0] * len(rows)
-    for name in told["measures"]:
+    for name in found["measures"]:
         for at in _best([row[name]["value"] for row in rows], least=True):
             walking[at] += 1
-    for number in range(len(told["pushes"])):
+    for number in range(len(found["pushes"])):
         for at in _best([row["thresholds"][number] for row in rows], least=False):
             pushed[at] += 1
     for row, walks, pushes in zip(rows, walking, pushed, strict=True):
-        of = f"{walks} of {len(told['measures'])} of walking, {pushes} of {len(told['pushes'])} pushes"
+        of = f"{walks} of {len(found['measures'])} of walking, {pushes} of {len(found['pushes'])} pushes"
         yield f"- `{row['row']}`: {of}"
 
 
 def _best(values: Sequence[float | None], least: bool) -> set[int]:
-    """Which are the best, or as good."""
+    """Values that are the best, or as good."""
     known = {at: value for at, value in enumerate(values) if value is not None}
     if not known:
         return set()
@@ -76,7 +76,7 @@ def _line(cells: Sequence[str]) -> str:
     return f"| {' | '.join(cells)} |"
 
 
-def figure(told: Told) -> "Figure":
+def figure(found: Found) -> "Figure":
     """The largest push survived by direction, a panel for each phase and a curve for each walker."""
     from matplotlib.projections.polar import PolarAxes
 
@@ -88,10 +88,10 @@ def figure(told: Told) -> "Figure":
         drawn, every = panels(len(PHASES), 2, 5.0, "polar")
         for axes, phase in zip(every, PHASES, strict=True):
             assert isinstance(axes, PolarAxes)
-            for color, row in zip(CYCLE * len(told["rows"]), told["rows"], strict=False):
+            for color, row in zip(CYCLE * len(found["rows"]), found["rows"], strict=False):
                 known = {
                     direction: value
-                    for (of, direction), value in zip(told["pushes"], row["thresholds"], strict=True)
+                    for (of, direction), value in zip(found["pushes"], row["thresholds"], strict=True)
                     if of == phase
                 }
                 radii = [math.nan if known.get(name) is None else known[name] for _, name in around]

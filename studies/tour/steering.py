@@ -1,4 +1,4 @@
-"""The velocity to a place that a policy is told: the law of the benchmark, by the numbers of a contract."""
+"""The velocity to a place that a policy is commanded: the law of the benchmark, by the numbers of a contract."""
 
 import math
 
@@ -26,7 +26,7 @@ class Steering:
         self._slot, self._there, self._turned = -1, False, False
 
     def velocity(self, goal: Goal, time: float) -> Twist:
-        """The velocity that the policy is told.
+        """The velocity that the policy is commanded.
 
         Args:
             goal: where to go.

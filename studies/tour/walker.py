@@ -14,7 +14,7 @@ Array = NDArray[np.float64]
 
 
 class Goal(NamedTuple):
-    """Where a walker is to go, as it is told.
+    """Place to which a walker is to go.
 
     Attributes:
         slot: number of the place, which changes when another one is to be gone to.
@@ -107,7 +107,7 @@ class Entrant(Protocol):
         ...
 
     def digest(self) -> str:
-        """Of files that it is made of and that do not come with Surefoot."""
+        """Digests of files that it is made of and that do not come with Surefoot."""
         ...
 
     def walker(self) -> TourWalker:

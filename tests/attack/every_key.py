@@ -158,7 +158,11 @@ SCENARIOS: dict[str, dict[str, Any]] = {
     "sensors": {"duration": 0.06, "sensing": {"source": "ekf", **SENSORS}},
     "wbc": {"duration": 0.06, "wbc": WBC},
     "recorder": {"duration": 1.2, "gait": {"steps": 0}, "log": {"keep": 1.0, "rate": 50}, "criteria": {"fell": False}},
-    "recovery": {"duration": 0.06, "fidelity": "pendulum", "planner": {"recovery": RECOVERY}},
+    "recovery": {
+        "duration": 0.06,
+        "fidelity": "pendulum",
+        "planner": {"recovery": RECOVERY, "without": ["goes_again"]},
+    },
     **{f"wbc-{name}": {"duration": 0.06, "wbc": {name: value}} for name, value in WBC.items()},
 }
 """Keys by name, as plain values."""

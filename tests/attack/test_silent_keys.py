@@ -21,6 +21,7 @@ WITHOUT_OCCASION = {
     "wbc.friction": "a bound of the contact forces as it is believed",
     "errors.friction": "a bound of the contact forces, which they may stay within",
     "motors.torque_speed": "a bound of the torques, which they may stay within",
+    "planner.without": "leaves out what acts when a push asks for it",
     "wbc.second_solver": "acts when the first one fails",
     "wbc.weights.swing": "acts on a foot that swings",
     **dict.fromkeys((key for key in keys() if key.endswith("_catching")), "acts while a step catches the body"),
@@ -33,7 +34,7 @@ WITHOUT_OCCASION = {
         "acts when feet change their load",
     ),
     **dict.fromkeys(
-        (f"wbc.body.separation.{name}" for name in ("clearance", "attention", "horizon", "slots")),
+        (f"wbc.separation.{name}" for name in ("clearance", "attention", "horizon", "slots")),
         "acts when limbs come near each other",
     ),
 }

@@ -37,8 +37,8 @@ def test_two_deviations_of_the_dcm_are_those_of_its_errors():
     rng = np.random.default_rng(5)
     errors = rng.normal(size=(20_000, 2)) * deviation
     doubted = Measured(CentroidalState(0.0, np.zeros(3), np.zeros(3), deviation=deviation), FEET)
-    assert doubted.unsure(OMEGA) == pytest.approx(2.0 * np.std(errors[:, 0] + errors[:, 1] / OMEGA), rel=0.02)
-    assert Measured(CentroidalState(0.0, np.zeros(3), np.zeros(3)), FEET).unsure(OMEGA) == 0.0
+    assert doubted.dcm_uncertainty(OMEGA) == pytest.approx(2.0 * np.std(errors[:, 0] + errors[:, 1] / OMEGA), rel=0.02)
+    assert Measured(CentroidalState(0.0, np.zeros(3), np.zeros(3)), FEET).dcm_uncertainty(OMEGA) == 0.0
 
 
 def test_what_is_not_finite_is_refused():

@@ -162,11 +162,11 @@ IN_BODIES = {
     "references.height_transition": {6.0},
     "references.leg_offset": {6.0},
     "references.zmp_reference": {1e-12},
-    "plan.sampling": {3.0, 4.0, 6.0, 7.0, 10.0, 15.0},
+    "plan.sampling": {6.0},
     "steps.gait": {1e-9},
     "steps.step": {1e-9},
     "swing.heel_off": {64.0, 192.0, 384.0},
-    "recovery.reach": {3.0, 6.0, 8.0, 10.0, 15.0, 36.0, 60.0, 96.0},
+    "recovery.reach": {6.0},
     "swing.quintics": {4.0, 9.0, 16.0, 20.0, 36.0, 60.0, 192.0, 360.0},
 }
 """Bare numbers in functions: coefficients of polynomials and of differences, roundings, and defaults of arguments."""

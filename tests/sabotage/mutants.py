@@ -111,7 +111,7 @@ def copied(place: Path) -> None:
 
 
 def builds(place: Path) -> str:
-    """What the compiler says of the code of a folder; empty where it compiles."""
+    """Message of the compiler about the code of a folder; empty where it compiles."""
     command = [sys.executable, "-c", "import surefoot"]
     done = subprocess.run(command, cwd=place, env=_environment(place), capture_output=True, text=True, check=False)
     return done.stderr if done.returncode else ""
@@ -133,7 +133,7 @@ def found_by(place: Path, tests: list[str]) -> str:
 
 
 def _environment(place: Path) -> dict[str, str]:
-    """Of a process that imports the code of a folder."""
+    """Environment of a process that imports the code of a folder."""
     return {**os.environ, "PYTHONPATH": str(place), "PYTHONDONTWRITEBYTECODE": "1"}
 
 

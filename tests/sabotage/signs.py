@@ -24,7 +24,7 @@ from mutants import ROOT, builds, copied, found_by
 from surefoot.native.modules import STAMP, sources, target
 
 FLIPPED = {"+": "-", "-": "+", "+=": "-=", "-=": "+="}
-"""What a sign becomes."""
+"""Sign that another one becomes."""
 
 COUNTS = {"range", "len", "slice"}
 """Functions whose arguments are places and counts."""
@@ -83,14 +83,14 @@ def signs(text: str) -> Iterator[Sign]:
 
 
 def _kind(before: tokenize.TokenInfo, token: tokenize.TokenInfo) -> str:
-    """Whether a bracket holds places and counts, or values."""
+    """True if a bracket holds places and counts, and not values."""
     name = (before.type == tokenize.NAME and not iskeyword(before.string)) or before.string in (")", "]")
     of_an_array = token.string == "[" and name
     return "place" if of_an_array or before.string in COUNTS else "values"
 
 
 def _counts(token: tokenize.TokenInfo) -> bool:
-    """Whether a neighbour of a sign is a whole number or a text."""
+    """True if a neighbour of a sign is a whole number or a text."""
     return token.string.endswith(('"', "'")) or (token.type == tokenize.NUMBER and token.string.isdecimal())
 
 

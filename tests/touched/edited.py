@@ -1,4 +1,4 @@
-"""Which files differ from another commit, and which of their functions mean something else than there.
+"""Files that differ from another commit, and those of their functions that mean something else than there.
 
 Docstrings, comments and layout mean nothing to a test that runs a function: it is the same without them.
 """

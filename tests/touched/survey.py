@@ -198,7 +198,7 @@ def _frozen(found: Mapping[str, Mapping[str, set[str]]]) -> dict[str, dict[str, 
 
 
 def _watched(tests: list[str], folder: Path) -> Iterator[tuple[str, float, list[str]]]:
-    """What `watch` gives, by a process of the clone."""
+    """Answer of `watch`, by a process of the clone."""
     site = folder / "site"
     site.mkdir()
     shutil.copy(witness.__file__, site)

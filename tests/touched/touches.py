@@ -46,7 +46,7 @@ class Touches:
         return found | {test for test in near if self.time(test) is None} if found else near
 
     def entries(self, edit: Edit, root: Path) -> Mapping[str, frozenset[str]]:
-        """What is known of the file of an edit, under its path now, before, or at the time of the map."""
+        """Entries that are known of the file of an edit, under its path now, before, or at the time of the map."""
         for path in filter(None, (edit.path, edit.before)):
             source = str(PurePosixPath(path).with_suffix(".py"))
             for one in (path, source):
@@ -57,7 +57,7 @@ class Touches:
         return self.files[moved[0]] if len(moved) == 1 else {}
 
     def _there(self, found: Iterable[str], root: Path) -> frozenset[str]:
-        """Those that exist, under the path of now: names of test modules are unique."""
+        """Tests that exist, under the path of now: names of test modules are unique."""
         tests = frozenset(found)
         gone = {PurePosixPath(test).name for test in tests if not (root / test).exists()}
         moved = {str(path.relative_to(root).as_posix()) for name in gone for path in (root / "tests").rglob(name)}
@@ -70,7 +70,7 @@ class Touches:
 
 
 def _names(edit: Edit, known: Mapping[str, frozenset[str]]) -> set[str]:
-    """Which entries of a file's map an edit concerns."""
+    """Entries of a file's map that an edit concerns."""
     functions = edit.functions
     if functions is None or MODULE in functions or not functions <= known.keys():
         return set(known)
@@ -78,7 +78,7 @@ def _names(edit: Edit, known: Mapping[str, frozenset[str]]) -> set[str]:
 
 
 def is_test(path: str) -> bool:
-    """Whether a path is that of a test module."""
+    """True if a path is that of a test module."""
     pure = PurePosixPath(path)
     return pure.parts[0] == "tests" and pure.name.startswith("test_") and pure.suffix == ".py"
 

@@ -1,4 +1,4 @@
-"""What a process runs and reads of the repository, by the hooks of the interpreter.
+"""Functions that a process runs and files that it reads of the repository, by the hooks of the interpreter.
 
 Compiled modules call the hook of `sys.setprofile` where Cython compiled them with its directive `profile`.
 """

@@ -37,7 +37,7 @@ cdef class LoadObserver:
         i=Py_ssize_t, calm=double, lasting=double, latest=double, deviation=double, least=double, kept=double,
         sudden=double, share=double, most=double,
     )
-    cdef void _follow(self, double deviation)
+    cdef void _follow(self, double uncertainty)
     @cython.locals(k=Py_ssize_t, hardest=double)
     cdef double _calm(self) noexcept
     @cython.locals(k=Py_ssize_t, place=Py_ssize_t, value=double, middle=double)

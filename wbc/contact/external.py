@@ -236,7 +236,7 @@ class LoadObserver:
             self._filled += 1
         self._spans[self._filled - 1] = self._found
 
-    def _follow(self, deviation: float) -> None:
+    def _follow(self, uncertainty: float) -> None:
         """Let the load follow what lasts, where the share of the weight has that deviation."""
         calm, wanted = self._calm(), self._wanted
         wanted[:] = 0.0
@@ -248,7 +248,7 @@ class LoadObserver:
             sudden = algebra.clamp(sudden, -self._bound[i], self._bound[i]) * calm
             wanted[i] = sudden if abs(sudden) > abs(kept) else kept
         share = algebra.clamp(self._median(_PULLS, SPANS), -MOST, MOST)
-        wanted[_PULLS] = _ramp(share, self._share, deviation, self._lasting_wide)
+        wanted[_PULLS] = _ramp(share, self._share, uncertainty, self._lasting_wide)
         for i in range(len(wanted)):
             most = self._most_change[i]
             self._estimate[i] += algebra.clamp(wanted[i] - self._estimate[i], -most, most)

@@ -49,7 +49,7 @@ def test_without_it_the_campaign_is_as_before(stander):
 
 
 def found_by(cell, limit):
-    """What a search finds of a walker that survives pushes up to a limit, and how many runs it takes."""
+    """Threshold of a walker that survives pushes up to a limit, and how many runs it takes."""
     search, runs = cell.search(), 0
     try:
         point = next(search)

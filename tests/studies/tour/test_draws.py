@@ -28,7 +28,7 @@ RECORDED = {
         [0.236681061, 0.33635776, -0.184561328, 0.720281449, -0.057473001, 0.134245985, -0.16106299],
     ),
 }
-"""By the run: its first places, its first punches (joint, of the parent, force), and its left arm after 1 s.
+"""Draws by the run: its first places, its first punches (joint, of the parent, force), and its left arm after 1 s.
 
 Written down from gaitkeeper 0.5.4, whose streams are those of the benchmark's own code; its arm has limits of 1 rad.
 """

@@ -1,4 +1,4 @@
-"""How a policy is led to a place: the law of the benchmark's harness, and of what its adapters add to it."""
+"""Leading a policy to a place: the law of the benchmark's harness, and of what its adapters add to it."""
 
 import math
 

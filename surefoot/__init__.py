@@ -33,6 +33,7 @@ if TYPE_CHECKING:
     from surefoot.scenarios.run.planning import RunFault
     from surefoot.scenarios.run.plant import Plant
     from surefoot.scenarios.run.run import Result, run
+    from surefoot.scenarios.run.saved import State
     from surefoot.scenarios.run.simulation import Simulation, Tick
     from surefoot.scenarios.setup.load import load
     from surefoot.scenarios.setup.walk import Walk
@@ -60,6 +61,7 @@ __all__ = [
     "Servo",
     "SetupError",
     "Simulation",
+    "State",
     "Tick",
     "Twist",
     "Verdict",
@@ -95,6 +97,7 @@ if not TYPE_CHECKING:  # a type checker shall still refuse names that are not th
             "scenarios.run.run": ("Result", "run"),
             "scenarios.setup.load": ("load",),
             "scenarios.setup.walk": ("Walk",),
+            "scenarios.run.saved": ("State",),
             "scenarios.run.simulation": ("Simulation", "Tick"),
             "version": ("__version__",),
         },

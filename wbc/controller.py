@@ -118,6 +118,7 @@ class WholeBodyController:
         self.layout = QpLayout(model.nv, CONE_ROWS, parameters.separation.slots if limbs is not None else 0)
         self.qp: QpData = allocate(self.layout)
         self._separation = Separation(model, pin.GeometryModel() if limbs is None else limbs, parameters.separation)
+        self._separation.look_into(self.terms.data)
         gaps = self.layout.separation
         self._gap_rows = self.qp.A[gaps, : model.nv]
         self._gap_lower = self.qp.bounds_lower[self.layout.variables :][gaps]

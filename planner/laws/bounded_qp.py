@@ -48,6 +48,9 @@ class BoundedQp(DualMethod):
         self._U_inverse, self._J = np.zeros((variables, variables)), np.zeros((variables, variables))
         self._share, self._values = np.zeros(rows), np.zeros(rows)
         self._x, self._normal, self._d, self._z = np.zeros((4, variables))
+        # What pickle reads of it before the first problem is there, too.
+        self._G, self._h = np.zeros((rows, variables)), np.zeros(rows)
+        self._lower, self._upper = np.zeros((2, variables))
 
     def factorise(self, P: Array, G: Array) -> None:
         """Take P, shape (n, n), and G, shape (m, n), for the QPs that come; `is_definite` says whether P allows it."""

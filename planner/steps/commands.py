@@ -5,6 +5,7 @@ from bisect import bisect_right
 from collections.abc import Sequence
 from dataclasses import dataclass, replace
 from itertools import pairwise
+from typing import Any
 
 import numpy as np
 
@@ -66,6 +67,22 @@ class Command:
             if value is not None and not 0.0 < value < math.inf:
                 what = f"a command's {name} is {value:g}"
                 raise ParameterError(("command", name), what, "it must be finite and greater than 0")
+
+    @classmethod
+    def of(
+        cls, v_x: float | None = None, v_y: float | None = None, yaw_rate: float | None = None, **more: Any
+    ) -> "Command":
+        """A command in the words of a scenario's `commands`; of a velocity that is given in part, the rest is zero.
+
+        Args:
+            v_x: forward velocity [m/s].
+            v_y: to the left [m/s].
+            yaw_rate: of the heading, positive to the left [rad/s].
+            more: other attributes by name.
+        """
+        velocity, march = (v_x, v_y, yaw_rate), bool(more.pop("march", None))
+        moves = march or velocity != (None, None, None)
+        return cls(Twist(*(value or 0.0 for value in velocity)) if moves else None, march=march, **more)
 
 
 def velocity_bouts(commands: Sequence[Command], gait: GaitParameters) -> tuple[Bout, ...]:

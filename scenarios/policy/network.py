@@ -59,8 +59,9 @@ class Network:
         return values.astype(self._types[name]).reshape(self._shapes[name])
 
     def run(self, values: Mapping[str, NDArray[Any]]) -> dict[str, NDArray[Any]]:
-        """The outputs, by name, of inputs in their shapes."""
-        return dict(zip(self._names, self._session.run(self._names, dict(values)), strict=True))
+        """The outputs, by name, of inputs in their shapes; their memory is their own, not that of the engine."""
+        found = self._session.run(self._names, dict(values))
+        return {name: np.array(output) for name, output in zip(self._names, found, strict=True)}
 
 
 def file_digest(path: Path) -> str:

@@ -253,6 +253,14 @@ class Seated(Moved):
                 raise ParameterError(("command", name), what, "give it a velocity")
         self._waiting.appendleft(replace(command, time=now))
 
+    def sees(self, now: float) -> tuple[Readings | Measurement, Command | None]:
+        """Readings and last command that the controller will be given at an instant [s] that has been sensed."""
+        found = None
+        for command in self._waiting:
+            if command.time * self._rate <= now * self._rate + ROUNDING:
+                found = command
+        return self._readings, found
+
     def control(self, tick: int, now: float) -> tuple[None, Spent]:
         """See `Walker`."""
         begin = time.perf_counter()

@@ -4,9 +4,10 @@ import json
 import math
 from collections.abc import Callable, Sequence
 from copy import deepcopy
+from functools import cached_property
 from pathlib import Path
 from types import TracebackType
-from typing import TYPE_CHECKING, Any, Self
+from typing import TYPE_CHECKING, Any, Self, cast
 
 import numpy as np
 from numpy.typing import ArrayLike
@@ -14,25 +15,29 @@ from pydantic import ValidationError
 
 from surefoot.errors import ParameterError
 from surefoot.forces import Push
+from surefoot.parts.guard import shown
 from surefoot.planner.laws.profiles import Profile
 from surefoot.planner.plan.plan import Planner
 from surefoot.planner.steps.commands import Command
 from surefoot.scenarios.errors import LogError, nearest
 from surefoot.scenarios.file.schema import CommandSettings, Scenario
 from surefoot.scenarios.log import LogWriter, NoLog
-from surefoot.scenarios.record.provenance import COMMAND_RECORD, PUSH_RECORD, STOPPED, AskedPush
+from surefoot.scenarios.record.provenance import COMMAND_RECORD, PUSH_RECORD, STOPPED, AskedPush, relevant_versions
 from surefoot.scenarios.run.assembly import Parts
 from surefoot.scenarios.run.planning import RunFault
 from surefoot.scenarios.run.run import closed_loop, note_parts, one_thread, open_log, write_end
+from surefoot.scenarios.run.saved import State
 from surefoot.scenarios.run.skeleton import ClosedLoop, End, refusing
 from surefoot.scenarios.run.tick import Tick
-from surefoot.scenarios.setup.groups.gait import command_of
+from surefoot.scenarios.setup.groups.gait import command_keys, command_of
 from surefoot.scenarios.setup.load import load as load_scenario
 from surefoot.scenarios.setup.walk import Walk, resolve
+from surefoot.sim.measurement import Measurement
 
 if TYPE_CHECKING:
     from surefoot.models.types import RobotDescription
     from surefoot.scenarios.run.plant import PlantMaker
+    from surefoot.scenarios.run.seat import Seated
     from surefoot.scenarios.run.sensing import Estimator
     from surefoot.wbc.controller import WholeBodyController
     from surefoot.wbc.tasks import TaskFactory
@@ -96,6 +101,7 @@ class Simulation:
         self._last: float | None
         self._pushes, self._commands, self._closed = 0, 0, False
         self._threads = one_thread()
+        self._token = object()  # what tells its own states from those of others
         self._begin()
 
     def _begin(self) -> None:
@@ -165,6 +171,31 @@ class Simulation:
             raise AttributeError("a pendulum has no whole-body controller; simulate with fidelity full")
         return controller
 
+    @property
+    def seat(self) -> "Seated":
+        """The robot under a controller that has the seat of planner and whole-body controller.
+
+        Raises:
+            AttributeError: they have it.
+        """
+        if self.walk.seat is None:
+            raise AttributeError("planner and whole-body controller have the seat; simulate with the key controller")
+        return cast("Seated", self._loop.walker)
+
+    @property
+    def measurement(self) -> Measurement:
+        """The last measurement, with the true state; its arrays are overwritten by the next tick.
+
+        Raises:
+            AttributeError: a pendulum has none, nor is there one before the first tick.
+        """
+        found: Measurement = self._loop.walker.measurement  # type: ignore[attr-defined]
+        return found
+
+    def sense(self) -> None:
+        """Measure the next tick ahead of `step`, which then goes on from there."""
+        self._loop.sense()
+
     def step(self) -> Tick:
         """Go through one control tick.
 
@@ -220,7 +251,7 @@ class Simulation:
 
     def command(
         self,
-        v_x: float | None = None,
+        v_x: float | Command | None = None,
         v_y: float | None = None,
         yaw_rate: float | None = None,
         *,
@@ -235,7 +266,8 @@ class Simulation:
         is out of reach is bent to the fastest in its direction that is not; see `orders`.
 
         Args:
-            v_x: forward velocity of the path, held until the next one; 0 if another of the three is given [m/s].
+            v_x: forward velocity of the path, held until the next one; 0 if another of the three is given [m/s]. Or all
+                of it as a `surefoot.Command`, as `surefoot.Controller.step` takes one; its time is now.
             v_y: velocity to the left, held until the next one; 0 if another of the three is given [m/s].
             yaw_rate: rate of the heading, positive to the left; 0 if another of the three is given [rad/s].
             march: whether it steps in place where the velocity is zero, in place of standing.
@@ -245,8 +277,15 @@ class Simulation:
 
         Raises:
             RunFault: the run is over.
-            ParameterError: a number is out of bounds, the ground has edges, or the planner takes no commands.
+            ParameterError: a number is out of bounds, the ground has edges, the planner takes no commands, or there is
+                more beside a `Command`.
         """
+        if isinstance(v_x, Command):
+            beside = (v_y, yaw_rate, march, single_support, double_support, swing_height)
+            if beside != (None,) * len(beside):
+                raise ParameterError(("command",), "numbers beside a Command", "put them into it, by Command.of")
+            self._tell(command_keys(v_x))
+            return
         velocity = {"v_x": v_x, "v_y": v_y, "yaw_rate": yaw_rate, "march": march}
         gait = {"single_support": single_support, "double_support": double_support, "swing_height": swing_height}
         self._tell({name: value for name, value in {**velocity, **gait}.items() if value is not None})
@@ -327,6 +366,44 @@ class Simulation:
             raise LogError(f"{self._path}: a log holds one run; make another Simulation with a file of its own")
         self._pushes, self._commands = 0, 0
         self._begin()
+
+    def save(self) -> State:
+        """The whole state between two ticks as a value: physics, sensors, estimator, controller, planner, randomness.
+
+        It stays as it is while the simulation goes on, and can be pickled. `restore` goes on from it, to the bit.
+
+        Raises:
+            ParameterError: a part of others holds something of which nobody knows what its state is.
+        """
+        return State(self._loop, self._identity, self._last, self._token)
+
+    def restore(self, state: State) -> None:
+        """Go on from a state that this simulation had, or another one of the same scenario and parts.
+
+        Where that is another one, its models stay: what was changed in them from outside is not in the state.
+
+        Raises:
+            ParameterError: the state is of another scenario, of other parts or of another version.
+            LogError: a log is written, which holds one run in order.
+        """
+        if self._path is not None:
+            raise LogError(f"{self._path}: a log holds one run in order; restore a Simulation without a log")
+        own = self._identity
+        for name, value in own.items():
+            if state.of.get(name) != value:
+                what = f"a state of another {name} than that of {self.walk.name}, seed {self.walk.seed}"
+                raise ParameterError(("state",), what, "restore it where the same is simulated")
+        if state.is_of(self._token):
+            self._loop = state.put_back()
+        else:
+            state.put_into(self._loop)
+        self._last = state.time
+
+    @cached_property
+    def _identity(self) -> dict[str, str]:
+        """Texts that have to be the same where a state is put back."""
+        parts = {name: shown(part) for name, part in self._given.items() if part is not None}
+        return {"scenario": self.walk.text, "set of parts": str(parts), "version": str(relevant_versions())}
 
     def close(self) -> None:
         """End the run, whose log is whole then as it is once the run is over; a second call does nothing."""

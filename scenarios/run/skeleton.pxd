@@ -6,8 +6,9 @@ cdef class ClosedLoop:
     cdef readonly object fault
     cdef object _recorder
     cdef list _pushes, _begun
-    cdef long long _ticks, _last
+    cdef long long _ticks, _last, _ahead
 
+    cpdef sense(self)
     cpdef step(self)
     cdef _step(self, long long tick)
     cdef _push(self, double now, double since, phase)

@@ -2,7 +2,7 @@
 
 import time
 from collections.abc import Callable, Iterator, Sequence
-from contextlib import contextmanager
+from contextlib import contextmanager, suppress
 from dataclasses import dataclass, replace
 from traceback import format_exception
 from typing import Any, Literal, Protocol, TypeVar
@@ -214,6 +214,7 @@ class ClosedLoop:
         self._pushes = list(pushes)
         self._begun: list[tuple[PushPoint, Push]] = []
         self.end = End("completed", self._ticks / rate)
+        self._ahead = -1
         self.fell = False
         self.done = self._last == 0
         self.fault: RunFault | PartError | None = None
@@ -237,6 +238,12 @@ class ClosedLoop:
     def phase(self) -> PhaseInfo:
         """Phase of the gait; asked only after a step."""
         return self.walker.gait[1]
+
+    def sense(self) -> None:
+        """Measure the next tick ahead of `step`, which goes on from there; a fault is that of the step."""
+        if self._ahead < 0 and not self.done:
+            with suppress(RunFault, PartError):
+                self._ahead = self.walker.sense(self.tick, self.tick / self.rate)
 
     def step(self) -> bool:
         """Go through one control tick; False when a fault ended the run."""
@@ -272,7 +279,10 @@ class ClosedLoop:
         clock, busy_clock = time.perf_counter, time.thread_time_ns
         begin, busy = clock(), busy_clock()
         walker, rate, recorder = self.walker, self.rate, self._recorder
-        self.tick = tick = walker.sense(tick, tick / rate)
+        if self._ahead < 0:
+            self._ahead = walker.sense(tick, tick / rate)
+        self.tick = tick = self._ahead
+        self._ahead = -1
         now, now_ns = tick / rate, tick * 1_000_000_000 // rate
         sensed = clock()
         sample, spent = walker.control(tick, now)

@@ -227,6 +227,40 @@ def recover(
 
 
 @dataclass(frozen=True, slots=True)
+class MotionOptions:
+    """The arguments of `surefoot motion`."""
+
+    log: LogFile
+    out: Annotated[Path, typer.Option(help="File to write: .npz, or .csv with rows of root and joints.")]
+    fps: Annotated[float | None, typer.Option(help="Frames per second [Hz]; 50 by default, of a csv file 30.")] = None
+    joints: Annotated[
+        Path | None, typer.Option(metavar="CONTRACT", help="Contract of a policy: its joints in its order.")
+    ] = None
+    start: From = None
+    end: To = None
+    force: Replace = False
+
+
+@app.command()
+@with_options(MotionOptions)
+def motion(options: MotionOptions) -> None:
+    """Write the motion of a log as those read it who train by imitation."""
+    from surefoot.scenarios.log import read
+    from surefoot.scenarios.record.provenance import RunConstants
+    from surefoot.scenarios.show.motion import write_motion
+
+    opened, joints = read(options.log), None
+    if options.joints is not None:
+        from surefoot.scenarios.policy.files import read as read_policy
+
+        names = RunConstants.from_metadata(opened.metadata, str(opened.path)).joint_names
+        joints = read_policy(options.joints, names).contract.joints
+    found = write_motion(opened, options.out, options.fps, joints, options.start, options.end, options.force)
+    typer.echo(f"{len(found.time)} frames from {found.time[0]:.3f} s to {found.time[-1]:.3f} s", err=True)
+    typer.echo(str(options.out))
+
+
+@dataclass(frozen=True, slots=True)
 class ReplayOptions:
     """The arguments of `surefoot replay`."""
 
@@ -242,6 +276,9 @@ class ReplayOptions:
         str, typer.Option(help="Of the video: follow, side, front, fixed, or azimuth,elevation,distance [deg, deg, m].")
     ] = "follow"
     size: Annotated[str, typer.Option(metavar="WxH", help="Of the video [px].")] = "1280x720"
+    beside: Annotated[
+        Path | None, typer.Option(metavar="MOTION", help="A motion, .npz or .csv, to be drawn beside the robot.")
+    ] = None
     force: Replace = False
 
 
@@ -255,7 +292,7 @@ def replay(options: ReplayOptions) -> None:
         raise typer.BadParameter("--speed, --camera and --size are of a video; give them with --video FILE")
     from surefoot.scenarios.show.replay.content import ReplayWindow
 
-    window = ReplayWindow(options.start, options.end)
+    window = ReplayWindow(options.start, options.end, beside=options.beside)
     if options.html is not None:
         from surefoot.scenarios.show.replay.page import write_page
 

@@ -94,7 +94,7 @@ class Learned:
         walk = _walk()
         self.robot = walk.robot
         self.policy = Policy(walk, file, known_as=tour_robot().stands_for)
-        self.policy.drive(arms_of(self.robot.joint_names))
+        self.policy.connection.drive(arms_of(self.robot.joint_names))
         self.posture = standing(walk, body_of(self.robot), self.policy.posture)
         self._size, self._mass = walk.size, float(self.robot.mass)
 

@@ -68,7 +68,7 @@ def catalogue(name):
     return yaml.safe_load((ROOT / "scenarios" / "catalogue" / f"{name}.yaml").read_text(encoding="utf-8"))
 
 
-def tests_of(name):
+def modules_of(name):
     """A module of tests of runs."""
     spec = importlib.util.spec_from_file_location(name, ROOT / "tests" / "scenarios" / "run" / f"{name}.py")
     module = importlib.util.module_from_spec(spec)
@@ -84,7 +84,7 @@ def numbers_of(rows):
 def test_what_walks_has_the_numbers_of_the_scenarios_and_tests():
     part = TEXT.split("## What walks")[1].split("##")[0]
     told = numbers_of(dict(re.findall(r"(?m)^\| ([a-z ]+) \| (.*) \|$", part)))
-    lasting = tests_of("test_lasting_forces")
+    lasting = modules_of("test_lasting_forces")
     stairs = (ROOT / "tests" / "scenarios" / "run" / "test_stair_walks.py").read_text(encoding="utf-8")
     small = re.search(r'"single"\), tuple\(product\(\((.*?)\), .*\n\)\ndef test_small_feet', stairs)[1]
     up, tall, blocks = (catalogue(name) for name in ("stairs-up", "stairs-tall", "blocks"))
@@ -104,7 +104,7 @@ def test_what_walks_has_the_numbers_of_the_scenarios_and_tests():
     assert min(lasting.SCALES) == 0.75
     assert told["lasting force"] == [lasting.HELD["natural gait"]]
     assert lasting.LASTING == 2.0
-    natural = tests_of("test_push_tables").NATURAL[1]
+    natural = modules_of("test_push_tables").NATURAL[1]
     speed = natural["gait.step_length"] / (natural["gait.single_support"] + natural["gait.double_support"])
     assert f"in a walk at {speed:.2f} m/s" in TEXT
 

@@ -59,6 +59,7 @@ SAID = {
     "own-task": r"walked with the neck turned by 0\.[45]",
     "own-estimator": r"0 mm: walked estimation error 0\.0 mm\n2 mm: walked estimation error 2\.0 mm",
     "own-loop": r"walked 1\.\d\d m in 8\.00 s(?s:.*)fell (?s:.*)s: a foot that bears the robot slides\n(?s:.*)slips",
+    "own-policy": r"verdict pass(?s:.*)pushes\.0\.impulse \[N·s/kg\](?s:.*)stand\.html(?s:.*)stand\.npz",
     "own-robot": r"(?s:verdict pass.*){4}report\.html",
     "push-map": r"pushes\.0\.impulse \[N·s/kg\]\n(?s:.*)report\.html(?s:.*)table\.csv",
     "ci": r"two-steps(?s:.*)found, exit code 1",

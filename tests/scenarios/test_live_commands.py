@@ -230,3 +230,43 @@ def test_a_walk_that_was_not_led_owes_all_its_steps_and_a_push_may_end_a_phase(t
         pytest.raises(surefoot.ParameterError, match="nothing"),
     ):
         sim.command()
+
+
+VALUES = (
+    {"v_x": 0.2, "yaw_rate": 0.1},
+    {"march": True},
+    {"v_y": 0.05, "single_support": 0.5, "double_support": 0.2, "swing_height": 0.06},
+    {"v_x": 0.0},
+)
+
+
+def test_a_command_is_one_value_for_simulation_and_controller(tmp_path, same_content):
+    by_words = {0.3 + 0.4 * k: lambda sim, words=words: sim.command(**words) for k, words in enumerate(VALUES)}
+    by_value = {
+        0.3 + 0.4 * k: lambda sim, words=words: sim.command(surefoot.Command.of(**words, time=9.0))
+        for k, words in enumerate(VALUES)
+    }
+    one = told(tmp_path / "words.mcap", 2.0, {**by_words, 1.8: lambda sim: sim.go_to(0.4, 0.1, 0.2)})
+    place = surefoot.Command(places=(surefoot.Twist(0.4, 0.1, 0.2),))
+    other = told(tmp_path / "value.mcap", 2.0, {**by_value, 1.8: lambda sim: sim.command(place)})
+    assert same_content(one, other) == []
+    again = surefoot.run(str(other), out=tmp_path / "again")
+    assert same_content(one, again.log) == []
+    # What a walk does of it is such a value, too, which goes on with it.
+    with surefoot.Simulation(surefoot.load("walk", STANDING)) as sim:
+        sim.command(surefoot.Command.of(v_x=0.2, march=True))
+        sim.step()
+        sim.command(sim.orders)
+        assert surefoot.Command.of(v_x=0.2, march=True) == surefoot.Command(surefoot.Twist(0.2), march=True)
+
+
+def test_what_a_command_value_cannot_tell_is_refused():
+    with surefoot.Simulation(surefoot.load("walk", STANDING)) as sim:
+        with pytest.raises(surefoot.ParameterError, match=r"beside a Command.*Command\.of"):
+            sim.command(surefoot.Command.of(v_x=0.2), 0.1)
+        with pytest.raises(surefoot.ParameterError, match="2 places"):
+            sim.command(surefoot.Command(places=(surefoot.Twist(), surefoot.Twist(1.0))))
+        with pytest.raises(surefoot.ParameterError, match="says nothing"):
+            sim.command(surefoot.Command())
+        with pytest.raises(surefoot.ParameterError, match="v_x"):
+            sim.command(surefoot.Command.of(v_x=1e9))

@@ -11,6 +11,7 @@ cdef class Separation:
     cdef readonly bint is_clear
 
     cpdef write(self, data, v, rows, lower, double unbounded)
+    cpdef look_into(self, data)
     @cython.locals(k=Py_ssize_t, pair=Pair)
     cpdef list due(self)
     @cython.locals(k=Py_ssize_t, pair=Pair, distance=double)

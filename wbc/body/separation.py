@@ -58,12 +58,16 @@ class Separation:
             unbounded: value of an absent bound.
         """
         if data is not self._data:
-            self._data, self._joints = data, JointColumns(self._model, data)
-            J, pairs = self._joints.values, self._geometry.collisionPairs
-            self._pairs = [Pair(self._model, data, J, self._geometry, pair) for pair in pairs]
+            self.look_into(data)
         due = self.due()
         if due or not self.is_clear or self._written is not rows:
             self._fill(self._near(due), v, rows, lower, unbounded)
+
+    def look_into(self, data: pin.Data) -> None:
+        """Take the terms of which the states will be; none of the pairs has been measured then."""
+        self._data, self._joints = data, JointColumns(self._model, data)
+        J, pairs = self._joints.values, self._geometry.collisionPairs
+        self._pairs = [Pair(self._model, data, J, self._geometry, pair) for pair in pairs]
 
     def due(self) -> list[int]:
         """Numbers of the pairs that may have come near since they were measured, each of which is to be measured."""

@@ -3,6 +3,7 @@
 import math
 from collections.abc import Sequence
 from dataclasses import dataclass
+from typing import Any
 
 import numpy as np
 
@@ -91,15 +92,32 @@ def footsteps_of(footsteps: Sequence[schema.FootstepSettings]) -> list[Footstep]
 
 
 def command_of(settings: schema.CommandSettings) -> Command:
-    """A command in the planner's terms; of a velocity that is given in part, the rest is zero."""
-    velocity = (settings.v_x, settings.v_y, settings.yaw_rate)
-    twist = (
-        None if velocity == (None, None, None) and not settings.march else Twist(*(value or 0.0 for value in velocity))
-    )
-    place = settings.place
+    """A command in the planner's terms."""
+    place, names = settings.place, ("v_x", "v_y", "yaw_rate", "march", *_DURABLE, "time")
     places = None if place is None else (Twist(place.x, place.y, place.yaw),)
-    gait = (settings.single_support, settings.double_support, settings.swing_height)
-    return Command(twist, places, *gait, time=settings.time, march=settings.march is True)
+    return Command.of(**{name: getattr(settings, name) for name in names}, places=places)
+
+
+def command_keys(command: Command) -> dict[str, Any]:
+    """A command in the words of a scenario's `commands`, without its time.
+
+    Raises:
+        ParameterError: it has several places, for which there is no word.
+    """
+    twist, places = command.twist, command.places or ()
+    if len(places) > 1:
+        what = f"a command of {len(places)} places"
+        raise ParameterError(("command", "places"), what, "tell one, and the next when it is there")
+    found: dict[str, Any] = {name: getattr(command, name) for name in _DURABLE}
+    if twist is not None:
+        found |= {"v_x": twist.x, "v_y": twist.y, "yaw_rate": twist.yaw, "march": command.march or None}
+    for place in places:
+        found["place"] = {"x": place.x, "y": place.y, "yaw": place.yaw}
+    return {name: value for name, value in found.items() if value is not None}
+
+
+_DURABLE = ("single_support", "double_support", "swing_height")
+"""Values of a gait that a command changes, by the names that `Command` and the key have in common."""
 
 
 def waypoints_of(keys: schema.Gait, start: schema.Start) -> tuple[Twist, ...]:

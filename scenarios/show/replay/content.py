@@ -2,6 +2,7 @@
 
 from collections.abc import Iterator
 from dataclasses import dataclass
+from pathlib import Path
 from typing import Literal
 
 import numpy as np
@@ -26,12 +27,14 @@ class ReplayWindow:
         end: last time, the log's if None [s].
         frame_rate: frames per simulated second [Hz].
         most: frames; where there would be more, there are fewer per second. None for any number.
+        beside: file of a motion that is drawn beside the robot; None for none.
     """
 
     start: float | None = None
     end: float | None = None
     frame_rate: float = 30.0
     most: int | None = None
+    beside: Path | None = None
 
 
 @dataclass(frozen=True, slots=True)

@@ -124,10 +124,23 @@ def extract(log: Log, window: ReplayWindow | None = None) -> Replay:
         body_position=position,
         body_quaternion=quaternion,
         surfaces=surfaces(model),
-        tracks=tuple(content.tracks(facts)),
+        tracks=(*content.tracks(facts), *_beside(log, window, model, constants, frames)),
         footprints=tuple(_taken_footprints(log, frames, facts.sole)),
         mjcf=mjcf,
     )
+
+
+def _beside(
+    log: Log, window: ReplayWindow, model: mujoco.MjModel, constants: RunConstants, frames: Frames
+) -> Iterator[content.Track]:
+    """The motion that is asked for, from the log's first tick on."""
+    if window.beside is None:
+        return
+    from surefoot.scenarios.show.replay.reference import reference_tracks
+
+    begin = next(log.parts("/truth"))
+    time = frames.time - float(begin.time[0])
+    yield from reference_tracks(window.beside, model, constants.joint_names, begin.field("q")[0], time)
 
 
 def world(log: Log) -> tuple[str, mujoco.MjModel]:

@@ -1,0 +1,1 @@
+"""The robot as an environment of those who train policies."""

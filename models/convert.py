@@ -26,20 +26,12 @@ from typing import TYPE_CHECKING
 import numpy as np
 from numpy.typing import NDArray
 
+from surefoot.maths import algebra
+
 if TYPE_CHECKING:
     from surefoot.engines.windowless import mujoco
 
 Array = NDArray[np.float64]
-Row = tuple[float, float, float]
-
-
-def rotation(w: float, x: float, y: float, z: float) -> tuple[Row, Row, Row]:
-    """Rows of the rotation matrix of a unit quaternion: of the base to the world."""
-    return (
-        (1 - 2 * (y * y + z * z), 2 * (x * y - w * z), 2 * (x * z + w * y)),
-        (2 * (x * y + w * z), 1 - 2 * (x * x + z * z), 2 * (y * z - w * x)),
-        (2 * (x * z - w * y), 2 * (y * z + w * x), 1 - 2 * (x * x + y * y)),
-    )
 
 
 def mujoco_to_pinocchio(qpos: Array, qvel: Array, q_out: Array, v_out: Array) -> None:
@@ -47,7 +39,7 @@ def mujoco_to_pinocchio(qpos: Array, qvel: Array, q_out: Array, v_out: Array) ->
     w, x, y, z = qpos[3], qpos[4], qpos[5], qpos[6]
     q_out[:] = qpos
     q_out[3], q_out[4], q_out[5], q_out[6] = x, y, z, w
-    a, b, c = rotation(w, x, y, z)
+    a, b, c = algebra.quaternion_rows(x, y, z, w)
     x, y, z = qvel[0], qvel[1], qvel[2]
     v_out[:] = qvel
     v_out[0] = a[0] * x + b[0] * y + c[0] * z
@@ -61,7 +53,7 @@ def pinocchio_to_mujoco(q: Array, v: Array, qpos_out: Array, qvel_out: Array) ->
     qpos_out[:] = q
     qpos_out[3:7] = (w, x, y, z)
     qvel_out[:] = v
-    qvel_out[:3] = np.array(rotation(w, x, y, z)) @ v[:3]
+    qvel_out[:3] = np.array(algebra.quaternion_rows(x, y, z, w)) @ v[:3]
 
 
 class Coordinates:
@@ -165,7 +157,8 @@ _EQUALITY_OF_JOINTS = 2
 
 def mujoco_acceleration_to_pinocchio(qpos: Array, qvel: Array, qacc: Array, a_out: Array) -> None:
     """Acceleration from MuJoCo's into Pinocchio's convention, at the state (qpos, qvel) of MuJoCo."""
-    R = np.array(rotation(*qpos[3:7].tolist()))
+    w, x, y, z = qpos[3:7].tolist()
+    R = np.array(algebra.quaternion_rows(x, y, z, w))
     a_out[:] = qacc
     a_out[:3] = R.T @ qacc[:3] - np.cross(qvel[3:6], R.T @ qvel[:3])
 
@@ -175,6 +168,7 @@ def velocity_map(qpos: Array, nv: int) -> Array:
 
     Forces and matrices follow: τ_pinocchio = Tᵀ τ_mujoco, M_pinocchio = Tᵀ M_mujoco T, J_pinocchio = J_mujoco T.
     """
+    w, x, y, z = qpos[3:7].tolist()
     T = np.eye(nv)
-    T[:3, :3] = rotation(*qpos[3:7].tolist())
+    T[:3, :3] = algebra.quaternion_rows(x, y, z, w)
     return T

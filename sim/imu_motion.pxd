@@ -2,9 +2,6 @@ cimport cython
 cimport libc.math as math
 from surefoot.maths cimport algebra, linear
 from surefoot.maths.algebra cimport vector3
-from surefoot.models cimport convert
-
-cdef double SMALL
 
 cdef class ImuMotion:
     cdef readonly double[:, ::1] rotation
@@ -29,7 +26,3 @@ cdef class ImuChain:
     cdef void _pass(self, Link link, double angle, double speed, ImuMotion at) noexcept
     @cython.locals(i=Py_ssize_t, j=Py_ssize_t)
     cdef vector3 _moved_beside(self, Link link, vector3 rate) noexcept
-
-cpdef vector3 turn_between(const double[:, :] before, const double[:, :] after) noexcept nogil
-cdef double _along(const double[:, :] before, Py_ssize_t i, const double[:, :] after, Py_ssize_t j) noexcept nogil
-cdef void put_skew(double[:, :] out, vector3 a) noexcept nogil

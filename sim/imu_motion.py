@@ -5,15 +5,11 @@ import math
 import numpy as np
 
 from surefoot.engines.windowless import mujoco
-from surefoot.maths import algebra, linear
+from surefoot.maths import algebra
 from surefoot.maths.algebra import Vector
-from surefoot.models import convert
 from surefoot.models.convert import Coordinates
 from surefoot.models.types import ImuPlace
 from surefoot.sim.measurement import Array
-
-SMALL = 1e-9
-"""Sine of an angle below which it is the angle itself."""
 
 
 class ImuMotion:
@@ -100,7 +96,7 @@ class ImuChain:
     def motion(self, q: Array, v: Array) -> ImuMotion:
         """Its motion in a state of Pinocchio's convention, shapes (7 + nj,) and (6 + nj,)."""
         at = ImuMotion()
-        x, y, z = convert.rotation(q[6], q[3], q[4], q[5])
+        x, y, z = algebra.quaternion_rows(q[3], q[4], q[5], q[6])
         algebra.put_row(self._R, 0, x)
         algebra.put_row(self._R, 1, y)
         algebra.put_row(self._R, 2, z)
@@ -108,10 +104,10 @@ class ImuChain:
         for link in self._links:
             angle = link.ratio * q[7 + link.joint] + link.offset
             self._pass(link, angle, link.ratio * v[6 + link.joint], at)
-        arm = algebra.subtract(at.velocity, linear.fused_rotate(self._lever, at.angular_velocity))
-        at.velocity = linear.fused_rotate(self._R, arm)
-        linear.fused_compose(self._R, self._mount, at.rotation)
-        at.angular_velocity = linear.fused_rotate_back(self._mount, at.angular_velocity)
+        arm = algebra.subtract(at.velocity, algebra.rotate(self._lever, at.angular_velocity))
+        at.velocity = algebra.rotate(self._R, arm)
+        algebra.compose(self._R, self._mount, at.rotation)
+        at.angular_velocity = algebra.rotate_back(self._mount, at.angular_velocity)
         return at
 
     def _pass(self, link: Link, angle: float, speed: float, at: ImuMotion) -> None:
@@ -121,77 +117,44 @@ class ImuChain:
         """
         spin = algebra.scale(speed, link.axis)
         link.turn(angle, self._turn)
-        linear.fused_compose(link.rotation, self._turn, self._E)
+        algebra.compose(link.rotation, self._turn, self._E)
         if link.beside:
             moved = self._moved_beside(link, at.angular_velocity)
         else:
-            moved = linear.fused_rotate(link.lever, at.angular_velocity)
-        at.velocity = linear.fused_rotate_back(self._E, algebra.subtract(at.velocity, moved))
-        at.angular_velocity = algebra.add(linear.fused_rotate_back(self._E, at.angular_velocity), spin)
-        linear.fused_compose(self._R, self._E, self._product)
+            moved = algebra.rotate(link.lever, at.angular_velocity)
+        at.velocity = algebra.rotate_back(self._E, algebra.subtract(at.velocity, moved))
+        at.angular_velocity = algebra.add(algebra.rotate_back(self._E, at.angular_velocity), spin)
+        algebra.compose(self._R, self._E, self._product)
         self._R[:] = self._product
         if link.beside:
-            put_skew(self._product, link.point)
-            at.velocity = algebra.add(at.velocity, linear.fused_rotate(self._product, spin))
+            algebra.put_cross(self._product, link.point)
+            at.velocity = algebra.add(at.velocity, algebra.rotate(self._product, spin))
 
     def _moved_beside(self, link: Link, rate: Vector) -> Vector:
         """Lever times the parent's angular velocity, where the turn of the joint moves the body's origin."""
-        at_zero = linear.fused_rotate(link.rotation, link.point)
-        put_skew(self._product, algebra.subtract(at_zero, linear.fused_rotate(self._E, link.point)))
+        at_zero = algebra.rotate(link.rotation, link.point)
+        algebra.put_cross(self._product, algebra.subtract(at_zero, algebra.rotate(self._E, link.point)))
         for i in range(3):
             for j in range(3):
                 self._product[i, j] = link.lever[i, j] + self._product[i, j]
-        return linear.fused_rotate(self._product, rate)
-
-
-def turn_between(before: Array, after: Array) -> Vector:
-    """Rotation vector from one orientation to the next, in the axes of either, less than half a turn [rad].
-
-    Args:
-        before: rotation to the world, shape (3, 3).
-        after: of the next, shape (3, 3).
-    """
-    x = 0.5 * (_along(before, 2, after, 1) - _along(before, 1, after, 2))
-    y = 0.5 * (_along(before, 0, after, 2) - _along(before, 2, after, 0))
-    z = 0.5 * (_along(before, 1, after, 0) - _along(before, 0, after, 1))
-    sine = math.sqrt(linear.fused_sum(x, x, y, y, z, z))
-    if sine < SMALL:
-        return x, y, z
-    trace = _along(before, 0, after, 0) + _along(before, 1, after, 1) + _along(before, 2, after, 2)
-    factor = math.atan2(sine, 0.5 * (trace - 1.0)) / sine
-    return x * factor, y * factor, z * factor
-
-
-def _along(before: Array, i: int, after: Array, j: int) -> float:
-    """An axis of one orientation along an axis of the next: an entry of R' R⁺."""
-    return linear.fused_sum(before[0, i], after[0, j], before[1, i], after[1, j], before[2, i], after[2, j])
-
-
-def put_skew(out: Array, a: Vector) -> None:
-    """Write the matrix whose product with another vector is the cross product, shape (3, 3)."""
-    out[0, 0], out[0, 1], out[0, 2] = 0.0, -a[2], a[1]
-    out[1, 0], out[1, 1], out[1, 2] = a[2], 0.0, -a[0]
-    out[2, 0], out[2, 1], out[2, 2] = -a[1], a[0], 0.0
+        return algebra.rotate(self._product, rate)
 
 
 def skew(vector: Array) -> Array:
-    """The skew-symmetric matrix of an array, shape (3, 3)."""
+    """Matrix of the cross product with a vector, shape (3, 3)."""
     made = np.zeros((3, 3))
-    put_skew(made, algebra.vector(vector))
+    algebra.put_cross(made, algebra.vector(vector))
     return made
 
 
 def turned(vector: Array) -> Array:
     """Rotation of a rotation vector, shape (3, 3)."""
-    angle = float(np.linalg.norm(vector))
-    if angle == 0.0:
-        return np.eye(3)
-    K = skew(vector / angle)
-    found: Array = np.eye(3) + math.sin(angle) * K + (1.0 - math.cos(angle)) * (K @ K)
-    return found
+    R = np.empty((3, 3))
+    algebra.rotation_of(algebra.vector(vector), R)
+    return R
 
 
 def rotation_of(quaternion: Array) -> Array:
     """Rotation of a quaternion w x y z of any length, shape (3, 3)."""
     w, x, y, z = (np.asarray(quaternion) / np.linalg.norm(quaternion)).tolist()
-    return np.array(convert.rotation(w, x, y, z))
+    return np.array(algebra.quaternion_rows(x, y, z, w))

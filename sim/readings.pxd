@@ -2,7 +2,6 @@ cimport cython
 from surefoot.maths cimport algebra, linear
 from surefoot.maths.algebra cimport vector3
 from surefoot.readings cimport Reading, Readings
-from surefoot.sim cimport imu_motion
 from surefoot.sim.imu_motion cimport ImuChain, ImuMotion
 
 cdef class Buffer:

@@ -7,7 +7,6 @@ import numpy as np
 from surefoot.maths import algebra, linear
 from surefoot.maths.algebra import Vector
 from surefoot.readings import Reading, Readings
-from surefoot.sim import imu_motion
 from surefoot.sim.imu_motion import ImuChain, ImuMotion
 from surefoot.sim.measurement import Array, Measurement
 from surefoot.sim.sensor_errors import SOON, Delivery, SensorErrors
@@ -257,14 +256,14 @@ class Imu:
         """
         before, gravity, T = self._before, self._gravity, self._period
         if before is None:  # the robot has stood until now
-            return now.angular_velocity, linear.fused_rotate_back(now.rotation, algebra.scale(-1.0, gravity))
-        x, y, z = imu_motion.turn_between(before.rotation, now.rotation)
+            return now.angular_velocity, algebra.rotate_back(now.rotation, algebra.scale(-1.0, gravity))
+        x, y, z = algebra.turn_between(before.rotation, now.rotation)
         moved = algebra.subtract(now.velocity, before.velocity)
         force = algebra.subtract((moved[0] / T, moved[1] / T, moved[2] / T), gravity)
         for i in range(3):
             for j in range(3):
                 self._sum[i, j] = before.rotation[i, j] + now.rotation[i, j]
-        return (x / T, y / T, z / T), linear.fused_rotate_back(self._sum, algebra.scale(0.5, force))
+        return (x / T, y / T, z / T), algebra.rotate_back(self._sum, algebra.scale(0.5, force))
 
 
 def _within(most: float, values: Vector) -> Vector:

@@ -7,7 +7,7 @@ import math
 
 import numpy as np
 
-from surefoot.maths import linear
+from surefoot.maths import algebra
 from surefoot.planner.geometry.orientation import sole_rotation as sole_rotation
 from surefoot.planner.geometry.quintic import between
 from surefoot.planner.types import Array, Footstep
@@ -85,19 +85,25 @@ def place_points(origin: Array, R: Array, points: Array, placed: Array) -> None:
     """Write where points, shape (n, 2), of a frame at an origin, shape (2 or more,), with a rotation R are, (n, 2)."""
     for k in range(points.shape[0]):
         x, y = points[k, 0], points[k, 1]
-        placed[k, 0] = origin[0] + linear.fused_pair(x, R[0, 0], y, R[0, 1])
-        placed[k, 1] = origin[1] + linear.fused_pair(x, R[1, 0], y, R[1, 1])
+        placed[k, 0] = origin[0] + x * R[0, 0] + y * R[0, 1]
+        placed[k, 1] = origin[1] + x * R[1, 0] + y * R[1, 1]
 
 
 def rotations(quaternions: Array) -> Array:
     """Rotation matrices of quaternions x y z w, shape (n, 3, 3)."""
-    x, y, z, w = quaternions.T
-    rows = (
-        (1 - 2 * (y * y + z * z), 2 * (x * y - w * z), 2 * (x * z + w * y)),
-        (2 * (x * y + w * z), 1 - 2 * (x * x + z * z), 2 * (y * z - w * x)),
-        (2 * (x * z - w * y), 2 * (y * z + w * x), 1 - 2 * (x * x + y * y)),
-    )
-    return np.moveaxis(np.array(rows), -1, 0)
+    R = np.empty((len(quaternions), 3, 3))
+    turn_each(np.asarray(quaternions, dtype=np.float64), R)
+    return R
+
+
+def turn_each(quaternions: Array, R: Array) -> None:
+    """Write what `rotations` gives into an array, shape (n, 3, 3)."""
+    for k in range(quaternions.shape[0]):
+        x, y, z, w = quaternions[k, 0], quaternions[k, 1], quaternions[k, 2], quaternions[k, 3]
+        first, second, third = algebra.quaternion_rows(x, y, z, w)
+        algebra.put_row(R[k], 0, first)
+        algebra.put_row(R[k], 1, second)
+        algebra.put_row(R[k], 2, third)
 
 
 def forward(quaternions: Array) -> Array:

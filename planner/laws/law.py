@@ -95,7 +95,7 @@ class MotionProblem:
         """
         turned, (stiffness, omega, reference) = np.zeros((len(before) + 1, 2)), window
         seen = None if memory is None else memory @ rotation
-        linear.fused_product(before, rotation, turned[: len(before)])
+        linear.product(before, rotation, turned[: len(before)])
         return cls(state, stiffness, omega, reference, steps, turned[0], turned[1:], rotation, seen)
 
 

@@ -2,7 +2,7 @@
 
 import numpy as np
 
-from surefoot.maths import algebra, linear
+from surefoot.maths import algebra
 from surefoot.planner.types import Array
 
 Ahead = tuple[Array, Array, Array, Array, Array]
@@ -53,9 +53,9 @@ class WorldMotion:
 
     def _see(self, com: Array, velocity: Array, acceleration: Array, R: Array, origin: Array, state: Array) -> None:
         for axis in range(2):
-            state[axis, 0] = linear.fused_pair(com[0] - origin[0], R[0, axis], com[1] - origin[1], R[1, axis])
-            state[axis, 1] = linear.fused_pair(velocity[0], R[0, axis], velocity[1], R[1, axis])
-            state[axis, 2] = linear.fused_pair(acceleration[0], R[0, axis], acceleration[1], R[1, axis])
+            state[axis, 0] = (com[0] - origin[0]) * R[0, axis] + (com[1] - origin[1]) * R[1, axis]
+            state[axis, 1] = velocity[0] * R[0, axis] + velocity[1] * R[1, axis]
+            state[axis, 2] = acceleration[0] * R[0, axis] + acceleration[1] * R[1, axis]
 
     def of(self, state: Array, jerk: Array, shifts: Array, ahead: Ahead, frame: Frame) -> tuple[Array, ...]:
         """CoM position, velocity and acceleration, jerk, ZMP, its offset and its reference, which a `WalkPlan` has.

@@ -264,7 +264,7 @@ def _increments(schedule: Schedule, landed: int, rotation: Array) -> Array:
     """Increments of a `Support`, by the plan frame's rotation to the world."""
     increment, before = np.zeros((2, 2)), schedule.step(landed).place.position
     for n, step in enumerate(schedule.after(landed)[:2]):
-        linear.fused_product((step.place.position - before)[None, :2], rotation, increment[n : n + 1])
+        linear.product((step.place.position - before)[None, :2], rotation, increment[n : n + 1])
         before = step.place.position
     return increment
 

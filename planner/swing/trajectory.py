@@ -101,7 +101,7 @@ class SwingTrajectory:
         elif time >= self.start_time - TOUCHING:
             after, glide = time >= self.bend_time - TOUCHING, np.empty((6, len(_GLIDING)))
             level, begin = (self.onward, self.bend_time) if after else (self.level, self.start_time)
-            linear.fused_product(shift(time - begin), level, glide)
+            linear.product(shift(time - begin), level, glide)
             result[:, :2], result[:, 3:] = glide[:, :2], glide[:, 2:]  # faster than by a list of columns
         else:
             result[0, :2], result[0, 3:] = self.level[0, :2], self.level[0, 2:]

@@ -11,6 +11,7 @@ import numpy as np
 import yaml
 from numpy.typing import NDArray
 
+from surefoot.planner.geometry.plane import headings
 from surefoot.scenarios.errors import SetupError
 from surefoot.scenarios.file.schema import Scenario
 from surefoot.scenarios.log import NoLog
@@ -142,8 +143,7 @@ def _tried(scenario: Scenario, speed: float) -> Trial:
 def _astray(begun: tuple[float, Array], now: float, q: Array, speed: float) -> float:
     """Error of the mean velocity from then to now over the commanded one [-]."""
     time, before = begun
-    x, y, z, w = before[3:7].tolist()
-    yaw = math.atan2(2.0 * (w * z + x * y), 1.0 - 2.0 * (y * y + z * z))
+    yaw = float(headings(before[3:7]))
     moved = (q[:2] - before[:2]) / max(now - time, 1e-9)
     ahead = moved @ np.array([math.cos(yaw), math.sin(yaw)])
     aside = moved @ np.array([-math.sin(yaw), math.cos(yaw)])

@@ -5,7 +5,7 @@ from collections.abc import Mapping
 
 import numpy as np
 
-from surefoot.maths import algebra, linear
+from surefoot.maths import algebra
 from surefoot.readings import Readings
 from surefoot.scenarios.log import LogWriter
 from surefoot.scenarios.log.layout import RowLayout, Table
@@ -143,7 +143,7 @@ class EstimationRows:
         algebra.put_row(self._back, 0, (c, -s, 0.0))
         algebra.put_row(self._back, 1, (s, c, 0.0))
         algebra.put_row(self._back, 2, (0.0, 0.0, 1.0))
-        linear.fused_compose(self._back, R, self._turned)
+        algebra.compose(self._back, R, self._turned)
         self._yaw_error[n, 0] = yaw
         T = self._turned
         self._tilt_error[n, 0] = 0.5 * (_rows_product(T, 2, true, 1) - _rows_product(T, 1, true, 2))
@@ -163,7 +163,7 @@ class EstimationRows:
 
 def _rows_product(A: Array, i: int, B: Array, j: int) -> float:
     """Entry of A B'."""
-    return linear.fused_sum(A[i, 0], B[j, 0], A[i, 1], B[j, 1], A[i, 2], B[j, 2])
+    return algebra.inner(algebra.row(A, i), algebra.row(B, j))
 
 
 def _within_half_turn(angle: float) -> float:

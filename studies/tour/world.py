@@ -11,6 +11,7 @@ from surefoot.engines.windowless import mujoco
 from surefoot.joints import JointCommand
 from surefoot.models.convert import mujoco_to_pinocchio, pinocchio_to_mujoco
 from surefoot.models.types import RobotDescription
+from surefoot.planner.geometry.plane import headings
 from surefoot.sim.measurement import Measurement
 from surefoot.studies.tour.robot import TourRobot
 from surefoot.studies.tour.rules import Punch
@@ -62,8 +63,7 @@ class TourWorld:
     @property
     def heading(self) -> float:
         """Heading of the pelvis [rad]."""
-        w, x, y, z = self.data.qpos[3:7].tolist()
-        return float(np.arctan2(2.0 * (w * z + x * y), 1.0 - 2.0 * (y * y + z * z)))
+        return float(headings(np.roll(self.data.qpos[3:7], -1)))
 
     def reset(self, q: Array) -> None:
         """Stand still in a configuration in Pinocchio's convention, shape (7 + nj,)."""

@@ -2,6 +2,7 @@ cimport libc.math as math
 cimport cython
 
 ctypedef (double, double, double) vector3
+ctypedef (vector3, vector3, vector3) rows3
 
 cdef double INFINITY
 cpdef double between(double value, double low, double high) noexcept nogil
@@ -28,6 +29,7 @@ cpdef void compose(const double[:, :] A, const double[:, :] B, double[:, :] out)
 cpdef void compose_back(const double[:, :] A, const double[:, :] B, double[:, :] out) noexcept nogil
 @cython.locals(small=cython.bint)
 cpdef void rotation_of(vector3 a, double[:, :] R) noexcept nogil
+cpdef rows3 quaternion_rows(double x, double y, double z, double w) noexcept nogil
 cpdef vector3 rotation_vector(const double[:, :] R) noexcept nogil
 cpdef vector3 turn_between(const double[:, :] A, const double[:, :] B) noexcept nogil
 cpdef double columns_inner(const double[:, :] A, Py_ssize_t i, const double[:, :] B, Py_ssize_t j) noexcept nogil

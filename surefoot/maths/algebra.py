@@ -147,6 +147,15 @@ def rotation_of(a: Vector, R: Array) -> None:
     R[2, 0], R[2, 1], R[2, 2] = second * z * x - first * y, second * z * y + first * x, second * z * z + cosine
 
 
+def quaternion_rows(x: float, y: float, z: float, w: float) -> tuple[Vector, Vector, Vector]:
+    """Rows of the rotation of a unit quaternion."""
+    return (
+        (1.0 - 2.0 * (y * y + z * z), 2.0 * (x * y - w * z), 2.0 * (x * z + w * y)),
+        (2.0 * (x * y + w * z), 1.0 - 2.0 * (x * x + z * z), 2.0 * (y * z - w * x)),
+        (2.0 * (x * z - w * y), 2.0 * (y * z + w * x), 1.0 - 2.0 * (x * x + y * y)),
+    )
+
+
 def rotation_vector(R: Array) -> Vector:
     """Rotation vector of a rotation, as `pinocchio.log3` has it for angles below pi."""
     return _logarithm((R[2, 1] - R[1, 2], R[0, 2] - R[2, 0], R[1, 0] - R[0, 1]), R[0, 0] + R[1, 1] + R[2, 2])

@@ -43,13 +43,7 @@ cpdef void inverse(const double[:, :] U, double[:, :] out) noexcept nogil
 cpdef void add_products(double[:, ::1] P, const double[:, ::1] A, const double[:, ::1] B) noexcept nogil
 cpdef void add_transposed_product(double scale, const double[:, :] A, const double[:] y, double[:] out) noexcept nogil
 cpdef void evaluate_polynomials(const double[:, ::1] C, double t, double[::1] out) noexcept nogil
-cpdef double fused_pair(double a, double x, double b, double y) noexcept nogil
-cpdef double fused_sum(double a, double x, double b, double y, double c, double z) noexcept nogil
 cpdef double nearest(double value) noexcept nogil
-cpdef vector3 fused_rotate(const double[:, :] A, vector3 x) noexcept nogil
-cpdef vector3 fused_rotate_back(const double[:, :] A, vector3 x) noexcept nogil
-cpdef void fused_compose(const double[:, :] A, const double[:, :] B, double[:, :] out) noexcept nogil
-cpdef void fused_product(const double[:, :] A, const double[:, :] B, double[:, :] out) noexcept nogil
 cpdef void fill(double[:] out, Py_ssize_t start, const double[:] values) noexcept nogil
 cpdef void products(const double[:, :] Y, double[:, :] S) noexcept nogil
 cpdef void add_product(double scale, const double[:, :] A, const double[:] x, double[:] out) noexcept nogil

@@ -10,8 +10,6 @@ import numpy as np
 from numpy.typing import NDArray
 from scipy.linalg import blas, lapack
 
-from surefoot.maths.algebra import Vector
-
 Array = NDArray[np.float64]
 
 
@@ -259,11 +257,6 @@ def evaluate_polynomials(C: Array, t: float, out: Array) -> None:
         values += row
 
 
-def fused_pair(a: float, x: float, b: float, y: float) -> float:
-    """Sum a x + b y, rounded once a term, as numpy's library sums on processors that fuse."""
-    return float(np.array([a, b]) @ np.array([x, y]))
-
-
 def rotate_rows(A: Array, i: int, a: float, b: float) -> None:
     """Rotate rows i and i + 1 (Givens) as takes a pair of their numbers, (a, b), to (√(a² + b²), 0)."""
     size = math.sqrt(a * a + b * b)
@@ -280,33 +273,6 @@ def excess(values: Array, lower: Array, upper: Array) -> float:
     """Largest violation of lower <= values <= upper, shape (n,) each; 0 for none, NaN where a value is no number."""
     worst = float(np.maximum(lower - values, values - upper).max())
     return worst if not worst < 0.0 else 0.0
-
-
-def fused_sum(a: float, x: float, b: float, y: float, c: float, z: float) -> float:
-    """Sum a x + b y + c z, rounded once a term, as numpy's library sums on processors that fuse."""
-    return float(np.array([a, b, c]) @ np.array([x, y, z]))
-
-
-def fused_rotate(A: Array, x: Vector) -> Vector:
-    """A x, shapes (3, 3) and (3,), rounded once a term: the second column first, then the first and the third."""
-    first, second, third = (A @ np.array(x)).tolist()
-    return first, second, third
-
-
-def fused_rotate_back(A: Array, x: Vector) -> Vector:
-    """A' x, rounded once a term in the order of the rows."""
-    first, second, third = (np.array(x) @ A).tolist()
-    return first, second, third
-
-
-def fused_compose(A: Array, B: Array, out: Array) -> None:
-    """A B, of two matrices of shape (3, 3), neither of which is `out`; rounded once a term in the order of the sum."""
-    out[:] = A @ B
-
-
-def fused_product(A: Array, B: Array, out: Array) -> None:
-    """A B into `out`, shape (m, k), for A of shape (m, n) and B of shape (n, k), rounded once a term in their order."""
-    out[:] = A @ B
 
 
 def fill(out: Array, start: int, values: Array) -> None:

@@ -3,7 +3,7 @@
 Sums go in an order of their own, the same on every machine.
 """
 
-from libc.math cimport fma, rint, sqrt
+from libc.math cimport rint, sqrt
 from surefoot.maths.algebra cimport vector3
 from libc.string cimport memcpy, memset
 
@@ -467,10 +467,6 @@ cpdef void evaluate_polynomials(const double[:, ::1] C, double t, double[::1] ou
             out[i] = out[i] * t + C[k, i]
 
 
-cpdef double fused_pair(double a, double x, double b, double y) noexcept nogil:
-    return fma(b, y, a * x)
-
-
 cpdef void products(const double[:, :] Y, double[:, :] S) noexcept nogil:
     cdef Py_ssize_t e, c, width = S.shape[1]
     cdef double *row
@@ -524,46 +520,8 @@ cpdef double excess(const double[:] values, const double[:] lower, const double[
     return worst
 
 
-cpdef double fused_sum(double a, double x, double b, double y, double c, double z) noexcept nogil:
-    return fma(c, z, fma(b, y, a * x))
-
-
 cpdef double nearest(double value) noexcept nogil:
     return rint(value)
-
-
-cpdef vector3 fused_rotate(const double[:, :] A, vector3 x) noexcept nogil:
-    return (
-        fused_sum(A[0, 1], x[1], A[0, 0], x[0], A[0, 2], x[2]),
-        fused_sum(A[1, 1], x[1], A[1, 0], x[0], A[1, 2], x[2]),
-        fused_sum(A[2, 1], x[1], A[2, 0], x[0], A[2, 2], x[2]),
-    )
-
-
-cpdef vector3 fused_rotate_back(const double[:, :] A, vector3 x) noexcept nogil:
-    return (
-        fused_sum(A[0, 0], x[0], A[1, 0], x[1], A[2, 0], x[2]),
-        fused_sum(A[0, 1], x[0], A[1, 1], x[1], A[2, 1], x[2]),
-        fused_sum(A[0, 2], x[0], A[1, 2], x[1], A[2, 2], x[2]),
-    )
-
-
-cpdef void fused_compose(const double[:, :] A, const double[:, :] B, double[:, :] out) noexcept nogil:
-    cdef Py_ssize_t i, j
-    for i in range(3):
-        for j in range(3):
-            out[i, j] = fused_sum(A[i, 0], B[0, j], A[i, 1], B[1, j], A[i, 2], B[2, j])
-
-
-cpdef void fused_product(const double[:, :] A, const double[:, :] B, double[:, :] out) noexcept nogil:
-    cdef Py_ssize_t i, j, k
-    cdef double total
-    for i in range(A.shape[0]):
-        for j in range(B.shape[1]):
-            total = A[i, 0] * B[0, j]
-            for k in range(1, B.shape[0]):
-                total = fma(A[i, k], B[k, j], total)
-            out[i, j] = total
 
 
 cpdef void fill(double[:] out, Py_ssize_t start, const double[:] values) noexcept nogil:

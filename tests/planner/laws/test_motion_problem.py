@@ -14,5 +14,5 @@ def test_the_jerk_before_is_turned_into_the_plan_frame():
     steps = StepContext(still, (1.0, -1.0), (False, False), None, 0.0, 0.0, still, still)
     problem = MotionProblem.after(before, np.zeros((2, 3)), (np.ones(9), np.ones(9), reference), steps, turn)
     turned = before @ turn
-    np.testing.assert_array_equal(problem.last_jerk, turned[0])
-    np.testing.assert_array_equal(problem.fallback, np.vstack((turned[1:], np.zeros((1, 2)))))
+    np.testing.assert_array_max_ulp(problem.last_jerk, turned[0], 4)
+    np.testing.assert_allclose(problem.fallback, np.vstack((turned[1:], np.zeros((1, 2)))), rtol=1e-14, atol=1e-16)

@@ -7,6 +7,7 @@ page between `<!-- value: name -->` and `<!-- end -->`.
 """
 
 import csv
+import inspect
 import json
 import math
 import re
@@ -21,6 +22,7 @@ from pydantic.fields import FieldInfo
 
 from surefoot.models.robot_file.schema import RobotFile
 from surefoot.planner.laws.profiles import PROFILES, Profile
+from surefoot.planner.rules import RULES, rule_name
 from surefoot.scenarios import catalogue
 from surefoot.scenarios.check.signs import SIGNS
 from surefoot.scenarios.file.schema import (
@@ -160,6 +162,16 @@ def _profile(profile: Profile) -> list[str]:
     return [f"`{profile.name}`", profile.doc, str(numbers.horizon), moves, f"{numbers.jerk_limit:g}", change]
 
 
+def rules_table() -> str:
+    """The planner's rules of recovery, in their order."""
+    return table(("rule", "what it does"), ([f"`{rule_name(rule)}`", first_line(rule)] for rule in RULES))
+
+
+def first_line(thing: object) -> str:
+    """First line of a docstring."""
+    return (inspect.getdoc(thing) or "").splitlines()[0]
+
+
 def sensors_table() -> str:
     """Every term of the sensors, in each preset."""
     rows = []
@@ -258,6 +270,7 @@ TABLES: dict[str, tuple[str, Callable[[], str]]] = {
     "robot-keys": ("robot-files.md", robot_keys_table),
     "mjcf-elements": ("robot-files.md", elements.mjcf_table),
     "urdf-elements": ("robot-files.md", elements.urdf_table),
+    "recovery-rules": ("recovery.md", rules_table),
     "sensors": ("sensors.md", sensors_table),
     "sensed": ("sensors.md", sensed_table),
     "policy-keys": ("policies.md", policy_keys_table),

@@ -10,8 +10,8 @@ from surefoot.planner.plan.plan cimport WalkPlan
 from surefoot.planner.walk_model cimport WalkModel
 
 @cython.locals(state=WalkState, support=Support, measured=Measured, balance=Balance)
-cpdef planned(View view, Motion motion)
+cpdef planned(View view, Motion motion, acted)
 @cython.locals(support=Support, window=Window, model=WalkModel, reference=ZmpReference)
-cdef WalkPlan _world_plan(View view, WalkState state, Motion motion, footsteps, Balance balance)
+cdef WalkPlan _world_plan(View view, WalkState state, Motion motion, footsteps, status, Balance balance)
 @cython.locals(last=WalkPlan, swing=Swing)
 cdef _status(WalkState state, Motion motion, Balance balance)

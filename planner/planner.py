@@ -18,6 +18,7 @@ from surefoot.planner.plan.plan import WalkPlan
 from surefoot.planner.problem import problem_of
 from surefoot.planner.recovery.falling import falling
 from surefoot.planner.references.com_height import HeightProfile, SmoothHeight
+from surefoot.planner.rules import gone_through
 from surefoot.planner.state import Orders, SwingStage, WalkState
 from surefoot.planner.steps.commands import STANDING, Command
 from surefoot.planner.steps.gait import GaitParameters
@@ -150,17 +151,21 @@ class WalkingPlanner:
             ValueError: the measured CoM or feet are not finite.
         """
         measured = Measured(state, feet)
-        view = look(track(self.state, measured), measured)
-        for rule in self._rules:
-            view = rule(view)
+        view, acted = gone_through(self._rules, look(track(self.state, measured), measured))
         # TVMPC, or the law that stands in its place.
         self.motion = self._law.plan(problem_of(view))
-        self.state, plan = planned(view, self.motion)
+        self.state, plan = planned(view, self.motion, acted)
         return plan
 
 
-def planned(view: View, motion: Motion) -> tuple[WalkState, WalkPlan]:
-    """The state whose swing foot goes where a motion has its step land, and the plan of the tick in the world frame."""
+def planned(view: View, motion: Motion, acted: tuple[str, ...]) -> tuple[WalkState, WalkPlan]:
+    """The state whose swing foot goes where a motion has its step land, and the plan of the tick in the world frame.
+
+    Args:
+        view: of the tick, that rules have gone through.
+        motion: the law's.
+        acted: names of the rules that made something.
+    """
     state, support, measured = view.state, view.support, view.measured
     shifts = motion.shifts @ support.rotation.T if any(motion.shifts.ravel().tolist()) else np.zeros((2, 2))
     footsteps = upcoming(state, measured.time, shifts)
@@ -170,13 +175,13 @@ def planned(view: View, motion: Motion) -> tuple[WalkState, WalkPlan]:
         balance = replace(balance, shift=shift, catching=catching)
     if state.phase.swing_foot is not None:
         state = swinging_to(state, footsteps[0], measured, motion.solver is SolverStatus.HELD)
-    plan = _world_plan(view, state, motion, footsteps, balance)
+    plan = _world_plan(view, state, motion, footsteps, replace(_status(state, motion, balance), acted=acted), balance)
     law_memory = None if motion.memory is None else motion.memory @ support.rotation.T
     return replace(state, plan=plan, law_memory=law_memory), plan
 
 
 def _world_plan(
-    view: View, state: WalkState, motion: Motion, footsteps: tuple[Footstep, ...], balance: Balance
+    view: View, state: WalkState, motion: Motion, footsteps: tuple[Footstep, ...], status: PlanStatus, balance: Balance
 ) -> WalkPlan:
     """The plan of a tick, in the world frame.
 
@@ -185,6 +190,7 @@ def _world_plan(
         state: with the swing that is flown on.
         motion: the law's.
         footsteps: the next ones.
+        status: of the plan.
         balance: with what the plan makes of the landing to come.
     """
     support, window, time = view.support, view.window, view.measured.time
@@ -214,7 +220,7 @@ def _world_plan(
         footsteps=footsteps,
         swing=state.swing.trajectory,
         roll=state.roll(time),
-        status=_status(state, motion, balance),
+        status=status,
         balance=balance,
     )
 

@@ -5,6 +5,7 @@ would come of a state is asked by the same look, and nobody keeps it.
 """
 
 import math
+from collections.abc import Sequence
 from dataclasses import replace
 from typing import Protocol
 
@@ -28,6 +29,16 @@ class Rule(Protocol):
 def rule_name(rule: Rule) -> str:
     """The name of a rule: that of its function, or of its class."""
     return str(getattr(rule, "__name__", type(rule).__name__))
+
+
+def gone_through(rules: Sequence[Rule], view: View) -> tuple[View, tuple[str, ...]]:
+    """The view that rules make of a view, one after the other, and the names of those that made something."""
+    acted = []
+    for rule in rules:
+        before, view = view, rule(view)
+        if view is not before:
+            acted.append(rule_name(rule))
+    return view, tuple(acted)
 
 
 def ends(view: View) -> View:

@@ -19,6 +19,7 @@ cdef class PlanStatus:
     cdef readonly bint infeasible
     cdef readonly Py_ssize_t age, late_touchdown
     cdef readonly bint early_touchdown, falling
+    cdef readonly object acted
 
 cdef class Balance:
     cdef readonly double planned, movable

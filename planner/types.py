@@ -185,6 +185,7 @@ class PlanStatus:
         early_touchdown: the swing foot has landed before its time; its foothold is fixed, single support goes on.
         falling: no step will save the body any more, as far as the planner can tell; see
             `planner.recovery.falling.falling`.
+        acted: names of the rules of recovery that made something of the steps to come, in their order.
     """
 
     solver: SolverStatus
@@ -195,6 +196,7 @@ class PlanStatus:
     late_touchdown: int
     early_touchdown: bool
     falling: bool = False
+    acted: tuple[str, ...] = ()
 
 
 @dataclass(frozen=True)

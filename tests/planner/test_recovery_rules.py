@@ -5,7 +5,7 @@ from dataclasses import replace
 
 import numpy as np
 import pytest
-from pendulum_walk import LEGS, walk_pendulum
+from pendulum_walk import LEGS, Attended, walk_pendulum
 
 from surefoot.forces import Push
 from surefoot.planner.laws.profiles import PROFILES
@@ -57,6 +57,36 @@ def acted(request):
         planner = WalkingPlanner(gait, stand(), 0.22, 0.11, parameters=parameters, legs=LEGS, profile=profile)
         walk_pendulum(planner, stand(), end, com=np.array([0.0, 0.0, gait.com_height]), pushes=(push,))
     return found
+
+
+@pytest.mark.parametrize("case", list(CASES))
+def test_a_plan_has_the_names_of_the_rules_that_acted(stand, case):
+    """Those which changed the view, and no others."""
+    gait, parameters, push, end = CASES[case]
+    changed, named = [], []
+
+    class Watched:
+        def __init__(self, rule):
+            self.rule, self.__name__ = rule, rule.__name__
+
+        def __call__(self, view):
+            made = self.rule(view)
+            if made is not view:
+                changed.append((view.measured.time, self.__name__))
+            return made
+
+    profile = replace(PROFILES["default"], rules=tuple(map(Watched, RULES)))
+    planner = WalkingPlanner(gait, stand(), 0.22, 0.11, parameters=parameters, legs=LEGS, profile=profile)
+
+    def update(planner, state, feet):
+        plan = planner.update(state, feet)
+        named.extend((plan.time, name) for name in plan.status.acted)
+        return plan
+
+    watched = Attended(planner, update)
+    walk_pendulum(watched, stand(), end, com=np.array([0.0, 0.0, gait.com_height]), pushes=(push,))
+    assert named == changed
+    assert "adjusts" in {name for _, name in named}
 
 
 def inserted(view):

@@ -2,7 +2,7 @@ cdef class EventLog:
     cdef object _channel
     cdef tuple _last
 
-    cpdef update(self, time_ns, contact, force, bint fallback, bint falling, bint fallen)
+    cpdef update(self, time_ns, contact, force, bint fallback, bint falling, bint fallen, tuple acted=*)
 
 cdef class RobotView:
     cdef readonly long long every

@@ -101,7 +101,8 @@ class PointView:
 
     def events(self, time_ns: int, contact: tuple[bool, bool], force: Array, plan: WalkPlan, lost: bool) -> None:
         """Log what has changed since the last control tick; ``force`` is the push, shape (2,) [N]."""
-        self._events.update(time_ns, contact, force, plan.status.solver is _HELD, plan.status.falling, lost)
+        status = plan.status
+        self._events.update(time_ns, contact, force, status.solver is _HELD, status.falling, lost, status.acted)
 
     def picture(
         self, tick: int, time_ns: int, com: Array, com_velocity: Array, zmp: Array, plan: WalkPlan, sample: PlanSample
@@ -127,15 +128,25 @@ TOPIC = "/events"
 _FEET = ("left", "right")
 
 
+_Now = tuple[tuple[bool, bool], bool, bool, bool, bool, tuple[str, ...]]
+
+
 class EventLog:
     """The log messages of a run, in Foxglove's ``foxglove.Log``."""
 
     def __init__(self, writer: LogWriter) -> None:
         self._channel = writer.message_channel(TOPIC, published(Log), "what happens, in words")
-        self._last = ((True, True), False, False, False, False)
+        self._last: _Now = ((True, True), False, False, False, False, ())
 
     def update(
-        self, time_ns: int, contact: tuple[bool, bool], force: Array, fallback: bool, falling: bool, fallen: bool
+        self,
+        time_ns: int,
+        contact: tuple[bool, bool],
+        force: Array,
+        fallback: bool,
+        falling: bool,
+        fallen: bool,
+        acted: tuple[str, ...] = (),
     ) -> None:
         """Log what has changed since the last call; before the first one the robot stood in peace.
 
@@ -146,12 +157,13 @@ class EventLog:
             fallback: whether the controller or the planner goes on without a solution.
             falling: whether the planner knows that a fall is coming.
             fallen: whether the robot has fallen.
+            acted: rules of recovery that acted in the plan.
         """
         pushed = bool(force.dot(force) > 0.0)
-        now = (contact, pushed, fallback, falling, fallen)
+        now = (contact, pushed, fallback, falling, fallen, acted)
         if now == self._last:
             return
-        (last_contact, was_pushed, fell_back, was_falling, had_fallen), self._last = self._last, now
+        (last_contact, was_pushed, fell_back, was_falling, had_fallen, had_acted), self._last = self._last, now
         for foot, before, after in zip(_FEET, last_contact, contact, strict=True):
             if after != before:
                 kind = "touchdown" if after else "lift-off"
@@ -161,6 +173,9 @@ class EventLog:
         if fallback != fell_back:
             words = "no solution, the fallback acts" if fallback else "solved again, the fallback ends"
             self._say(time_ns, Log.WARNING, "fallback", words)
+        for rule in acted:
+            if rule not in had_acted:
+                self._say(time_ns, Log.INFO, "rule", f"the rule {rule} acts")
         if falling and not was_falling:
             self._say(time_ns, Log.ERROR, "falling", "no step will save the robot, a fall is coming")
         if was_falling and not falling:
@@ -302,7 +317,7 @@ class BodyView(RobotView):
         """Log what has changed since the last control tick."""
         force, status = measurement.external_force, plan.status
         fallback = report.status >= _FALLBACK or status.solver is _HELD
-        self._events.update(time_ns, report.active, force, fallback, status.falling, fallen)
+        self._events.update(time_ns, report.active, force, fallback, status.falling, fallen, status.acted)
 
     def _planned(
         self, time_ns: int, measurement: Measurement, terms: RobotTerms, plan: WalkPlan, sample: PlanSample

@@ -410,6 +410,18 @@ def test_a_fall_that_is_taken_back_is_an_event(surefoot, tmp_path):
     assert "steps can save the robot again" in found[1]["text"]
 
 
+def test_a_rule_that_begins_to_act_is_an_event(surefoot, tmp_path):
+    with LogWriter(tmp_path / "said.mcap", {}) as writer:
+        said = EventLog(writer)
+        for tick, acted in enumerate(((), ("adjusts",), ("adjusts", "retimes"), ("adjusts",), (), ("adjusts",))):
+            said.update(tick * 10**8, (True, True), np.zeros(3), False, False, False, acted)
+    found = json.loads(surefoot("inspect", tmp_path / "said.mcap", "--topic", "/events", "--json")[1])
+    assert [(event["time"], event["text"]) for event in found] == [
+        (0.1, "the rule adjusts acts"), (0.2, "the rule retimes acts"), (0.5, "the rule adjusts acts"),
+    ]  # fmt: skip
+    assert {event["kind"] for event in found} == {"rule"}
+
+
 def test_no_file_is_replaced_without_being_told(surefoot, scenario, tmp_path):
     surefoot("run", scenario, "--out", tmp_path)
     log = tmp_path / "two-steps-0" / "log.mcap"

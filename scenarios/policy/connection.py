@@ -47,6 +47,9 @@ class Connection:
         action: last output, zero at first, shape (m,).
         target: of these joints, as last decided, shape (m,) [rad, N·m].
         followed: the velocity that it follows, within those that the contract allows.
+        driven: true for the joints of the contract that somebody else drives.
+        walked: time of all decisions that followed a velocity [s].
+        since: time of those since it last stood [s].
 
     Raises:
         ParameterError: contract, robot and rates do not fit together.
@@ -69,7 +72,7 @@ class Connection:
             what = f"{file} decides {contract.rate:g} times a second, under rates.control {walk.rates.control} Hz"
             raise ParameterError(KEY, what, "raise rates.control")
         self.joints, self._body = Joints(contract, robot), body_of(robot)
-        self._driven = np.zeros(len(contract.joints), dtype=bool)
+        self.driven = np.zeros(len(contract.joints), dtype=bool)
         self.posture = self.joints.posture
         model, frames = self._body.model, self._body.frames
         self._data, self._torso = model.createData(), model.getFrameId(frames.torso)
@@ -102,7 +105,7 @@ class Connection:
         """Forget what was observed, decided and commanded."""
         self.action, self.target = np.zeros(len(self.moved)), self._offset.copy()
         self.followed, self._marches = STANDING, False
-        self._walked = self._since = 0.0
+        self.walked = self.since = 0.0
         for feed in self.feeds.values():
             feed.reset()
 
@@ -119,7 +122,7 @@ class Connection:
         Args:
             joints: of the robot, shape (nj,).
         """
-        self._driven = joints[self.joints.named]
+        self.driven = joints[self.joints.named]
 
     def sizes(self) -> dict[str, tuple[int, list[tuple[str, int]]]]:
         """Count the numbers of each input, and of each of its terms without history."""
@@ -180,9 +183,9 @@ class Connection:
         """Count how long it has walked by the decision that is due."""
         period = 1.0 / self.contract.rate
         if self._stands:
-            self._since = 0.0
+            self.since = 0.0
         else:
-            self._walked, self._since = self._walked + period, self._since + period
+            self.walked, self.since = self.walked + period, self.since + period
 
     def _seen(self, now: float, state: RobotState) -> Seen:
         q, v = state.q, state.v
@@ -190,13 +193,13 @@ class Connection:
         R, spin = pin.Quaternion(w, x, y, z).matrix(), v[3:6]
         torso, torso_spin, height = self._looked_at(state) if self._looks else (R, spin, math.nan)
         position, velocity = self._joints_seen(q[7:], v[6:])
-        joints, times = (position, self.joints.default, velocity), (now, self._walked, self._since)
+        joints, times = (position, self.joints.default, velocity), (now, self.walked, self.since)
         demand = self.action, self.followed, self._stands
         return Seen(*times, R, torso, spin, torso_spin, v[:3], height, *joints, *demand)
 
     def _joints_seen(self, position: Array, velocity: Array) -> tuple[Array, Array]:
         """Angles and speeds of the contract's joints, of those that somebody else drives as the contract says."""
-        named, driven = self.joints.named, self._driven
+        named, driven = self.joints.named, self.driven
         kind = self.contract.driven
         if kind == "as_is" or not driven.any():
             return position[named], velocity[named]

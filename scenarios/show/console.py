@@ -97,9 +97,13 @@ class ProgressLine(TerminalLine):
 
 
 def print_result(name: str, verdict: Verdict, log: Path) -> None:
-    """Print verdict, reasons, the first metrics, the path of the log, and of a failure what says why."""
+    """Print verdict, reasons, the metrics, the path of the log, and of a failure what says why.
+
+    Metrics are those asked for first, and those that the scenario bounds.
+    """
     _print_verdict(name, verdict)
-    _print_metrics(verdict, FIRST_METRICS)
+    bounded = (key.partition(".")[0] for key in verdict.criteria)
+    _print_metrics(verdict, tuple(dict.fromkeys((*FIRST_METRICS, *bounded))))
     typer.echo(f"log: {log}")
     if not verdict.passed:
         typer.echo(f"why: surefoot inspect {quote(str(log))}")

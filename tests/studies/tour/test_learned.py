@@ -95,7 +95,7 @@ def test_what_is_told_of_driven_arms_follows_the_contract(policies, tmp_path):
         ride = Ride(entrant, 2, CRANE)
         ride.step()
         connection = ride.walker.policy.connection
-        moved = connection._driven
+        moved = connection.driven
         state = ride.world.measure()
         position, velocity = connection._joints_seen(state.q[7:], state.v[6:])
         found[kind] = position[moved] - connection.joints.default[moved], velocity[moved]
@@ -140,12 +140,12 @@ def test_a_policys_clocks_count_its_decisions(stander):
     for tick in range(4):
         twist = Twist(0.3) if tick in (0, 1, 3) else Twist()
         policy.step(Measurement.of_state(0.02 * tick, policy_state(policy), np.zeros(35)), Command(twist))
-        found.append((round(policy.connection._walked, 6), round(policy.connection._since, 6)))
+        found.append((round(policy.connection.walked, 6), round(policy.connection.since, 6)))
     assert found == [(0.02, 0.02), (0.04, 0.04), (0.04, 0.0), (0.06, 0.02)]
     policy.reset(None)
     policy.step(Measurement.of_state(0.0, policy_state(policy), np.zeros(35)), Command(Twist()))
-    assert (policy.connection._walked, policy.connection._since) == (0.0, 0.0)
-    assert policy.connection._driven.any()  # arms stay the harness's
+    assert (policy.connection.walked, policy.connection.since) == (0.0, 0.0)
+    assert policy.connection.driven.any()  # arms stay the harness's
 
 
 def policy_state(policy):

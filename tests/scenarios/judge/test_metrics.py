@@ -16,7 +16,7 @@ pytestmark = pytest.mark.unit
 NAMES = (
     "fell fall_time fall_warning duration steps_planned place_error heading_error "
     "waypoints_missed steps_taken touchdowns_missed "
-    "standing_time_final standing_time_between zmp_inside_fraction "
+    "standing_time_final standing_time_between velocity_error yaw_rate_error zmp_inside_fraction "
     "zmp_excursion_max cop_ratio_p99 cop_ratio_max zmp_error_rms zmp_error_max com_error_rms dcm_error_rms "
     "capture_margin_min step_shift step_timing "
     "footstep_error_max stair_edge_margin_min swing_clearance_min foot_slip_max stance_twist_max stance_tilt_max "
@@ -49,6 +49,8 @@ def test_all_names_of_the_contract_are_there(metrics, motion):
         "place_error",
         "heading_error",
         "waypoints_missed",
+        "velocity_error",
+        "yaw_rate_error",
         "stair_edge_margin_min",
         "coupling_error",
         "memory_growth",

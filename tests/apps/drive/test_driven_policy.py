@@ -1,4 +1,4 @@
-"""A policy is driven from the page: it hears velocities, is not disturbed by what it cannot hear, and its log runs again."""
+"""A policy is driven from the page: it hears velocities and is not disturbed by others, and its log runs again."""
 
 import json
 import os

@@ -179,7 +179,8 @@ def test_the_page_is_followed_as_it_stands(tmp_path):
     programs = re.findall(r"```python\n(.*?)```", (page / "training.md").read_text(), re.DOTALL)
     assert len(programs) == 2
     for program in programs:
-        done = subprocess.run(
+        asked = [sys.executable, "-c", program]
+        done = subprocess.run(asked, cwd=tmp_path, capture_output=True, text=True, check=False)
             [sys.executable, "-c", program], cwd=tmp_path, capture_output=True, text=True, check=False
         )
         assert done.returncode == 0, done.stderr

@@ -181,8 +181,6 @@ def test_the_page_is_followed_as_it_stands(tmp_path):
     for program in programs:
         asked = [sys.executable, "-c", program]
         done = subprocess.run(asked, cwd=tmp_path, capture_output=True, text=True, check=False)
-            [sys.executable, "-c", program], cwd=tmp_path, capture_output=True, text=True, check=False
-        )
         assert done.returncode == 0, done.stderr
 
 

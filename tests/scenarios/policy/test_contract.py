@@ -161,7 +161,7 @@ def test_a_clock_of_unitree_is_silent_at_rest_where_joints_come_as_motors_do(pol
     assert (phase.options["period"], phase.options.get("rest")) == (0.6, rest)
 
 
-@pytest.mark.parametrize("name", ["falcon", "openwbt"])
+@pytest.mark.parametrize("name", ["falcon", "openwbt", "rl_mjlab"])
 def test_the_contracts_of_the_documentation_are_of_the_g1(name):
     from surefoot.models import RobotOptions, describe
 

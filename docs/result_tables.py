@@ -439,6 +439,7 @@ TABLES: dict[str, tuple[str, Callable[[], str]]] = {
             ("poor-line", "serve.md"),
             ("policy-faults", "policies.md"),
             ("policies-catalogue", "policies-beside.md"),
+            ("steered", "policies-beside.md"),
             ("sabotage", "checking.md"),
             ("criteria", "scenarios.md"),
             ("public-humanoids", "robots.md"),

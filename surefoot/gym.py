@@ -29,7 +29,7 @@ _HOMES = {
 
 
 def register() -> None:
-    """Register the environment with Gymnasium, once; its entry point of the group ``gymnasium.envs``."""
+    """Register the environment with Gymnasium, once; importing this module does."""
     import gymnasium
 
     if NAME not in gymnasium.registry:

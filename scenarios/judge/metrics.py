@@ -20,6 +20,7 @@ from surefoot.scenarios.judge import (
     computing,
     effort,
     feet,
+    following,
     health,
     linked,
     names,
@@ -49,7 +50,7 @@ def gathered(*modules: ModuleType) -> dict[str, Metric[Any]]:
     return found
 
 
-OWN: Mapping[str, Metric[Any]] = gathered(walking, balance, feet, effort, computing, sensed, linked)
+OWN: Mapping[str, Metric[Any]] = gathered(walking, following, balance, feet, effort, computing, sensed, linked)
 """Ours, in the order in which they are shown."""
 
 METRICS: Declared[Metric[Any]] = names.METRICS.filled(Metric, OWN, lambda metric: metric.meaning)

@@ -1,6 +1,6 @@
 """Says why a policy falls: what of its contract, mended alone, lets it walk."""
 
-from collections.abc import Callable, Iterator
+from collections.abc import Callable, Iterator, Sequence
 from dataclasses import dataclass
 from pathlib import Path
 
@@ -72,7 +72,7 @@ def check(
         tried.append(one)
         on_trial(one)
     suspected = [one for one in tried if one.fault.suspects(contract, robot)]
-    cause = _cause(given, suspected) or _cause(given, tried)
+    cause = cause_of(given, suspected, known=True) or cause_of(given, tried)
     return Checked(given, tuple(tried), cause, asymmetry)
 
 
@@ -92,11 +92,18 @@ def _mends(contract: Contract, robot: RobotDescription, mirror: Mirror | None) -
                 yield fault, change, mended
 
 
-def _cause(given: Trial, tried: list[Tried]) -> Tried | None:
-    """The first of those mends that do as well as the best one, if that helps."""
+def cause_of(given: Trial, tried: Sequence[Tried], known: bool = False) -> Tried | None:
+    """The first of those mends that do as well as the best one, if that helps.
+
+    Args:
+        given: the contract as given.
+        tried: mends of it.
+        known: whether the contract itself shows that this is wrong, so that whatever makes a walk better helps.
+    """
     if not tried:
         return None
     least = min(one.trial.cost for one in tried)
     best = next(one for one in tried if one.trial.cost <= ALIKE * least)
-    helps = best.trial.sound or best.trial.cost < MUCH * given.cost
+    better = known and best.trial.up and best.trial.cost < given.cost
+    helps = better or best.trial.sound or best.trial.cost < MUCH * given.cost
     return best if helps else None

@@ -12,7 +12,7 @@ from surefoot.joints import JointCommand, Servo
 from surefoot.planner.types import Twist
 from surefoot.scenarios.policy.contract import KEY, Contract, PerJoint
 from surefoot.scenarios.policy.feed import Feed
-from surefoot.scenarios.policy.joints import Joints, indices, spread
+from surefoot.scenarios.policy.joints import Joints, indices, spread, within
 from surefoot.scenarios.policy.terms import Seen
 from surefoot.scenarios.setup.robot.body import body_of
 from surefoot.scenarios.setup.seat import STANDING
@@ -89,6 +89,9 @@ class Connection:
         if self._limits is not None and self._limits.shape != (len(moved), 2):
             what = f"action.limits has {len(self._limits)} pairs for {len(moved)} joints"
             raise ParameterError(KEY, what, "give one for each")
+        self._still, self._stiffness = np.zeros_like(self.posture), self.joints.stiffness.copy()
+        if action.kind == "torque":
+            self._stiffness[self.moved] = 0.0
         self.reset()
 
     def _fed(self, inputs: tuple[str, ...] | None) -> dict[str, Feed]:
@@ -153,20 +156,18 @@ class Connection:
         """Command of all joints that an output, shape (m,), means."""
         action, joints = self.contract.action, self.joints
         self.action = output
-        used = output if action.clip is None else np.clip(output, *action.clip)
+        used = output if action.clip is None else within(output, *action.clip)
         target = self._offset + self._scale * used
         if self._limits is not None:
-            target = np.clip(target, self._limits[:, 0], self._limits[:, 1])
+            target = within(target, self._limits[:, 0], self._limits[:, 1])
         self.target = target
-        torque, position = np.zeros_like(joints.posture), joints.posture.copy()
-        stiffness = joints.stiffness
         if action.kind == "torque":
+            torque = self._still.copy()
             torque[self.moved] = target
-            stiffness = stiffness.copy()
-            stiffness[self.moved] = 0.0
-        else:
-            position[self.moved] = target
-        return JointCommand(torque, Servo(position, np.zeros_like(position), stiffness, joints.damping))
+            return JointCommand(torque, Servo(joints.posture, self._still, self._stiffness, joints.damping))
+        position = joints.posture.copy()
+        position[self.moved] = target
+        return JointCommand(self._still, Servo(position, self._still, self._stiffness, joints.damping))
 
     def reported(self, observed: Mapping[str, Array]) -> dict[str, Array]:
         """A decision for the log, by name."""

@@ -155,7 +155,7 @@ def _observed(network: Network, attached: Mapping[str, list[Any]], joints: int, 
         found.append(Line("recurrent", pairs, "to do: outputs of the same size as inputs").text)
     names, size = attached.get("observations"), next(iter(free.values()), 0)
     if names and len(free) == 1 and all(name in _TERMS for name in names):
-        return [*found, "observations:", *(f"  - {{term: {_TERMS[name]}}}" for name in names)]
+        return [*found, "observations:", *(_named(_TERMS[name]) for name in names)]
     sizes = {**_SIZES, "joint_position": joints, "joint_velocity": joints, "last_action": actions}
     frame = sum(sizes[name] for name in USUAL)
     length, rest = divmod(size, frame) if size else (1, 0)
@@ -173,6 +173,12 @@ def _observed(network: Network, attached: Mapping[str, list[Any]], joints: int, 
     for name, count in free.items():
         found += [f"  {name}:  # {count}", *(f"    {term}" for term in [f"- {{term: {one}}}" for one in USUAL])]
     return found
+
+
+def _named(term: str) -> str:
+    """Line of a term that the trainer has named; of a clock its file tells no more."""
+    clock = "  # to do: options: its period [s], and rest: zeros if it is silent while the robot is to stand"
+    return f"  - {{term: {term}}}{clock if term == 'phase' else ''}"
 
 
 def _states(inputs: Mapping[str, int], outputs: Mapping[str, int]) -> list[tuple[str, str]]:

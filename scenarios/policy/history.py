@@ -1,6 +1,6 @@
 """The last values of observation terms, side by side in an input of a network."""
 
-from collections.abc import Sequence
+from collections.abc import Iterator, Sequence
 
 import numpy as np
 from numpy.typing import NDArray
@@ -10,6 +10,8 @@ Array = NDArray[np.float64]
 
 class Stack:
     """The last values of some terms.
+
+    They are rows of frames, the newest one last, each with the values of all terms. An input is a choice of these.
 
     Args:
         lengths: how many values of each term are kept.
@@ -32,17 +34,28 @@ class Stack:
 
     def reset(self) -> None:
         """Forget all values."""
-        self._kept: list[list[Array]] | None = None
+        self._frames: Array | None = None
 
-    def add(self, values: Sequence[Array]) -> Array:
-        """Take the newest values of each term; gives all that are kept, side by side."""
-        if self._kept is None:
-            first = [np.zeros_like(one) if self._zero else one for one in values]
-            self._kept = [[one] * length for one, length in zip(first, self._lengths, strict=True)]
-        for kept, newest in zip(self._kept, values, strict=True):
-            kept.append(newest)
-            del kept[0]
-        ordered = [kept[::-1] if self._newest_first else kept for kept in self._kept]
+    def add(self, newest: Array, sizes: Sequence[int]) -> Array:
+        """Take the newest values of all terms, of so many numbers each; gives all that are kept, side by side."""
+        if self._frames is None:
+            rows = max(self._lengths, default=1)
+            self._frames = np.zeros((rows, len(newest))) if self._zero else np.tile(newest, (rows, 1))
+            self._chosen = np.concatenate(list(self._places(sizes)))
+        frames = self._frames
+        frames[:-1] = frames[1:]
+        frames[-1] = newest
+        return frames.take(self._chosen)
+
+    def _places(self, sizes: Sequence[int]) -> Iterator[NDArray[np.intp]]:
+        """Places, among all frames one after another, of what an input is made of, in order."""
+        most, width = max(self._lengths, default=1), sum(sizes)
+        begins = np.concatenate(([0], np.cumsum(sizes)))
+        found = []
+        for length, begin, size in zip(self._lengths, begins[:-1], sizes, strict=True):
+            rows = [row * width + np.arange(begin, begin + size) for row in range(most - length, most)]
+            found.append(rows[::-1] if self._newest_first else rows)
         if self._interleaved:
-            return np.concatenate([one for frame in zip(*ordered, strict=True) for one in frame])
-        return np.concatenate([one for kept in ordered for one in kept])
+            yield from (one for frame in zip(*found, strict=True) for one in frame)
+        else:
+            yield from (one for rows in found for one in rows)

@@ -52,6 +52,11 @@ def indices(names: Sequence[str], among: Sequence[str], what: str) -> NDArray[np
     return np.array([among.index(name) for name in names], dtype=np.intp)
 
 
+def within(values: Array, lower: Array | float, upper: Array | float) -> Array:
+    """Values, each within its bounds."""
+    return np.asarray(np.minimum(np.maximum(values, lower), upper))
+
+
 class Joints:
     """The joints of a contract in those of a robot.
 

@@ -81,8 +81,9 @@ class Mirror:
     def _asked(self, frames: Sequence[Array]) -> Array:
         history = self._contract.history
         stack = Stack(self._lengths, history.order == "newest_first", history.interleaved, zero=False)
-        for row in range(max(self._lengths)):
-            observed = stack.add([values[row] for values in frames])
+        sizes = [values.shape[1] for values in frames]
+        for newest in np.concatenate(frames, axis=1):
+            observed = stack.add(newest, sizes)
         found = self._network.run({**self._states, self._input: self._network.shaped(self._input, observed)})
         return np.asarray(found[self._output], dtype=np.float64).ravel()
 

@@ -124,7 +124,7 @@ def phase(
     grouped: bool = False,
     begin: float = 0.0,
     stance: float = 0.5,
-    rest: float | None = None,
+    rest: float | Literal["zeros"] | None = None,
     clock: Literal["always", "walking", "anew"] = "always",
 ) -> Array:
     """Sine and cosine of a clock at each offset, or all sines first, 2 for each [-].
@@ -137,12 +137,17 @@ def phase(
         grouped: wave by wave, else offset by offset.
         begin: share at the reset [-].
         stance: share that is taken for the first half turn [-].
-        rest: share at which the clock stands while the robot is to stand; None where it is given as it is [-].
+        rest: share at which the clock stands while the robot is to stand, or zeros for all numbers then; None where it
+            is given as it is [-].
         clock: runs always, only while the robot is to walk, or anew from when it last was to stand.
     """
     times = {"always": seen.time, "walking": seen.walked, "anew": seen.since}
     if clock not in times:
         raise ParameterError(_KEY, f"term phase has no clock '{clock}'", "give always, walking or anew")
+    if seen.stands and rest == "zeros":
+        return np.zeros(len(offsets) * len(waves))
+    if isinstance(rest, str) and rest != "zeros":
+        raise ParameterError(_KEY, f"term phase has rest '{rest}'", "give a share, or zeros")
     turn = begin + times[clock] / period
     shares = [rest if seen.stands and rest is not None else (turn + one) % 1.0 for one in offsets]
     turns = [

@@ -61,15 +61,19 @@ class Trial:
     fault: str = ""
 
     @property
+    def up(self) -> bool:
+        """True if it was up to the end."""
+        return self.stood >= self.lasted and not self.fault
+
+    @property
     def sound(self) -> bool:
         """True if it stood and walked as one of a sound contract does."""
-        up = self.stood >= self.lasted and not self.fault
-        return up and self.astray < ASTRAY and self.leaned < LEANS and self.jumped < JUMPS
+        return self.up and self.astray < ASTRAY and self.leaned < LEANS and self.jumped < JUMPS
 
     @property
     def cost(self) -> float:
         """Cost of the trial: less is better; who falls sooner is worse whatever else there is [-]."""
-        if self.stood < self.lasted or self.fault:
+        if not self.up:
             return 10.0 * (2.0 - self.stood / self.lasted)
         return min(self.astray, 3.0) / ASTRAY + min(self.leaned, 1.5) / LEANS + min(self.jumped, 3.0) / JUMPS
 

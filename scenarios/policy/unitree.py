@@ -56,7 +56,7 @@ def contract(values: Mapping[str, Any], file: Path, joint_names: Sequence[str]) 
         "default": values.get("default_joint_pos") or 0.0,
         **gains,
         "action": _action(action, names, file),
-        "observations": list(_observations(values["observations"], names, file)),
+        "observations": list(_observations(values["observations"], names, joint_names, file)),
         "command": command,
     }
 
@@ -78,7 +78,9 @@ def _action(action: Mapping[str, Any], names: Sequence[str], file: Path) -> dict
     return found
 
 
-def _observations(given: Mapping[str, Any], names: Sequence[str], file: Path) -> Iterator[dict[str, Any]]:
+def _observations(
+    given: Mapping[str, Any], names: Sequence[str], joint_names: Sequence[str], file: Path
+) -> Iterator[dict[str, Any]]:
     for theirs, keys in given.items():
         if not isinstance(keys, Mapping):
             continue
@@ -95,5 +97,14 @@ def _observations(given: Mapping[str, Any], names: Sequence[str], file: Path) ->
         if isinstance(ids, list):
             found["joints"] = [names[i] for i in ids]
         if "period" in params:
-            found["options"] = {"period": float(params["period"])}
+            silent = {"rest": "zeros"} if _trained_in_mujoco(names, joint_names) else {}
+            found["options"] = {"period": float(params["period"]), **silent}
         yield found
+
+
+def _trained_in_mujoco(names: Sequence[str], joint_names: Sequence[str]) -> bool:
+    """Return true if joints come limb by limb as motors do: Isaac Lab counts them breadth first, across the limbs.
+
+    Walkers of unitree_rl_mjlab observe no clock, but zeros, while they are to stand; those of unitree_rl_lab always do.
+    """
+    return list(names) == list(joint_names[: len(names)])

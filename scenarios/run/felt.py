@@ -46,22 +46,23 @@ class FeltGait:
     def update(self, now: float, forces: NDArray[np.float64]) -> None:
         """Feel an instant [s]; normal forces on the left and the right sole, shape (2,) [N]."""
         self._now, self.landed = now, None
-        before = self.contact
-        self.contact = self._settled(0, forces.item(0)), self._settled(1, forces.item(1))
-        for foot in Foot:
-            if self.contact[foot] and not before[foot]:
-                self.landed = foot
-            if before[foot] and not self.contact[foot]:
-                self.step += 1
-        kind = PhaseKind.DOUBLE if all(self.contact) else PhaseKind.SINGLE
-        if kind is PhaseKind.DOUBLE and self._kind is PhaseKind.STAND:
-            return
-        if self.contact != before or kind is not self._kind:
-            if self._kind in self._usual:
-                self._usual[self._kind] = max(now - self._began, self._graze)
-            self._began, self._kind = now, kind
-        elif kind is PhaseKind.DOUBLE and now - self._began > self._still:
+        contact = self._settled(0, forces.item(0)), self._settled(1, forces.item(1))
+        if contact != self.contact:
+            self._change(contact)
+        elif self._kind is PhaseKind.DOUBLE and now - self._began > self._still:
             self._kind = PhaseKind.STAND
+
+    def _change(self, contact: tuple[bool, bool]) -> None:
+        """Begin the phase of other contacts; standing is ended by a foot that leaves the ground."""
+        before, self.contact = self.contact, contact
+        for foot in Foot:
+            if contact[foot] and not before[foot]:
+                self.landed = foot
+            if before[foot] and not contact[foot]:
+                self.step += 1
+        if self._kind in self._usual:
+            self._usual[self._kind] = max(self._now - self._began, self._graze)
+        self._began, self._kind = self._now, PhaseKind.DOUBLE if all(contact) else PhaseKind.SINGLE
 
     def _settled(self, foot: int, force: float) -> bool:
         """Return true if a foot carries load, once it has done so, or not done so, for a while."""

@@ -16,7 +16,7 @@ pytestmark = pytest.mark.unit
 NAMES = (
     "fell fall_time fall_warning duration steps_planned place_error heading_error "
     "waypoints_missed steps_taken touchdowns_missed "
-    "standing_time_final standing_time_between zmp_inside_fraction "
+    "standing_time_final standing_time_between velocity_error yaw_rate_error zmp_inside_fraction "
     "zmp_excursion_max cop_ratio_p99 cop_ratio_max zmp_error_rms zmp_error_max com_error_rms dcm_error_rms "
     "capture_margin_min step_shift step_timing "
     "footstep_error_max stair_edge_margin_min swing_clearance_min foot_slip_max stance_twist_max stance_tilt_max "
@@ -33,7 +33,7 @@ NAMES = (
 """Names of the public contract."""
 
 WITHOUT_A_VALUE = (
-    "fall_time fall_warning place_error heading_error waypoints_missed stair_edge_margin_min "
+    "fall_time fall_warning place_error heading_error waypoints_missed velocity_error yaw_rate_error stair_edge_margin_min "
     "coupling_error memory_growth com_estimation_error_rms velocity_estimation_error_rms "
     "tilt_estimation_error_rms estimation_drift estimation_yaw estimation_yaw_rate estimation_nees "
     "contact_estimation_error command_age commands_missed states_missed commands_limited "

@@ -37,7 +37,7 @@ def stander(policies, tmp_path) -> Path:
 def scenario(tmp_path):
     """Writes a scenario that a policy stands in."""
 
-    def write(policy: Path | None, name: str = "held.yaml", **more) -> Path:
+    def write(policy: Path | None, name: str = "held.yaml", /, **more) -> Path:
         values = {**STANDS, **more}
         if policy is not None:
             values["controller"] = {"policy": str(policy)}

@@ -5,6 +5,7 @@ from pathlib import Path
 
 import numpy as np
 import pytest
+import yaml
 
 import surefoot
 from surefoot.errors import ParameterError
@@ -145,7 +146,22 @@ def test_unitree_numbers_joints_by_motor(policies, tmp_path):
     assert contract.rate == 50.0
 
 
-@pytest.mark.parametrize("name", ["falcon", "openwbt"])
+@pytest.mark.parametrize(("order", "rest"), [("motors", "zeros"), ("breadth first", None)])
+def test_a_clock_of_unitree_is_silent_at_rest_where_joints_come_as_motors_do(policies, tmp_path, order, rest):
+    robot, folder = policies.robot_of("g1"), tmp_path / "clocked"
+    policies.unitree(folder)
+    file = folder / "params" / "deploy.yaml"
+    text = file.read_text().replace("!!python/object/apply:builtins.slice [null, null, null]", "null")
+    values = yaml.safe_load(text)
+    if order == "motors":
+        values["joint_ids_map"] = sorted(values["joint_ids_map"])
+    values["observations"]["gait_phase"] = {"params": {"period": 0.6}, "scale": [1.0, 1.0], "history_length": 1}
+    file.write_text(yaml.safe_dump(values))
+    (phase,) = (term for term in read(folder, robot.joint_names).contract.observations if term.term == "phase")
+    assert (phase.options["period"], phase.options.get("rest")) == (0.6, rest)
+
+
+@pytest.mark.parametrize("name", ["falcon", "openwbt", "rl_mjlab"])
 def test_the_contracts_of_the_documentation_are_of_the_g1(name):
     from surefoot.models import RobotOptions, describe
 

@@ -36,6 +36,16 @@ def test_what_a_trainer_has_attached_is_written(policies, tmp_path):
     assert "to do" in next(line for line in text.splitlines() if line.startswith("rate"))
 
 
+def test_the_period_of_a_clock_is_asked_for(policies, tmp_path):
+    joints = len(policies.robot_of("g1").joint_names)
+    inputs = [("obs", 2 + joints)]
+    weights = np.zeros((2 + joints, joints))
+    file = policies.network(tmp_path / "policy.onnx", weights, inputs, observation_names="phase,joint_pos")
+    phase, position = (line for line in begun(Network(file)).splitlines() if "- {term" in line)
+    assert "term: phase" in phase and "to do" in phase and "period" in phase
+    assert "to do" not in position
+
+
 def test_what_cannot_be_told_is_guessed_and_marked(policies, tmp_path):
     robot = policies.robot_of("g1")
     size, frame = len(robot.joint_names), 9 + 3 * len(robot.joint_names)

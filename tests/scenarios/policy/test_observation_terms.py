@@ -77,6 +77,10 @@ def test_a_clock_goes_round_in_its_period_and_rests():
     np.testing.assert_allclose(grouped, (1.0, -1.0, 0.0, 0.0), atol=1e-12)
     rests = [terms.phase(seen(time=time), rest=0.25, waves=["sin"]).item() for time in (0.0, 0.3)]
     np.testing.assert_allclose(rests, (1.0, 1.0))
+    silent = [terms.phase(seen(stands=stands), offsets=[0.0, 0.5], rest="zeros") for stands in (True, False)]
+    assert [told.tolist() for told in silent] == [[0.0] * 4, terms.phase(seen(), offsets=[0.0, 0.5]).tolist()]
+    with pytest.raises(ParameterError, match="zeros"):
+        terms.phase(seen(), rest="never")
     slower = terms.phase(seen(time=0.3), period=1.0, stance=0.6, waves=["sin"]).item()
     np.testing.assert_allclose(slower, 1.0)  # half of the stance is a quarter turn
 
@@ -88,7 +92,7 @@ def frames(count):
 def test_histories_stand_as_they_are_asked_for():
     def last(*given):
         stack = Stack(*given)
-        return [stack.add(frame) for frame in frames(3)]
+        return [stack.add(np.concatenate(frame), [len(one) for one in frame]) for frame in frames(3)]
 
     assert last([2, 2], False, False, True)[-1].tolist() == [2, -2, 3, -3, 12, 13]
     assert last([2, 2], True, False, True)[-1].tolist() == [3, -3, 2, -2, 13, 12]

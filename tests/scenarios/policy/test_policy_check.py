@@ -2,13 +2,13 @@
 
 import pytest
 
-from surefoot.scenarios.policy.check import check
+from surefoot.scenarios.policy.check import Tried, cause_of, check
 from surefoot.scenarios.policy.contract import Contract
 from surefoot.scenarios.policy.files import read
 from surefoot.scenarios.policy.mends import FAULTS, reordered
 from surefoot.scenarios.policy.mirror import Mirror
 from surefoot.scenarios.policy.network import Network
-from surefoot.scenarios.policy.trial import trial_of, trial_or_refusal
+from surefoot.scenarios.policy.trial import Trial, trial_of, trial_or_refusal
 
 
 @pytest.fixture
@@ -53,6 +53,23 @@ def test_every_mend_changes_one_thing_and_is_a_contract(held, robot):
             Contract.model_validate(mended.model_dump())
             seen.add(fault.name)
     assert seen == {fault.name for fault in FAULTS} - {"history backward", "quaternion order"}
+
+
+def tried(fault: str, **trial: float) -> Tried:
+    values = {"stood": 4.0, "lasted": 4.0, "astray": 0.9, "leaned": 0.05, "jumped": 0.03, **trial}
+    return Tried(next(one for one in FAULTS if one.name == fault), "", Trial(**values))
+
+
+@pytest.mark.unit
+def test_what_the_contract_shows_to_be_wrong_is_the_cause_where_mending_it_helps_at_all():
+    given = tried("rate").trial
+    better, other = tried("default posture", astray=0.6), tried("unit of the command", astray=0.1)
+    assert cause_of(given, [better], known=True) is better
+    assert cause_of(given, [better]) is None  # a mend that is guessed must do more
+    assert cause_of(given, [better, other]) is other
+    for worse in (tried("default posture", astray=0.95), tried("default posture", stood=3.9)):
+        assert cause_of(given, [worse], known=True) is None
+    assert cause_of(given, [], known=True) is None
 
 
 @pytest.mark.physics

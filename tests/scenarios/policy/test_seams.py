@@ -56,7 +56,7 @@ def test_every_form_of_a_contract_and_a_second_robot_walk_alike(policies, scenar
             "unitree": policies.unitree(tmp_path / "unitree"),
             "leapp": policies.leapp(tmp_path / "leapp"),
         }
-    height = {"humanoid100": 1.0, "g1": 0.67}[robot]
+    height = HEIGHTS[robot]
     ends = {}
     for name, file in forms.items():
         gait = {"steps": 0, "com_height": height, "initial_stand": 0.2}
@@ -80,21 +80,51 @@ def test_it_walks_by_sensors_too(scenario, stander, same_content, tmp_path, pres
     np.testing.assert_allclose(seen[: len(tilt)], tilt[: len(seen)], atol=0.1)
 
 
-def test_check_and_sweep_in_two_processes_make_equal_bits(scenario, stander, same_content, command, tmp_path):
-    walk = scenario(None)
-    code, out = command("check", str(walk), "--policy", str(stander), "--update", "--jobs", "2", "--out", "one")
-    assert code == 0, out
-    code, out = command("check", str(walk), "--policy", str(stander), "--jobs", "2", "--out", "two")
-    assert (code, "same" in out) == (0, True), out
-    spec = {"name": "steps", "scenario": str(walk), "keep": "all", "grid": {"start.yaw": [0.0, 0.1]}}
-    (tmp_path / "steps.yaml").write_text(yaml.safe_dump(spec))
+HEIGHTS = {"g1": 0.67, "humanoid100": 1.0}
+"""Heights of the CoM of two robots [m]."""
+
+
+@pytest.fixture
+def walks(policies, scenario, tmp_path):
+    """A scenario for each of two robots, each with a policy of its own."""
+    found = []
+    for robot, height in HEIGHTS.items():
+        stander = policies.stander(tmp_path / f"of-{robot}", robot)
+        keys = {"name": f"held-{robot}", "robot": robot, "gait": {"steps": 0, "com_height": height}}
+        found.append(scenario(stander, f"held-{robot}.yaml", **keys))
+    return found
+
+
+def test_check_in_two_processes_makes_equal_bits(walks, same_content, command, tmp_path):
+    names = [str(walk) for walk in walks]
     for jobs in ("1", "2"):
-        code, out = command("sweep", "steps.yaml", "--policy", str(stander), "--jobs", jobs, "--out", f"sweep{jobs}")
+        code, out = command("check", *names, "--update", "--jobs", jobs, "--out", jobs)
         assert code == 0, out
-    logs = [sorted((tmp_path / f"sweep{jobs}").rglob("log.mcap")) for jobs in "12"]
-    assert len(logs[0]) == len(logs[1]) == 2
+    logs = [sorted((tmp_path / jobs).rglob("log.mcap")) for jobs in "12"]
+    assert len(logs[0]) == len(logs[1]) == len(walks)
     for one, other in zip(*logs, strict=True):
         assert same_content(one, other) == []
+
+
+def test_check_takes_a_policy_by_its_option(scenario, stander, command):
+    walk = scenario(None)
+    code, out = command("check", str(walk), "--policy", str(stander), "--update", "--out", "one")
+    assert code == 0, out
+    code, out = command("check", str(walk), "--policy", str(stander), "--out", "two")
+    assert (code, "same" in out) == (0, True), out
+
+
+def test_sweep_in_two_processes_makes_equal_bits(walks, same_content, command, tmp_path):
+    for walk in walks:
+        spec = {"name": walk.stem, "scenario": str(walk), "keep": "all", "grid": {"start.yaw": [0.0, 0.1]}}
+        (tmp_path / "steps.yaml").write_text(yaml.safe_dump(spec))
+        for jobs in ("1", "2"):
+            code, out = command("sweep", "steps.yaml", "--jobs", jobs, "--out", f"{walk.stem}-{jobs}")
+            assert code == 0, out
+        logs = [sorted((tmp_path / f"{walk.stem}-{jobs}").rglob("log.mcap")) for jobs in "12"]
+        assert len(logs[0]) == len(logs[1]) == 2
+        for one, other in zip(*logs, strict=True):
+            assert same_content(one, other) == []
 
 
 def test_a_robot_under_a_policy_is_driven_and_commanded(scenario, stander, tmp_path):
@@ -136,6 +166,15 @@ def test_its_log_is_replayed(scenario, stander, tmp_path):
     assert len(replay.time) > 20
     shown = {track.layer for track in replay.tracks if track.shown(10)}
     assert {"CoM", "ZMP", "Contact forces"} <= shown and "DCM" not in shown
+
+
+def test_logs_of_both_robots_run_again_and_are_replayed(walks, same_content, command, tmp_path):
+    for walk in walks:
+        result = surefoot.run(str(walk), out=tmp_path / "runs")
+        again = surefoot.run(str(result.log), out=tmp_path / "again")
+        assert same_content(result.log, again.log) == []
+        code, out = command("replay", str(result.log), "--html", f"{walk.stem}.html")
+        assert code == 0 and (tmp_path / f"{walk.stem}.html").stat().st_size > 1e5, out
 
 
 def test_a_log_does_not_run_again_with_another_network(scenario, stander, policies, command, tmp_path):

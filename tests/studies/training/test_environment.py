@@ -1,7 +1,9 @@
 """The environment of those who train is the same run under the same judge."""
 
+import re
 import subprocess
 import sys
+from pathlib import Path
 
 import numpy as np
 import pytest
@@ -169,6 +171,17 @@ def test_a_campaign_draws_as_its_runs_are_drawn(tmp_path):
     assert told["settings"]["terrain.friction"] == draw_value(Draw(uniform=[0.5, 1.0]), 9, "terrain.friction", 6)
     assert env.unwrapped.simulation.scenario.duration == 0.4
     env.close()
+
+
+def test_the_page_is_followed_as_it_stands(tmp_path):
+    page = Path(__file__).parents[3] / "docs"
+    (tmp_path / "contract.yaml").write_text((page / "policies" / "homie.yaml").read_text())
+    programs = re.findall(r"```python\n(.*?)```", (page / "training.md").read_text(), re.DOTALL)
+    assert len(programs) == 2
+    for program in programs:
+        asked = [sys.executable, "-c", program]
+        done = subprocess.run(asked, cwd=tmp_path, capture_output=True, text=True, check=False)
+        assert done.returncode == 0, done.stderr
 
 
 def test_two_processes_do_what_one_does():

@@ -4,10 +4,10 @@ import os
 import re
 import shutil
 import time
-from collections.abc import Callable, Sequence
-from dataclasses import dataclass, replace
+from collections.abc import Callable, Mapping, Sequence
+from dataclasses import dataclass, field, replace
 from pathlib import Path
-from typing import Literal
+from typing import Any, Literal
 
 import yaml
 
@@ -46,6 +46,9 @@ CheckStatus = Literal[
 
 PASSING: tuple[CheckStatus, ...] = ("same", "better", "written")
 
+UNMOVED = "its run is as that of the baseline all the same"
+"""Finding of a run of other settings that moves nothing."""
+
 INCONCLUSIVE: tuple[CheckStatus, ...] = ("could not run", "could not write", "unreadable baseline")
 """Statuses in which the run says nothing for or against the walk."""
 
@@ -77,6 +80,7 @@ class Checked:
         partings: where the run first is not as its baseline, and where it is farthest from it, if that is elsewhere.
         log: of the run, None when there is none.
         now: what the run would be as a baseline, None when there was no run.
+        metrics: all that the run measured, by name.
         took: time on the wall's clock of the run and of its comparison [s].
     """
 
@@ -87,6 +91,7 @@ class Checked:
     partings: tuple[Parting, ...] = ()
     log: Path | None = None
     now: Baseline | None = None
+    metrics: Mapping[str, Any] = field(default_factory=dict)
     took: float = 0.0
 
     @property
@@ -168,7 +173,7 @@ def run_case(case: Case, out: Path) -> Checked:
     except (ScenarioError, SetupError, PluginError, LogError) as refusal:
         return Checked(case, "could not run", (" ".join(str(refusal).split()),), took=time.perf_counter() - begin)
     found = _held_against_baseline(case, result.verdict, now)
-    return replace(found, log=result.log, took=time.perf_counter() - begin)
+    return replace(found, log=result.log, metrics=metrics, took=time.perf_counter() - begin)
 
 
 def _held_against_baseline(case: Case, verdict: Verdict, now: Baseline) -> Checked:
@@ -184,9 +189,8 @@ def _held_against_baseline(case: Case, verdict: Verdict, now: Baseline) -> Check
 
 
 def compared(case: Case, before: Baseline, now: Baseline) -> Checked:
-    """The result of a run by its baseline alone."""
-    if others := before.others(case.scenario.name, case.settings):
-        return Checked(case, "other scenario", tuple(others))
+    """The result of a run by its baseline alone; one of other settings is held against it all the same."""
+    others = before.others(case.scenario.name, case.settings)
     gaps, world = before.gaps(now, case.scenario.criteria), before.other_world(now)
     moves = tuple(before.moves(now.metrics, case.scenario.criteria))
     partings = _first_and_most(before.trace.partings(now.trace))
@@ -195,7 +199,10 @@ def compared(case: Case, before: Baseline, now: Baseline) -> Checked:
         status = "moved"
     elif gaps:
         status = "incomplete baseline"
-    return Checked(case, status, (*gaps, *world), moves, partings)
+    if others:
+        others += [UNMOVED] if status == "same" else []
+        status = "other scenario"
+    return Checked(case, status, (*others, *gaps, *world), moves, partings)
 
 
 def _first_and_most(partings: Sequence[Parting]) -> tuple[Parting, ...]:
@@ -219,7 +226,7 @@ def check(
         chosen: to run.
         out: directory of their logs.
         jobs: runs at once.
-        on_done: called with each as it is done.
+        on_done: called with each as it is done, and again with what `update` made of it.
         update: whether to write the baselines anew of the runs that met their criteria and are not the same.
 
     Returns:
@@ -230,9 +237,11 @@ def check(
         if checked.status == "same" and checked.log is not None:
             shutil.rmtree(checked.log.parent)
             checked = replace(checked, log=None)
-        checked = updated(checked) if update else checked
-        done[checked.case.scenario.name] = checked
         on_done(checked)
+        if update and (written := updated(checked)) is not checked:
+            checked = written
+            on_done(checked)
+        done[checked.case.scenario.name] = checked
     return tuple(done[case.scenario.name] for case in chosen)
 
 

@@ -52,7 +52,8 @@ def lines_of(checked: Checked) -> list[str]:
         lines.append(f"and {len(moves) - _SHOWN_MOVES} metrics more")
     if checked.status in _REMEDIES:
         lines.append(_REMEDIES[checked.status].format(checked.case.baseline))
-    if checked.log is not None and checked.status in ("failed", "moved", "better"):
+    parted = bool(checked.moves or checked.partings)
+    if checked.log is not None and (checked.status == "failed" or parted):
         lines += [f"look at: surefoot plot {checked.log}{where}" for where in _figures(checked.partings)]
         lines += [f"look at: {Moment(checked.log, one.begin).text}" for one in checked.partings[:1]]
     return lines
@@ -68,10 +69,11 @@ def _figures(partings: Sequence[Parting]) -> list[str]:
 
 
 def print_checked(checked: Checked) -> None:
-    """Print one run as soon as it is done."""
+    """Print one run as soon as it is done; of one that was printed, and whose baseline is written now, no more."""
     status = typer.style(checked.status, fg="green" if checked.passed else "red", bold=True)
     typer.echo(f"{checked.case.scenario.name}: {status}")
-    for line in lines_of(checked):
+    lines = {"written": [str(checked.case.baseline)], "could not write": list(checked.reasons[-1:])}
+    for line in lines.get(checked.status, lines_of(checked)):
         typer.echo(f"  - {line}")
 
 

@@ -16,10 +16,11 @@ from strangers import listening
 from surefoot.scenarios.cli import program as cli
 from surefoot.scenarios.cli.program import INTERRUPTED
 from surefoot.scenarios.errors import ScenarioError
-from surefoot.studies.campaigns import engine as cluster
-from surefoot.studies.campaigns.engine import perform
-from surefoot.studies.campaigns.journal import JOURNAL, LOGS, SCRATCH
-from surefoot.studies.campaigns.sweep import PAGE, CampaignBar
+from surefoot.scenarios.many import engine as cluster
+from surefoot.scenarios.many.engine import perform
+from surefoot.scenarios.many.journal import JOURNAL, LOGS, SCRATCH
+from surefoot.scenarios.many.slots import CampaignBar
+from surefoot.studies.campaigns.sweep import PAGE
 
 CAMPAIGN = """
 scenario: paper-walk
@@ -48,7 +49,7 @@ class Here:
 def surefoot(monkeypatch, capsys, tmp_path):
     """Run the command in this process."""
     monkeypatch.setattr(
-        "surefoot.studies.campaigns.sweep.local_workers",
+        "surefoot.scenarios.many.slots.local_workers",
         lambda folder, jobs, keep_all: [Here(folder, keep_all)],
     )
     (tmp_path / "short.yaml").write_text(CAMPAIGN % 2)

@@ -12,6 +12,7 @@ from surefoot.scenarios.show.options import (
     INTERRUPTED,
     MISSED,
     AsJson,
+    Cluster,
     Jobs,
     SeatOf,
     overrides,
@@ -52,9 +53,7 @@ class SweepOptions:
     set_: Annotated[list[str] | None, settings("Fix a key, even one that varies")] = None
     seeds: Annotated[int | None, typer.Option(min=1, help="Runs of each, over those of the campaign.")] = None
     jobs: Jobs = None
-    cluster: Annotated[
-        str | None, typer.Option(metavar="ADDRESS", help="Run on the cluster of this dask scheduler instead.")
-    ] = None
+    cluster: Cluster = None
     out: Annotated[Path | None, typer.Option(help="Directory of the results; runs/NAME by default.")] = None
     against: Annotated[
         str | None,

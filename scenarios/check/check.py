@@ -5,7 +5,7 @@ import re
 import shutil
 import time
 from collections.abc import Callable, Mapping, Sequence
-from dataclasses import dataclass, field, replace
+from dataclasses import dataclass, replace
 from pathlib import Path
 from typing import Any, Literal
 
@@ -15,6 +15,7 @@ from surefoot.errors import PluginError
 from surefoot.scenarios import catalogue
 from surefoot.scenarios.check.baseline import ENDING, Baseline, Move, read_baseline, write_baseline
 from surefoot.scenarios.check.blunt import blunt
+from surefoot.scenarios.check.sampled import Sampled
 from surefoot.scenarios.check.signs import Parting
 from surefoot.scenarios.errors import LogError, ScenarioError, SetupError
 from surefoot.scenarios.file.schema import Scenario
@@ -27,6 +28,9 @@ from surefoot.scenarios.setup.load import load
 OWN = Path(catalogue.__file__).resolve().parents[1] / "baselines"
 """Baselines of the catalogue."""
 
+_NO_SETTINGS = {"name", "criteria", "seeds", "margins"}
+"""Keys that do not shape a run."""
+
 _MEANT = re.compile(r"\.ya?ml|baseline", re.IGNORECASE)
 """In the name of a file that may be a baseline, also of one with a mistyped ending."""
 
@@ -34,6 +38,8 @@ CheckStatus = Literal[
     "same",
     "better",
     "written",
+    "not decided",
+    "worse",
     "moved",
     "failed",
     "without baseline",
@@ -44,7 +50,8 @@ CheckStatus = Literal[
     "could not write",
 ]
 
-PASSING: tuple[CheckStatus, ...] = ("same", "better", "written")
+PASSING: tuple[CheckStatus, ...] = ("same", "better", "written", "not decided")
+"""Statuses in which nothing was found to be worse."""
 
 UNMOVED = "its run is as that of the baseline all the same"
 """Finding of a run of other settings that moves nothing."""
@@ -55,16 +62,24 @@ INCONCLUSIVE: tuple[CheckStatus, ...] = ("could not run", "could not write", "un
 
 @dataclass(frozen=True, slots=True)
 class Case:
-    """A scenario, fit to run, that a user referred to, and where its baseline is, or would be."""
+    """A scenario, fit to run, that a user referred to.
+
+    Attributes:
+        reference: catalogue name or path by which it was found.
+        scenario: as it is run.
+        baseline: where its baseline is, or would be.
+        overrides: ``key=value``, set over what its file says.
+    """
 
     reference: str
     scenario: Scenario
     baseline: Path
+    overrides: tuple[str, ...] = ()
 
     @property
     def settings(self) -> str:
         """Settings that shape the run and are not defaults, for which a baseline is good."""
-        chosen = self.scenario.model_dump(mode="json", exclude_defaults=True, exclude={"name", "criteria"})
+        chosen = self.scenario.model_dump(mode="json", exclude_defaults=True, exclude=_NO_SETTINGS)
         return yaml.safe_dump(chosen, sort_keys=False)
 
 
@@ -80,7 +95,8 @@ class Checked:
         partings: where the run first is not as its baseline, and where it is farthest from it, if that is elsewhere.
         log: of the run, None when there is none.
         now: what the run would be as a baseline, None when there was no run.
-        metrics: all that the run measured, by name.
+        verdict: on the run, None when there was none.
+        sampled: what runs of several seeds say, None when there was one.
         took: time on the wall's clock of the run and of its comparison [s].
     """
 
@@ -91,8 +107,14 @@ class Checked:
     partings: tuple[Parting, ...] = ()
     log: Path | None = None
     now: Baseline | None = None
-    metrics: Mapping[str, Any] = field(default_factory=dict)
+    verdict: Verdict | None = None
+    sampled: Sampled | None = None
     took: float = 0.0
+
+    @property
+    def metrics(self) -> Mapping[str, Any]:
+        """All that the run measured, by name."""
+        return {} if self.verdict is None else self.verdict.metrics
 
     @property
     def passed(self) -> bool:
@@ -116,7 +138,7 @@ def cases(references: Sequence[str], folder: Path | None = None, overrides: Sequ
     for reference in named:
         scenario = load(reference, overrides)
         own = OWN if reference in catalogue.OURS else Path(reference).parent / "baselines"
-        case = Case(reference, scenario, (folder or own) / f"{scenario.name}{ENDING}")
+        case = Case(reference, scenario, (folder or own) / f"{scenario.name}{ENDING}", tuple(overrides))
         if scenario.name in found:
             first = found[scenario.name].reference
             raise ScenarioError([f"{reference}: is named '{scenario.name}' as {first} is; give each a name of its own"])
@@ -173,7 +195,7 @@ def run_case(case: Case, out: Path) -> Checked:
     except (ScenarioError, SetupError, PluginError, LogError) as refusal:
         return Checked(case, "could not run", (" ".join(str(refusal).split()),), took=time.perf_counter() - begin)
     found = _held_against_baseline(case, result.verdict, now)
-    return replace(found, log=result.log, metrics=metrics, took=time.perf_counter() - begin)
+    return replace(found, log=result.log, verdict=result.verdict, took=time.perf_counter() - begin)
 
 
 def _held_against_baseline(case: Case, verdict: Verdict, now: Baseline) -> Checked:
@@ -251,8 +273,13 @@ def _lost(case: Case, out: Path, why: str) -> Checked:
 
 def updated(checked: Checked) -> Checked:
     """Write the baseline of a run that met its criteria, if it is not the same; what became of it then."""
-    if checked.now is None or checked.status in ("same", "failed", "could not run"):
-        return checked
+    unfit = checked.now is None or checked.status in ("same", "failed", "could not run")
+    return checked if unfit else rewritten(checked)
+
+
+def rewritten(checked: Checked) -> Checked:
+    """Write the baseline of a run anew; what became of it then."""
+    assert checked.now is not None
     try:
         write_baseline(checked.case.baseline, checked.now)
     except LogError as error:

@@ -12,6 +12,7 @@ from surefoot.lazy import importing
 from surefoot.scenarios.show.options import (
     INTERRUPTED,
     AsJson,
+    Cluster,
     Jobs,
     Replace,
     SeatOf,
@@ -35,8 +36,13 @@ class CheckOptions:
         Path | None, typer.Option(help="Directory of the baselines; beside the scenario files by default.")
     ] = None
     policy: SeatOf = None
+    seeds: Annotated[
+        int | None,
+        typer.Option(min=1, help="Runs of each at most; as its file or its baseline says by default, or one."),
+    ] = None
     set_: Settings = None
     jobs: Jobs = None
+    cluster: Cluster = None
     out: Annotated[Path, typer.Option(help="Directory of the logs.")] = Path("runs/check")
     junit: Annotated[Path | None, typer.Option(help="Also write JUnit XML to this file.")] = None
     markdown: Annotated[Path | None, typer.Option(help="Also write a summary for a CI page to this file.")] = None
@@ -55,8 +61,9 @@ def check(options: CheckOptions) -> None:
         raise typer.BadParameter("--json prints nothing beside it; give it without --annotations")
     with importing():
         from surefoot.scenarios.check import check as checking
-        from surefoot.scenarios.check import record, report
+        from surefoot.scenarios.check import record, report, seeds
         from surefoot.scenarios.check.annotations import annotations
+        from surefoot.scenarios.many.slots import InterruptedRunsError
         from surefoot.scenarios.output import refuse_existing
         from surefoot.scenarios.run.processes import cores
 
@@ -65,8 +72,13 @@ def check(options: CheckOptions) -> None:
             refuse_existing(report_file, options.force)
     chosen = checking.cases(options.scenarios or (), options.baselines, overrides(options.set_, policy=options.policy))
     told: Callable[[checking.Checked], None] = (lambda _: None) if options.as_json else report.print_checked
+    running = seeds.Running(options.out, options.jobs or cores(), options.seeds, options.cluster, options.update)
     try:
-        found = checking.check(chosen, options.out, options.jobs or cores(), told, options.update)
+        found = seeds.check(chosen, running, told)
+    except InterruptedRunsError:
+        kept = options.out / seeds.FOLDER
+        typer.echo(f"interrupted; finished runs are kept in {kept}, the same command goes on from there", err=True)
+        raise typer.Exit(INTERRUPTED) from None
     except KeyboardInterrupt:
         typer.echo("interrupted", err=True)
         raise typer.Exit(INTERRUPTED) from None

@@ -6,6 +6,8 @@ from typing import Any
 
 from surefoot.scenarios.check.baseline import Move
 from surefoot.scenarios.check.check import Checked, exit_code
+from surefoot.scenarios.check.findings import Finding
+from surefoot.scenarios.check.sampled import Sampled
 from surefoot.scenarios.check.signs import Parting
 from surefoot.scenarios.output import shown
 from surefoot.scenarios.record.provenance import versions
@@ -39,9 +41,33 @@ def scenario_json(one: Checked) -> dict[str, Any]:
         "moves": [_move(move) for move in one.moves],
         "partings": [_parting(parting) for parting in one.partings],
         "metrics": dict(one.metrics),
+        "seeds": None if one.sampled is None else _seeds(one.sampled),
         "log": None if one.log is None else shown(one.log),
         "took": one.took,
     }
+
+
+def _seeds(sampled: Sampled) -> dict[str, Any]:
+    """Runs of several seeds: of each what it measured, the pass rate, and what is held against the baseline."""
+    told = {"seeds": list(sampled.sample.seeds), "passed": list(sampled.sample.passed), "asked": sampled.asked}
+    values = {name: list(column) for name, column in sampled.sample.values.items()}
+    before = sampled.rate_before
+    return {
+        **told,
+        "random": sampled.random,
+        "rate": sampled.rate._asdict(),
+        "rate_before": None if before is None else before._asdict(),
+        "missed": {str(seed): reason for seed, reason in sampled.reasons.items()},
+        "decided": sampled.decided,
+        "findings": [_finding(one) for one in sampled.findings],
+        "values": values,
+    }
+
+
+def _finding(one: Finding) -> dict[str, Any]:
+    told = {"name": one.name, "verdict": one.verdict, "before": one.before, "now": one.now, "pairs": one.pairs}
+    interval = {"difference": one.difference.value, "low": one.difference.low, "high": one.difference.high}
+    return {**told, **interval, "allowed": one.margin, "deciding": one.deciding, "needs": one.needs}
 
 
 def _move(move: Move) -> dict[str, Any]:

@@ -34,7 +34,7 @@ def wilson(successes: int, trials: int, error: float = 0.05) -> SuccessRate:
         trials: one at least.
         error: share of intervals that may miss the true rate, 5 % by default [-].
     """
-    rate, z_squared = successes / trials, NormalDist().inv_cdf(1.0 - 0.5 * error) ** 2
+    rate, z_squared = successes / trials, NormalDist().inv_cdf(0.5 * error) ** 2
     center = (successes + 0.5 * z_squared) / (trials + z_squared)
     half = math.sqrt(z_squared * (trials * rate * (1.0 - rate) + 0.25 * z_squared)) / (trials + z_squared)
     return SuccessRate(rate, center - half if successes else 0.0, center + half if successes < trials else 1.0)
@@ -181,8 +181,8 @@ def look_error(error: float, look: int) -> float:
     """Part of an error that a look may spend, so that all looks together, however many, spend no more than the whole.
 
     The parts 1/2, 1/6, 1/12, ... sum to one, so that intervals that miss with these probabilities hold at all looks at
-    once. K. K. G. Lan and D. L. DeMets, Discrete sequential boundaries for clinical trials, Biometrika 70, 1983; C. Jennison
-    and B. W. Turnbull, Interim analyses: the repeated confidence interval approach, JRSS B 51, 1989.
+    once. K. K. G. Lan and D. L. DeMets, Discrete sequential boundaries for clinical trials, Biometrika 70, 1983;
+    C. Jennison and B. W. Turnbull, Interim analyses: the repeated confidence interval approach, JRSS B 51, 1989.
 
     Args:
         error: of all looks together [-].

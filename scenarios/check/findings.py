@@ -4,7 +4,7 @@ Where both have the same seeds, whose runs draw the same noise, pairs are compar
 out. Else means are compared by Welch's t and rates by Fisher's exact test.
 
 Two errors are kept apart. An alarm, that something is worse or has moved though nothing has, may come in `ALARM` of all
-checks; that is shared among scenarios, metrics and looks. That a metric is called the same though it is not within its
+checks; that is shared among scenarios and looks, one half for the pass rate and one for all metrics. That a metric is called the same though it is not within its
 tolerance may come in `UNSURE` of the metrics.
 """
 
@@ -105,7 +105,8 @@ def findings(before: SeedSample, now: SeedSample, asked: Asked) -> tuple[Finding
     else:  # of equal number: then the noise of both is symmetric, however skewed that of one is
         before = before.at(before.seeds[: len(now.seeds)])
     names = [name for name in before.values if name in now.values and _is_compared(name, asked)]
-    held = _Held(asked, paired, ALARM / (asked.scenarios * (1 + 2 * len(names))))
+    half = 0.5 * ALARM / asked.scenarios
+    held = _Held(asked, paired, half, half / max(1, 2 * len(names)))
     found = [held.rate(before, now)]
     for name in names:
         found += held.metric(name, before.values[name], now.values[name])
@@ -131,20 +132,21 @@ def _metric(name: str) -> str:
 
 @dataclass(frozen=True, slots=True)
 class _Held:
-    """How two samples are compared: as pairs or not, and with which part of the error of an alarm each number."""
+    """How two samples are compared: as pairs or not, and the error of an alarm that the rate and a metric may spend."""
 
     asked: Asked
     paired: bool
-    share: float
+    of_rate: float
+    of_metric: float
 
-    @property
-    def _errors(self) -> tuple[float, float]:
+    def _errors(self, alarm: float) -> tuple[float, float]:
         """Errors of an alarm and of the interval that is shown, at this look."""
-        return look_error(self.share, self.asked.look), look_error(UNSURE, self.asked.look)
+        return look_error(alarm, self.asked.look), look_error(UNSURE, self.asked.look)
 
     def rate(self, before: SeedSample, now: SeedSample) -> Finding:
         """The pass rate; where no seed missed its criteria, each must meet them again."""
-        found = self._share(RATE, before.passed, now.passed, True, True)
+        both_sides = 2.0 * self.of_rate  # of which one is an alarm
+        found = self._share(RATE, before.passed, now.passed, True, True, both_sides)
         news = self.paired and not before.missed and bool(now.missed)
         return _decided_as("worse", found) if news else found
 
@@ -177,16 +179,22 @@ class _Held:
             return unpaired_mean(before, now, error)
 
         margin, levels = self._margin(name, before), (sum(before) / len(before), sum(now) / len(now))
-        sure, shown = map(interval, self._errors)
+        sure, shown = map(interval, self._errors(self.of_metric))
         alarm = sure.excludes_zero and abs(sure.value) > margin
         half = 0.5 * (sure.high - sure.low) if abs(sure.value) > margin else 0.5 * (shown.high - shown.low)
         return _finding(name, levels, shown, margin, (deciding, better, pairs), alarm, half, len(now))
 
     def _share(
-        self, name: str, before: Sequence[bool], now: Sequence[bool], better: bool | None, deciding: bool
+        self,
+        name: str,
+        before: Sequence[bool],
+        now: Sequence[bool],
+        better: bool | None,
+        deciding: bool,
+        error: float | None = None,
     ) -> Finding:
         then, today = (sum(before), len(before)), (sum(now), len(now))
-        sure, unsure = self._errors
+        sure, unsure = self._errors(error or self.of_metric)
         if self.paired:
             kinds = [(old, new) for old, new in zip(before, now, strict=True)]
             both, lost, gained, neither = (

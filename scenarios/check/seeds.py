@@ -1,6 +1,6 @@
 """Checks over seeds: runs side by side until a scenario is decided, written down so that an interrupted one goes on."""
 
-from collections.abc import Callable, Generator, Iterable, Iterator, Sequence
+from collections.abc import Callable, Generator, Iterable, Iterator, Mapping, Sequence
 from dataclasses import dataclass, replace
 from pathlib import Path
 from typing import Any
@@ -29,7 +29,7 @@ from surefoot.scenarios.many.points import (
 )
 from surefoot.scenarios.many.search import search
 from surefoot.scenarios.many.slots import CampaignBar, closed_at_end, run_round, workers_of
-from surefoot.scenarios.setup.load import written
+from surefoot.scenarios.setup.load import load, written
 
 FOLDER = "seeds"
 """Of the journal and of the logs of runs that missed their criteria, below that of the check's logs."""
@@ -78,6 +78,8 @@ def check(
     single = [case for case in chosen if counts[case.scenario.name] == 1]
     several = [case for case in chosen if counts[case.scenario.name] > 1]
     done = checking.check(single, running.out, running.jobs, on_done, running.update) if single else ()
+    for case in several:
+        SeedRuns.of(case, ())  # what is wrong with a search is told before any run
     if several:
         own = checking.check(several, running.out, running.jobs)
         done += _over_seeds([Seeded.of(one, counts[one.case.scenario.name]) for one in own], running, on_done)
@@ -107,7 +109,7 @@ def _baseline(case: Case) -> Baseline | None:
 class MarginSearch:
     """The search of a threshold with one seed."""
 
-    seeded: "Seeded"
+    runs: "SeedRuns"
     name: str
     bisect: Bisect
     seed: int
@@ -117,47 +119,47 @@ class MarginSearch:
         return search(self._passes, self.bisect)
 
     def _passes(self, value: float) -> Generator[Point, Record, bool]:
-        record = yield self.seeded.point(self.seed, {self.bisect.key: value})
+        record = yield self.runs.point(self.seed, {self.bisect.key: value})
         return record.status == "pass"
 
 
 @dataclass(frozen=True, slots=True)
-class Seeded:
-    """A case with its seeds.
+class SeedRuns:
+    """The runs of a case that differ in their seed.
 
     Attributes:
-        own: the run of its own seed, held against the baseline.
-        before: its baseline, if there is one.
+        case: that is run.
         base: what its runs start from.
-        seeds: at most, its own first.
+        seeds: at most, in this order.
     """
 
-    own: Checked
-    before: Baseline | None
+    case: Case
     base: Base
     seeds: tuple[int, ...]
 
     @classmethod
-    def of(cls, own: Checked, count: int) -> "Seeded":
-        """A case that was run with its own seed, and is to be run with so many at most.
+    def of(cls, case: Case, seeds: Iterable[int]) -> "SeedRuns":
+        """The runs of a case with some seeds.
 
-        Where its seed is one of the baseline's, so are the others: only pairs tell more.
+        Raises:
+            ScenarioError: the scenario cannot be read, or a search of it is of no key or value that can be.
         """
-        case, first = own.case, own.case.scenario.seed
-        seeds, before = tuple(range(first, first + count)), _baseline(case)
-        if before is not None and before.sample is not None and first in before.sample.seeds:
-            seeds = tuple(seed for seed in seeds if seed in before.sample.seeds)
-        return cls(own, before, Base(case.reference, written(case.reference)), seeds)
+        for name, bisect in (case.scenario.margins or {}).items():
+            if bisect.key == "seed":
+                raise ScenarioError([f"{case.reference}: margins.{name} searches the seed; give another key"])
+            for value in (bisect.low, bisect.high):
+                load(case.reference, (*case.overrides, f"{bisect.key}={value!r}"))
+        return cls(case, Base(case.reference, written(case.reference)), tuple(seeds))
 
     @property
-    def scenario(self) -> Any:
-        """The scenario that is run."""
-        return self.own.case.scenario
+    def margins(self) -> Mapping[str, Bisect]:
+        """Searches of thresholds by name."""
+        return self.case.scenario.margins or {}
 
-    def point(self, seed: int, searched: dict[str, Any] | None = None) -> Point:
+    def point(self, seed: int, searched: Mapping[str, Any] | None = None) -> Point:
         """A run with a seed, and with a value of a key that is searched."""
-        settings = {**dict(map(setting, self.own.case.overrides)), **(searched or {}), "seed": seed}
-        labels = {"scenario": self.scenario.name, **(searched or {}), "seed": seed}
+        settings = {**dict(map(setting, self.case.overrides)), **(searched or {}), "seed": seed}
+        labels = {"scenario": self.case.scenario.name, **(searched or {}), "seed": seed}
         return Point(self.base, settings, labels, folder_name(labels))
 
     def cells(self, count: int) -> Iterator[Searched]:
@@ -168,8 +170,7 @@ class Seeded:
 
     def searches(self, seed: int) -> Iterator[MarginSearch]:
         """Searches of the scenario's thresholds with a seed."""
-        for name, bisect in (self.scenario.margins or {}).items():
-            yield MarginSearch(self, name, bisect, seed)
+        yield from (MarginSearch(self, name, bisect, seed) for name, bisect in self.margins.items())
 
     def sampled(self, journal: Journal, count: int) -> Sampled | str:
         """Runs of the first seeds by their journal, or why one of them gave no result."""
@@ -178,7 +179,7 @@ class Seeded:
             record = journal.said(self.point(seed))
             if record is None or record.status in ("refused", "broken"):
                 return f"seed {seed}: {'; '.join(record.reasons) if record else 'was not run'}"
-            metrics = comparable(record.metrics, self.scenario.criteria)
+            metrics = comparable(record.metrics, self.case.scenario.criteria)
             took += record.wall_time
             for one in self.searches(seed):
                 outcome = outcome_of(one, journal)
@@ -193,12 +194,44 @@ class Seeded:
                 reasons[seed] = record.reasons[0]
         return Sampled(SeedSample.of(runs), len(self.seeds), reasons=reasons, beyond=beyond, took=took)
 
+
+@dataclass(frozen=True, slots=True)
+class Seeded:
+    """A case that is held against its baseline by the runs of its seeds.
+
+    Attributes:
+        own: the run of its own seed, held against the baseline.
+        before: its baseline, if there is one.
+        runs: of its seeds.
+    """
+
+    own: Checked
+    before: Baseline | None
+    runs: SeedRuns
+
+    @classmethod
+    def of(cls, own: Checked, count: int) -> "Seeded":
+        """A case that was run with its own seed, and is to be run with so many at most.
+
+        Where its seed is one of the baseline's, so are the others: only pairs tell more.
+        """
+        first, before = own.case.scenario.seed, _baseline(own.case)
+        seeds = tuple(range(first, first + count))
+        if before is not None and before.sample is not None and first in before.sample.seeds:
+            seeds = tuple(seed for seed in seeds if seed in before.sample.seeds)
+        return cls(own, before, SeedRuns.of(own.case, seeds))
+
+    @property
+    def most(self) -> int:
+        """Number of its seeds."""
+        return len(self.runs.seeds)
+
     def held(self, sampled: Sampled, scenarios: int, look: int) -> Sampled:
         """Runs of seeds held against the sample of the baseline, if it has one."""
         before = None if self.before is None else self.before.sample
         if before is None:
             return sampled
-        asked = Asked(self.scenario.criteria, self.scenario.margins or {}, scenarios, look)
+        asked = Asked(self.own.case.scenario.criteria, self.runs.margins, scenarios, look)
         return replace(sampled, before=before, findings=findings(before, sampled.sample, asked))
 
 
@@ -228,23 +261,23 @@ def _over_seeds(left: Sequence[Seeded], running: Running, on_done: Callable[[Che
     with (
         Journal(running.out / FOLDER) as journal,
         closed_at_end(workers := workers_of(journal.folder, running.jobs, running.cluster, False)),
-        CampaignBar(sum(len(one.seeds) for one in pending)) as bar,
+        CampaignBar(sum(one.most for one in pending)) as bar,
     ):
         for one in pending:
             _write_own(one, journal)
         while pending:
             look += 1
-            sizes = [len(one.seeds) if running.update else size_of(look, len(one.seeds)) for one in pending]
-            cells = [cell for one, size in zip(pending, sizes, strict=True) for cell in one.cells(size)]
+            sizes = [one.most if running.update else size_of(look, one.most) for one in pending]
+            cells = [cell for one, size in zip(pending, sizes, strict=True) for cell in one.runs.cells(size)]
             run_round(cells, journal, workers, bar.run)
             rest = []
             for one, size in zip(pending, sizes, strict=True):
-                sampled = one.sampled(journal, size)
+                sampled = one.runs.sampled(journal, size)
                 if isinstance(sampled, str):
                     tell(replace(one.own, status="could not run", reasons=(sampled,), now=None))
                     continue
                 sampled = one.held(sampled, scenarios, look)
-                if size == len(one.seeds) or sampled.decided or _is_settled(sampled):
+                if size == one.most or sampled.decided or _is_settled(sampled):
                     tell(judged(one, sampled))
                 else:
                     rest.append(one)
@@ -259,8 +292,8 @@ def _is_settled(sampled: Sampled) -> bool:
 
 def _write_own(one: Seeded, journal: Journal) -> None:
     """Write the run of a case's own seed into the journal, which was made already."""
-    point, verdict = one.point(one.seeds[0]), one.own.verdict
-    if verdict is None or one.seeds[0] != one.scenario.seed or journal.get(point) is not None:
+    point, verdict = one.runs.point(one.runs.seeds[0]), one.own.verdict
+    if verdict is None or journal.get(point) is not None:
         return
     status: RunStatus = "pass" if verdict.passed else "fail"
     made_by = journal.made_by(point)
@@ -272,7 +305,7 @@ def judged(one: Seeded, sampled: Sampled) -> Checked:
     own, before, verdict, now = one.own, one.before, one.own.verdict, one.own.now
     assert verdict is not None
     assert now is not None
-    if sampled.random or one.scenario.margins:
+    if sampled.random or one.runs.margins:
         now = replace(now, sample=sampled.sample)
     own = replace(own, sampled=sampled, took=sampled.took, now=now)
     if insensitive := blunt(verdict):
@@ -283,9 +316,9 @@ def judged(one: Seeded, sampled: Sampled) -> Checked:
         return _without_sample(own, sampled)
     settings = [text for text in before.others(now.scenario, now.settings) if not text.startswith("seed is ")]
     world = before.other_world(now)
-    gaps = before.gaps(now, one.scenario.criteria)
+    gaps = before.gaps(now, one.own.case.scenario.criteria)
     status = _status(sampled, bool(settings), bool(world), bool(gaps))
-    partings = own.partings if sampled.alarms and before.sample.seeds[0] == one.scenario.seed else ()
+    partings = own.partings if sampled.alarms and before.sample.seeds[0] == one.own.case.scenario.seed else ()
     return replace(own, status=status, reasons=(*settings, *world, *gaps), moves=(), partings=partings)
 
 

@@ -4,8 +4,8 @@ Where both have the same seeds, whose runs draw the same noise, pairs are compar
 out. Else means are compared by Welch's t and rates by Fisher's exact test.
 
 Two errors are kept apart. An alarm, that something is worse or has moved though nothing has, may come in `ALARM` of all
-checks; that is shared among scenarios and looks, one half for the pass rate and one for all metrics. That a metric is called the same though it is not within its
-tolerance may come in `UNSURE` of the metrics.
+checks. Scenarios and looks share that; in each one half is for the pass rate, and one for all metrics. That a metric is
+called the same though it is not within its tolerance may come in `UNSURE` of the metrics.
 """
 
 import math

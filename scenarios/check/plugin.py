@@ -122,8 +122,8 @@ class ScenarioTest(pytest.Item):
 
         if seeds_of(case) == 1:
             return run_case(case, out)
-        try:
-            return check([case], Running(out, jobs=1))[0]
+        try:  # in a folder of its own: pytest-xdist may run another scenario at the same time
+            return check([case], Running(out / case.scenario.name, jobs=1))[0]
         except InterruptedRunsError:
             raise KeyboardInterrupt from None
 

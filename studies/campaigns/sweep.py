@@ -12,8 +12,10 @@ from surefoot.scenarios.many.journal import Journal, outcome_of
 from surefoot.scenarios.many.points import Outcome, Record, Runs, RunStatus, facts
 from surefoot.scenarios.many.slots import CampaignBar, InterruptedRunsError, run_cells, workers_of
 from surefoot.scenarios.output import write_whole
+from surefoot.studies.campaigns import reached
 from surefoot.studies.campaigns.campaign import Campaign
 from surefoot.studies.campaigns.points import cells
+from surefoot.studies.campaigns.reached import reached_lines, varied
 from surefoot.studies.campaigns.table import (
     has_parquet,
     runs_table,
@@ -105,11 +107,12 @@ class Swept:
         runs = len(self.records)
         counts = ", ".join(f"{n} {status}" for status in STATUSES if (n := self.count(status)))
         yield f"{self.campaign.spec.name}: {runs} runs" + (f", {counts}" if counts else "")
-        if self.campaign.spec.bisect is None and self.ran:
+        if self.campaign.spec.bisect is None and self.ran and not varied(self):
             judged = [record.status for _, record in self.facts if record.status in ("pass", "fail")]
             rate = wilson(judged.count("pass"), len(judged))
             yield f"success rate {100 * rate.rate:.1f} %, 95 % interval {rate.between} %"
         yield from threshold_lines(self.outcomes)
+        yield from reached_lines(self)
         yield from map(str, reversed(self.files))
 
     def to_json(self) -> dict[str, Any]:
@@ -118,7 +121,8 @@ class Swept:
         files = [path.name for path in self.files]
         name, runs = self.campaign.spec.name, len(self.records)
         counts["repeated"] = runs - len(self.facts)
-        return {"campaign": name, "runs": runs, **counts, "out": str(self.folder), "files": files}
+        told = {"campaign": name, "runs": runs, **counts, "out": str(self.folder), "files": files}
+        return {**told, **reached.to_json(self)}
 
 
 def sweep(campaign: Campaign, out: Path, jobs: int, cluster: str | None = None) -> Swept:

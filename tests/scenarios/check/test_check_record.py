@@ -98,3 +98,14 @@ def test_a_better_run_is_a_warning_and_a_scenario_of_the_catalogue_has_no_file(h
 
 def test_annotations_do_not_get_into_the_object(here):
     assert "give it without --annotations" in str(checked("walks", "--json", "--annotations").exception)
+
+
+def test_seeds_run_in_processes_beside_this_one_and_are_taken_over_by_the_next_check(here):
+    Path("walks/stroll.yaml").write_text(f"{WALK}sensing: {{com_noise: 0.003}}\n")
+    first = checked("walks", "--seeds", "3", "--update")
+    assert (first.exit_code, "3 of 3 seeds met their criteria: 100 %" in first.stdout) == (0, True)
+    journal = Path("runs/check/seeds/runs.jsonl")
+    lines = journal.read_text()
+    again = json.loads(checked("walks", "--json").stdout)["scenarios"][0]
+    assert (again["status"], again["seeds"]["seeds"], again["seeds"]["passed"]) == ("same", [0, 1, 2], [True] * 3)
+    assert journal.read_text() == lines

@@ -86,9 +86,8 @@ def test_who_stops_a_campaign_has_tables_and_page_of_what_was_done(surefoot, mon
 def test_tables_counts_and_logs(surefoot, tmp_path):
     code, out, err = surefoot("short.yaml")
     assert (code, err) == (0, "")
-    assert out.startswith(
-        "short: 12 runs, 4 pass, 4 fail, 4 refused\nsuccess rate 50.0 %, 95 % interval 21.5 to 78.5 %\n"
-    )
+    assert out.startswith("short: 12 runs, 4 pass, 4 fail, 4 refused\n")
+    assert "success rate" not in out  # of what varies each value has its own
     folder = tmp_path / "runs" / "short"
     table = rows(folder)
     assert [row["status"] for row in table] == ["pass"] * 2 + ["fail"] * 2 + ["pass"] * 2 + ["fail"] * 2 + [

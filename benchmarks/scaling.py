@@ -15,14 +15,13 @@ from surefoot.planner.plants import IdealFeet
 from surefoot.planner.steps.gait import GaitParameters
 from surefoot.planner.types import CentroidalState, FeetState
 from surefoot.scenarios.log import NoLog
+from surefoot.scenarios.many.engine import perform
+from surefoot.scenarios.many.points import Base, Point
 from surefoot.scenarios.record.walk import resident_memory
 from surefoot.scenarios.run import run as running
 from surefoot.scenarios.run.run import closed_loop, one_thread
 from surefoot.scenarios.setup.load import load, written
 from surefoot.scenarios.setup.walk import resolve
-from surefoot.studies.campaigns.campaign import Base
-from surefoot.studies.campaigns.engine import perform
-from surefoot.studies.campaigns.points import Point
 
 STANCE = FeetState(np.array([[0.0, 0.1, 0.0], [0.0, -0.1, 0.0]]), np.zeros(2), (True, True))
 FRESH, STANDING = 60, 200

@@ -441,6 +441,7 @@ TABLES: dict[str, tuple[str, Callable[[], str]]] = {
             ("policies-catalogue", "policies-beside.md"),
             ("steered", "policies-beside.md"),
             ("sabotage", "checking.md"),
+            ("power", "checking.md"),
             ("criteria", "scenarios.md"),
             ("public-humanoids", "robots.md"),
             ("robustness", "campaigns.md"),

@@ -12,6 +12,7 @@ from surefoot.scenarios.show.options import (
     INTERRUPTED,
     MISSED,
     AsJson,
+    Cluster,
     Jobs,
     SeatOf,
     overrides,
@@ -52,9 +53,7 @@ class SweepOptions:
     set_: Annotated[list[str] | None, settings("Fix a key, even one that varies")] = None
     seeds: Annotated[int | None, typer.Option(min=1, help="Runs of each, over those of the campaign.")] = None
     jobs: Jobs = None
-    cluster: Annotated[
-        str | None, typer.Option(metavar="ADDRESS", help="Run on the cluster of this dask scheduler instead.")
-    ] = None
+    cluster: Cluster = None
     out: Annotated[Path | None, typer.Option(help="Directory of the results; runs/NAME by default.")] = None
     against: Annotated[
         str | None,
@@ -72,10 +71,10 @@ def sweep(options: SweepOptions) -> None:
     Begun again, it goes on where it stopped.
     """
     with importing():
+        from surefoot.scenarios.many.journal import overlooked
+        from surefoot.scenarios.many.slots import InterruptedRunsError
         from surefoot.scenarios.run.processes import cores
         from surefoot.studies.campaigns import against as holding
-        from surefoot.studies.campaigns.journal import overlooked
-        from surefoot.studies.campaigns.sweep import InterruptedRunsError
         from surefoot.studies.campaigns.sweep import sweep as run_sweep
 
     if options.jobs is not None and options.cluster is not None:
@@ -83,7 +82,7 @@ def sweep(options: SweepOptions) -> None:
     campaign = _campaign(options)
     before = None if options.against is None else holding.table(campaign, options.against)
     folder = options.out or Path("runs") / campaign.spec.name
-    for text in overlooked(campaign):
+    for text in overlooked(campaign.spec.model_dump(mode="json"), campaign.bases.values()):
         typer.echo(text, err=True)
     try:
         swept = run_sweep(campaign, folder, options.jobs or cores(), options.cluster)
@@ -170,8 +169,8 @@ def bench(options: BenchOptions) -> None:
 def _tour(options: BenchOptions, folder: Path) -> None:
     """Send walkers through the tour."""
     with importing():
+        from surefoot.scenarios.many.slots import CampaignBar
         from surefoot.scenarios.run.processes import cores
-        from surefoot.studies.campaigns.sweep import CampaignBar
         from surefoot.studies.tour.bench import Bench, lines
         from surefoot.studies.tour.entrants import entrants, setting
 
@@ -192,8 +191,8 @@ def _side(options: BenchOptions, folder: Path) -> None:
     """Lay walkers beside each other."""
     with importing():
         from surefoot.scenarios.errors import ScenarioError
+        from surefoot.scenarios.many.slots import CampaignBar
         from surefoot.scenarios.run.processes import cores
-        from surefoot.studies.campaigns.sweep import CampaignBar
         from surefoot.studies.tour.entrants import entrants
         from surefoot.studies.tour.side import Side
         from surefoot.studies.tour.side_page import markdown
@@ -222,8 +221,8 @@ def paper(
     Begun again, it goes on where it stopped.
     """
     with importing():
+        from surefoot.scenarios.many.slots import InterruptedRunsError
         from surefoot.scenarios.run.processes import cores
-        from surefoot.studies.campaigns.sweep import InterruptedRunsError
         from surefoot.studies.paper.page import judged, tally
         from surefoot.studies.paper.page import paper as run_paper
 

@@ -11,6 +11,7 @@ from typing import Any, Literal
 import numpy as np
 import yaml
 
+from surefoot.scenarios.check.sample import MetricValue, SeedSample, read_sample
 from surefoot.scenarios.check.signs import COLUMNS, FAR, SIGNS, Trace
 from surefoot.scenarios.errors import LogError, ScenarioError
 from surefoot.scenarios.file.criteria import Bound
@@ -35,7 +36,6 @@ _MOST_GAPS = 5
 _LABELS = ["stage", "foot"]
 """First columns of the table."""
 
-MetricValue = bool | int | float | None
 Trend = Literal["better", "worse", "other"]
 
 
@@ -82,6 +82,7 @@ class Baseline:
         world: options of the simulated world, by name; empty on a pendulum.
         metrics: those that two runs have in common, by name.
         trace: its signs, stage by stage.
+        sample: what runs of several seeds measured, that one among them; None where it was the only one.
     """
 
     scenario: str
@@ -89,6 +90,7 @@ class Baseline:
     world: Mapping[str, Option]
     metrics: Mapping[str, Any]
     trace: Trace
+    sample: SeedSample | None = None
 
     @classmethod
     def of(
@@ -106,10 +108,7 @@ class Baseline:
         Raises:
             LogError: the world that the log carries is damaged.
         """
-        counted = _counted(criteria)
-        here = {name: found for name in metrics if name in counted and (found := known(name)) is not None}
-        kept = {name: metrics[name] for name, metric in here.items() if metric.repeatable}
-        return cls(scenario, settings, _world(log), kept, Trace.of(log))
+        return cls(scenario, settings, _world(log), comparable(metrics, criteria), Trace.of(log))
 
     def gaps(self, now: "Baseline", criteria: Mapping[str, Bound]) -> list[str]:
         """Parts of a run that this says nothing about, so that they could be anything; a sentence, or none."""
@@ -117,6 +116,7 @@ class Baseline:
         missing = [name for name in now.metrics if name not in self.metrics and name in counted]
         missing += [f"the trace's {column}" for column in now.trace.values if column not in self.trace.values]
         missing += [f"the world's {option}" for option in now.world if option not in self.world]
+        missing += [f"the sample's {name}" for name in _unsampled(self.sample, now.sample)]
         more = [f"{len(missing) - _MOST_GAPS} more"] if len(missing) > _MOST_GAPS else []
         gaps = [f"the baseline says nothing of {', '.join((*missing[:_MOST_GAPS], *more))}"] if missing else []
         unknown = [name for name in self.metrics if name in counted and known(name) is None]
@@ -165,8 +165,25 @@ class Baseline:
             unit = f"  # {metric.unit}" if metric is not None and metric.unit else ""
             lines.append(f"  {name}: {_flow(value)}{unit}")
         lines += ["trace:  # lift-off to lift-off; SI units", *(f"  - {row}" for row in _table(self.trace))]
+        if self.sample is not None:
+            lines += ["sample:  # of each seed, in their order; SI units", *self.sample.text()]
         settings = "\n".join(f"  {line}" for line in self.settings.splitlines())
         return "\n".join([*lines, f"settings: |\n{settings}\n"])
+
+
+def comparable(metrics: Mapping[str, Any], criteria: Iterable[str]) -> dict[str, Any]:
+    """Metrics that two runs have in common: ours, and of those of other packages what a criterion names."""
+    counted = _counted(criteria)
+    here = {name: found for name in metrics if name in counted and (found := known(name)) is not None}
+    return {name: metrics[name] for name, metric in here.items() if metric.repeatable}
+
+
+def _unsampled(before: SeedSample | None, now: SeedSample | None) -> list[str]:
+    """Names that a sample lacks beside another, of metrics without their elements and parts."""
+    if before is None or now is None:
+        return []
+    had = {name.partition("[")[0] for name in before.values}
+    return [one for one in dict.fromkeys(name.partition("[")[0] for name in now.values) if one not in had]
 
 
 def _counted(criteria: Iterable[str]) -> set[str]:
@@ -219,7 +236,8 @@ def _of_values(data: Any, path: Path) -> Baseline:
             raise ValueError(f"its {name} is not what the metric gives")
     if not isinstance(world, dict) or not _are_finite([world, metrics]):
         raise ValueError("its metrics or its world hold what is no finite number")
-    return Baseline(scenario, settings, world, metrics, read_trace(values["trace"]))
+    sample = read_sample(values["sample"]) if "sample" in values else None
+    return Baseline(scenario, settings, world, metrics, read_trace(values["trace"]), sample)
 
 
 def write_baseline(path: Path, baseline: Baseline) -> None:

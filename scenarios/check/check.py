@@ -4,10 +4,10 @@ import os
 import re
 import shutil
 import time
-from collections.abc import Callable, Sequence
+from collections.abc import Callable, Mapping, Sequence
 from dataclasses import dataclass, replace
 from pathlib import Path
-from typing import Literal
+from typing import Any, Literal
 
 import yaml
 
@@ -15,6 +15,7 @@ from surefoot.errors import PluginError
 from surefoot.scenarios import catalogue
 from surefoot.scenarios.check.baseline import ENDING, Baseline, Move, read_baseline, write_baseline
 from surefoot.scenarios.check.blunt import blunt
+from surefoot.scenarios.check.sampled import Sampled
 from surefoot.scenarios.check.signs import Parting
 from surefoot.scenarios.errors import LogError, ScenarioError, SetupError
 from surefoot.scenarios.file.schema import Scenario
@@ -27,6 +28,9 @@ from surefoot.scenarios.setup.load import load
 OWN = Path(catalogue.__file__).resolve().parents[1] / "baselines"
 """Baselines of the catalogue."""
 
+_NO_SETTINGS = {"name", "criteria", "seeds", "margins"}
+"""Keys that do not shape a run."""
+
 _MEANT = re.compile(r"\.ya?ml|baseline", re.IGNORECASE)
 """In the name of a file that may be a baseline, also of one with a mistyped ending."""
 
@@ -34,6 +38,8 @@ CheckStatus = Literal[
     "same",
     "better",
     "written",
+    "not decided",
+    "worse",
     "moved",
     "failed",
     "without baseline",
@@ -44,7 +50,11 @@ CheckStatus = Literal[
     "could not write",
 ]
 
-PASSING: tuple[CheckStatus, ...] = ("same", "better", "written")
+PASSING: tuple[CheckStatus, ...] = ("same", "better", "written", "not decided")
+"""Statuses in which nothing was found to be worse."""
+
+UNMOVED = "its run is as that of the baseline all the same"
+"""Finding of a run of other settings that moves nothing."""
 
 INCONCLUSIVE: tuple[CheckStatus, ...] = ("could not run", "could not write", "unreadable baseline")
 """Statuses in which the run says nothing for or against the walk."""
@@ -52,16 +62,24 @@ INCONCLUSIVE: tuple[CheckStatus, ...] = ("could not run", "could not write", "un
 
 @dataclass(frozen=True, slots=True)
 class Case:
-    """A scenario, fit to run, that a user referred to, and where its baseline is, or would be."""
+    """A scenario, fit to run, that a user referred to.
+
+    Attributes:
+        reference: catalogue name or path by which it was found.
+        scenario: as it is run.
+        baseline: where its baseline is, or would be.
+        overrides: ``key=value``, set over what its file says.
+    """
 
     reference: str
     scenario: Scenario
     baseline: Path
+    overrides: tuple[str, ...] = ()
 
     @property
     def settings(self) -> str:
         """Settings that shape the run and are not defaults, for which a baseline is good."""
-        chosen = self.scenario.model_dump(mode="json", exclude_defaults=True, exclude={"name", "criteria"})
+        chosen = self.scenario.model_dump(mode="json", exclude_defaults=True, exclude=_NO_SETTINGS)
         return yaml.safe_dump(chosen, sort_keys=False)
 
 
@@ -77,6 +95,8 @@ class Checked:
         partings: where the run first is not as its baseline, and where it is farthest from it, if that is elsewhere.
         log: of the run, None when there is none.
         now: what the run would be as a baseline, None when there was no run.
+        verdict: on the run, None when there was none.
+        sampled: what runs of several seeds say, None when there was one.
         took: time on the wall's clock of the run and of its comparison [s].
     """
 
@@ -87,7 +107,14 @@ class Checked:
     partings: tuple[Parting, ...] = ()
     log: Path | None = None
     now: Baseline | None = None
+    verdict: Verdict | None = None
+    sampled: Sampled | None = None
     took: float = 0.0
+
+    @property
+    def metrics(self) -> Mapping[str, Any]:
+        """All that the run measured, by name."""
+        return {} if self.verdict is None else self.verdict.metrics
 
     @property
     def passed(self) -> bool:
@@ -111,7 +138,7 @@ def cases(references: Sequence[str], folder: Path | None = None, overrides: Sequ
     for reference in named:
         scenario = load(reference, overrides)
         own = OWN if reference in catalogue.OURS else Path(reference).parent / "baselines"
-        case = Case(reference, scenario, (folder or own) / f"{scenario.name}{ENDING}")
+        case = Case(reference, scenario, (folder or own) / f"{scenario.name}{ENDING}", tuple(overrides))
         if scenario.name in found:
             first = found[scenario.name].reference
             raise ScenarioError([f"{reference}: is named '{scenario.name}' as {first} is; give each a name of its own"])
@@ -168,7 +195,7 @@ def run_case(case: Case, out: Path) -> Checked:
     except (ScenarioError, SetupError, PluginError, LogError) as refusal:
         return Checked(case, "could not run", (" ".join(str(refusal).split()),), took=time.perf_counter() - begin)
     found = _held_against_baseline(case, result.verdict, now)
-    return replace(found, log=result.log, took=time.perf_counter() - begin)
+    return replace(found, log=result.log, verdict=result.verdict, took=time.perf_counter() - begin)
 
 
 def _held_against_baseline(case: Case, verdict: Verdict, now: Baseline) -> Checked:
@@ -184,9 +211,8 @@ def _held_against_baseline(case: Case, verdict: Verdict, now: Baseline) -> Check
 
 
 def compared(case: Case, before: Baseline, now: Baseline) -> Checked:
-    """The result of a run by its baseline alone."""
-    if others := before.others(case.scenario.name, case.settings):
-        return Checked(case, "other scenario", tuple(others))
+    """The result of a run by its baseline alone; one of other settings is held against it all the same."""
+    others = before.others(case.scenario.name, case.settings)
     gaps, world = before.gaps(now, case.scenario.criteria), before.other_world(now)
     moves = tuple(before.moves(now.metrics, case.scenario.criteria))
     partings = _first_and_most(before.trace.partings(now.trace))
@@ -195,7 +221,10 @@ def compared(case: Case, before: Baseline, now: Baseline) -> Checked:
         status = "moved"
     elif gaps:
         status = "incomplete baseline"
-    return Checked(case, status, (*gaps, *world), moves, partings)
+    if others:
+        others += [UNMOVED] if status == "same" else []
+        status = "other scenario"
+    return Checked(case, status, (*others, *gaps, *world), moves, partings)
 
 
 def _first_and_most(partings: Sequence[Parting]) -> tuple[Parting, ...]:
@@ -219,7 +248,7 @@ def check(
         chosen: to run.
         out: directory of their logs.
         jobs: runs at once.
-        on_done: called with each as it is done.
+        on_done: called with each as it is done, and again with what `update` made of it.
         update: whether to write the baselines anew of the runs that met their criteria and are not the same.
 
     Returns:
@@ -230,9 +259,11 @@ def check(
         if checked.status == "same" and checked.log is not None:
             shutil.rmtree(checked.log.parent)
             checked = replace(checked, log=None)
-        checked = updated(checked) if update else checked
-        done[checked.case.scenario.name] = checked
         on_done(checked)
+        if update and (written := updated(checked)) is not checked:
+            checked = written
+            on_done(checked)
+        done[checked.case.scenario.name] = checked
     return tuple(done[case.scenario.name] for case in chosen)
 
 
@@ -242,8 +273,13 @@ def _lost(case: Case, out: Path, why: str) -> Checked:
 
 def updated(checked: Checked) -> Checked:
     """Write the baseline of a run that met its criteria, if it is not the same; what became of it then."""
-    if checked.now is None or checked.status in ("same", "failed", "could not run"):
-        return checked
+    unfit = checked.now is None or checked.status in ("same", "failed", "could not run")
+    return checked if unfit else rewritten(checked)
+
+
+def rewritten(checked: Checked) -> Checked:
+    """Write the baseline of a run anew; what became of it then."""
+    assert checked.now is not None
     try:
         write_baseline(checked.case.baseline, checked.now)
     except LogError as error:

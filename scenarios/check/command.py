@@ -1,5 +1,7 @@
 """``surefoot check``: holds scenarios against their baselines."""
 
+import json
+from collections.abc import Callable
 from dataclasses import dataclass
 from pathlib import Path
 from typing import Annotated
@@ -7,7 +9,17 @@ from typing import Annotated
 import typer
 
 from surefoot.lazy import importing
-from surefoot.scenarios.show.options import INTERRUPTED, Jobs, Replace, SeatOf, Settings, overrides, with_options
+from surefoot.scenarios.show.options import (
+    INTERRUPTED,
+    AsJson,
+    Cluster,
+    Jobs,
+    Replace,
+    SeatOf,
+    Settings,
+    overrides,
+    with_options,
+)
 
 app = typer.Typer()
 
@@ -24,21 +36,34 @@ class CheckOptions:
         Path | None, typer.Option(help="Directory of the baselines; beside the scenario files by default.")
     ] = None
     policy: SeatOf = None
+    seeds: Annotated[
+        int | None,
+        typer.Option(min=1, help="Runs of each at most; as its file or its baseline says by default, or one."),
+    ] = None
     set_: Settings = None
     jobs: Jobs = None
+    cluster: Cluster = None
     out: Annotated[Path, typer.Option(help="Directory of the logs.")] = Path("runs/check")
     junit: Annotated[Path | None, typer.Option(help="Also write JUnit XML to this file.")] = None
     markdown: Annotated[Path | None, typer.Option(help="Also write a summary for a CI page to this file.")] = None
+    annotations: Annotated[
+        bool, typer.Option("--annotations", help="Also print findings as GitHub shows them beside a file.")
+    ] = False
     force: Replace = False
+    as_json: AsJson = False
 
 
 @app.command()
 @with_options(CheckOptions)
 def check(options: CheckOptions) -> None:
     """Hold scenarios against their baselines."""
+    if options.annotations and options.as_json:
+        raise typer.BadParameter("--json prints nothing beside it; give it without --annotations")
     with importing():
         from surefoot.scenarios.check import check as checking
-        from surefoot.scenarios.check import report
+        from surefoot.scenarios.check import record, report, seeds
+        from surefoot.scenarios.check.annotations import annotations
+        from surefoot.scenarios.many.slots import InterruptedRunsError
         from surefoot.scenarios.output import refuse_existing
         from surefoot.scenarios.run.processes import cores
 
@@ -46,8 +71,14 @@ def check(options: CheckOptions) -> None:
         if report_file is not None:
             refuse_existing(report_file, options.force)
     chosen = checking.cases(options.scenarios or (), options.baselines, overrides(options.set_, policy=options.policy))
+    told: Callable[[checking.Checked], None] = (lambda _: None) if options.as_json else report.print_checked
+    running = seeds.Running(options.out, options.jobs or cores(), options.seeds, options.cluster, options.update)
     try:
-        found = checking.check(chosen, options.out, options.jobs or cores(), report.print_checked, options.update)
+        found = seeds.check(chosen, running, told)
+    except InterruptedRunsError:
+        kept = options.out / seeds.FOLDER
+        typer.echo(f"interrupted; finished runs are kept in {kept}, the same command goes on from there", err=True)
+        raise typer.Exit(INTERRUPTED) from None
     except KeyboardInterrupt:
         typer.echo("interrupted", err=True)
         raise typer.Exit(INTERRUPTED) from None
@@ -55,5 +86,7 @@ def check(options: CheckOptions) -> None:
         report.write(options.junit, report.junit(found), options.force)
     if options.markdown is not None:
         report.write(options.markdown, report.markdown(found).encode(), options.force)
-    typer.echo(report.summary(found))
+    for line in annotations(found) if options.annotations else ():
+        typer.echo(line)
+    typer.echo(json.dumps(record.to_json(found), allow_nan=False) if options.as_json else report.summary(found))
     raise typer.Exit(checking.exit_code(found))

@@ -13,9 +13,12 @@ import os
 import shutil
 from collections.abc import Generator, Iterator
 from pathlib import Path
-from typing import Any
+from typing import TYPE_CHECKING, Any
 
 import pytest
+
+if TYPE_CHECKING:
+    from surefoot.scenarios.check.check import Case, Checked
 
 ENDINGS = (".scenario.yaml", ".scenario.yml")
 
@@ -95,12 +98,11 @@ class ScenarioTest(pytest.Item):
         Raises:
             MissedError: it missed its criteria, is worse than its baseline, or has one of another name.
         """
-        from surefoot.scenarios.check.check import cases, run_case, strays
+        from surefoot.scenarios.check.check import cases, strays
         from surefoot.scenarios.check.report import lines_of
 
-        out = self.config.rootpath / "runs" / "pytest"
         (case,) = cases([str(self.path)])
-        checked = run_case(case, out)
+        checked = self._checked(case, self.config.rootpath / "runs" / "pytest")
         astray = strays(case) if checked.status == "without baseline" else ()
         if astray:
             what = f"{astray[0]}: is of no scenario beside it; name it {case.baseline.name}, or remove it"
@@ -111,6 +113,19 @@ class ScenarioTest(pytest.Item):
             raise MissedError("\n".join([checked.status, *lines_of(checked)]))
         if checked.log is not None:
             shutil.rmtree(checked.log.parent)
+
+    def _checked(self, case: "Case", out: Path) -> "Checked":
+        """The case held against its baseline: one run in this process, or seeds in one beside it."""
+        from surefoot.scenarios.check.check import run_case
+        from surefoot.scenarios.check.seeds import Running, check, seeds_of
+        from surefoot.scenarios.many.slots import InterruptedRunsError
+
+        if seeds_of(case) == 1:
+            return run_case(case, out)
+        try:  # in a folder of its own: pytest-xdist may run another scenario at the same time
+            return check([case], Running(out / case.scenario.name, jobs=1))[0]
+        except InterruptedRunsError:
+            raise KeyboardInterrupt from None
 
     def repr_failure(self, excinfo: pytest.ExceptionInfo[BaseException], style: Any = None) -> str:
         """The missed criteria, without a traceback, unless it is a defect."""

@@ -10,6 +10,7 @@ import typer
 from surefoot.scenarios.check.baseline import Move
 from surefoot.scenarios.check.check import Checked, CheckStatus
 from surefoot.scenarios.check.signs import FAR, Parting
+from surefoot.scenarios.check.wording import seed_lines
 from surefoot.scenarios.judge.verdict import shown_unit, value_text
 from surefoot.scenarios.output import write_whole
 from surefoot.scenarios.show.moment import Moment
@@ -47,12 +48,14 @@ def lines_of(checked: Checked) -> list[str]:
     order = {"worse": 0, "other": 1, "better": 2}
     moves = [move_text(move) for move in sorted(checked.moves, key=lambda move: order[move.direction])]
     partings = zip(("first", "most"), checked.partings, strict=False)
-    lines = [*checked.reasons, *(f"parts {when}: {one.text}" for when, one in partings), *moves[:_SHOWN_MOVES]]
+    seeds = [] if checked.sampled is None else seed_lines(checked.sampled)
+    lines = [*checked.reasons, *seeds, *(f"parts {when}: {one.text}" for when, one in partings), *moves[:_SHOWN_MOVES]]
     if len(moves) > _SHOWN_MOVES:
         lines.append(f"and {len(moves) - _SHOWN_MOVES} metrics more")
     if checked.status in _REMEDIES:
         lines.append(_REMEDIES[checked.status].format(checked.case.baseline))
-    if checked.log is not None and checked.status in ("failed", "moved", "better"):
+    parted = bool(checked.moves or checked.partings)
+    if checked.log is not None and (checked.status == "failed" or parted):
         lines += [f"look at: surefoot plot {checked.log}{where}" for where in _figures(checked.partings)]
         lines += [f"look at: {Moment(checked.log, one.begin).text}" for one in checked.partings[:1]]
     return lines
@@ -68,10 +71,12 @@ def _figures(partings: Sequence[Parting]) -> list[str]:
 
 
 def print_checked(checked: Checked) -> None:
-    """Print one run as soon as it is done."""
-    status = typer.style(checked.status, fg="green" if checked.passed else "red", bold=True)
+    """Print one run as soon as it is done; of one that was printed, and whose baseline is written now, no more."""
+    color = "yellow" if checked.status == "not decided" else "green" if checked.passed else "red"
+    status = typer.style(checked.status, fg=color, bold=True)
     typer.echo(f"{checked.case.scenario.name}: {status}")
-    for line in lines_of(checked):
+    lines = {"written": [str(checked.case.baseline)], "could not write": list(checked.reasons[-1:])}
+    for line in lines.get(checked.status, lines_of(checked)):
         typer.echo(f"  - {line}")
 
 

@@ -15,6 +15,7 @@ from surefoot.scenarios.file.criteria import Bound, standing_walk
 from surefoot.scenarios.file.group import WHOLE, ControllerSettings, Group, Many, RecoverySettings, as_tuple, key
 from surefoot.scenarios.file.names import OneOf
 from surefoot.scenarios.file.registries import DEFAULTS, TERRAIN_KINDS
+from surefoot.scenarios.file.search import MOST_RUNS, Bisect
 from surefoot.scenarios.file.sensing import MotorSettings, Sensing
 from surefoot.scenarios.file.units import METRE, RADIAN, SECOND, Unit
 
@@ -354,6 +355,13 @@ class Scenario(Group):
     commands: Many[CommandSettings] = key((), "commands to the walk while it goes on")
     faults: Many[Fault] = key((), "injected faults")
     rates: Rates = key(Rates.model_construct(), "the clock")
+    seeds: Annotated[int, Field(ge=1, le=MOST_RUNS), WHOLE] | None = key(
+        None,
+        "runs of `surefoot check` at most, with this seed and those after it, null: as its baseline says [-]",
+    )
+    margins: dict[Annotated[str, Field(pattern=NAME)], Bisect] | None = key(
+        None, "thresholds that `surefoot check` searches with each seed, by a name of one's own, null: none"
+    )
     criteria: dict[str, Bound] = Field(default_factory=standing_walk, description="bounds on metrics")
 
     @property

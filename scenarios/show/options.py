@@ -93,6 +93,9 @@ SeatOf = Annotated[
     ),
 ]
 Jobs = Annotated[int | None, typer.Option(min=1, help="Runs at once; as many as cores by default.")]
+Cluster = Annotated[
+    str | None, typer.Option(metavar="ADDRESS", help="Run on the cluster of this dask scheduler instead.")
+]
 LogFile = Annotated[Path, typer.Argument(help="A log, also a truncated one.")]
 
 

@@ -7,9 +7,10 @@ from dataclasses import dataclass
 from pathlib import Path
 
 from surefoot.scenarios.errors import ScenarioError
+from surefoot.scenarios.many.points import Outcome
 from surefoot.scenarios.output import reason
 from surefoot.studies.campaigns.campaign import Campaign
-from surefoot.studies.campaigns.points import Cell, Outcome
+from surefoot.studies.campaigns.points import Cell
 
 BASELINE = "baseline"
 """Stands for the table that comes with Surefoot."""

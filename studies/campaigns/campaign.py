@@ -10,13 +10,15 @@ from typing import Any, NamedTuple
 from pydantic import ValidationError
 
 from surefoot.scenarios.errors import Key, Problem, ScenarioError, nearest
+from surefoot.scenarios.file.search import MOST_RUNS, Bisect
 from surefoot.scenarios.file.source import Source, decoded, parse, plain_scalar, setting
 from surefoot.scenarios.file.translate import problems_of
-from surefoot.scenarios.setup.load import Written, for_robot, key_problems, written
+from surefoot.scenarios.many.points import Base
+from surefoot.scenarios.setup.load import for_robot, key_problems, written
 from surefoot.scenarios.setup.robot.robots import Robots, is_known
 from surefoot.studies.campaigns.beside import Beside
 from surefoot.studies.campaigns.shipped import ENDING, shipped
-from surefoot.studies.campaigns.spec import MOST_RUNS, Bisect, Spec
+from surefoot.studies.campaigns.spec import Spec
 
 SCENARIO, SEARCH = "scenario", "bisect."
 """Keys that are no scenario's and may vary as any other: which scenario, and the range of the search."""
@@ -27,13 +29,6 @@ class Setting(NamedTuple):
 
     label: Any
     keys: Mapping[str, Any]
-
-
-class Base(NamedTuple):
-    """A scenario that runs start from: what `surefoot run` finds it by, and how it is written."""
-
-    reference: str
-    written: Written
 
 
 @dataclass(frozen=True, slots=True)

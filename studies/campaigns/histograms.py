@@ -8,12 +8,12 @@ from matplotlib.axes import Axes
 from matplotlib.figure import Figure
 from matplotlib.ticker import MaxNLocator
 
+from surefoot.scenarios.file.search import MOST
 from surefoot.scenarios.file.units import is_number
 from surefoot.scenarios.palette import BLACK, FAIL, GREY, PASS, hexadecimal
 from surefoot.scenarios.show.kit.figures import DASHED, in_style, note
 from surefoot.scenarios.show.kit.html import escape, tag
 from surefoot.scenarios.show.kit.svg import svg
-from surefoot.studies.campaigns.spec import MOST
 
 ROUNDING, TINY = 1e-9, 1e-100
 """Values that differ by less, as a share of the greatest or at all, are drawn as the same."""

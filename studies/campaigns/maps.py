@@ -8,11 +8,11 @@ import numpy as np
 from matplotlib.axes import Axes
 from matplotlib.figure import Figure
 
+from surefoot.scenarios.many.points import Point, Record, Runs
 from surefoot.scenarios.palette import FAIL, GREY, PASS, paler
 from surefoot.scenarios.show.kit.figures import in_style, panels
 from surefoot.scenarios.show.kit.html import section
 from surefoot.scenarios.show.kit.svg import figure_html
-from surefoot.studies.campaigns.points import Point, Record, Runs
 from surefoot.studies.campaigns.spec import MOST_PANELS, Axis, combinations, name_axis, text, title
 from surefoot.studies.campaigns.success import judged_of, passed_of, rate_of
 

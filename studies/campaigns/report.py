@@ -7,13 +7,13 @@ from urllib.parse import quote
 
 import yaml
 
+from surefoot.scenarios.many.journal import JOURNAL
+from surefoot.scenarios.many.points import Point, Record, Runs, RunStatus
 from surefoot.scenarios.record.provenance import relevant_versions
 from surefoot.scenarios.show.kit import html
 from surefoot.scenarios.show.kit.html import TableRow, details, escape, section, tag
 from surefoot.studies.campaigns import success
-from surefoot.studies.campaigns.journal import JOURNAL
 from surefoot.studies.campaigns.maps import map_section
-from surefoot.studies.campaigns.points import Point, Record, Runs, RunStatus
 from surefoot.studies.campaigns.searches import searches_section
 from surefoot.studies.campaigns.spec import Axis
 

@@ -3,11 +3,12 @@
 from collections.abc import Sequence
 from typing import TYPE_CHECKING, Protocol
 
+from surefoot.scenarios.many.points import Point, Record, Runs
 from surefoot.scenarios.show.kit.html import MISSING, PageTable, TableCell, TableRow, escape, number, section, tag
 from surefoot.scenarios.show.kit.svg import figure_html
 from surefoot.studies.campaigns.beside_figure import turned
 from surefoot.studies.campaigns.capturability import LIMIT_NOTE, Limits
-from surefoot.studies.campaigns.points import Cell, Point, Record, Runs
+from surefoot.studies.campaigns.points import Cell
 from surefoot.studies.campaigns.spec import Axis, angle_of, is_around, text, with_unit
 from surefoot.studies.campaigns.thresholds import Found, along, are_named, bars, compass
 

@@ -6,16 +6,17 @@ from typing import TYPE_CHECKING, Any
 
 import numpy as np
 
+from surefoot.maths.chance import SuccessRate, wilson
 from surefoot.scenarios.errors import ScenarioError
 from surefoot.scenarios.file.criteria import Bound
 from surefoot.scenarios.file.units import is_number
 from surefoot.scenarios.judge.metrics import known
+from surefoot.scenarios.many.points import Point, Record, Runs
 from surefoot.scenarios.setup.load import read_scenario
 from surefoot.scenarios.show.kit.html import MISSING, PageTable, TableCell, TableRow, escape, section, tag
 from surefoot.studies.campaigns.histograms import Histogram, histograms_html
-from surefoot.studies.campaigns.points import Point, Record, Runs
 from surefoot.studies.campaigns.spec import Axis, text, with_unit
-from surefoot.studies.campaigns.table import SuccessRate, as_float, wilson
+from surefoot.studies.campaigns.table import as_float
 
 if TYPE_CHECKING:
     from surefoot.studies.campaigns.sweep import Swept

@@ -1,166 +1,32 @@
 """``surefoot sweep``: runs a campaign and writes its tables and its page."""
 
-import queue
-import threading
-from collections.abc import Callable, Iterable, Iterator, Sequence
-from contextlib import suppress
+from collections.abc import Iterator
 from dataclasses import dataclass
-from functools import partial
 from pathlib import Path
-from typing import TYPE_CHECKING, Any, Literal, get_args
+from typing import Any, get_args
 
 import yaml
 
+from surefoot.maths.chance import wilson
+from surefoot.scenarios.many.journal import Journal, outcome_of
+from surefoot.scenarios.many.points import Outcome, Record, Runs, RunStatus, facts
+from surefoot.scenarios.many.slots import CampaignBar, InterruptedRunsError, run_cells, workers_of
 from surefoot.scenarios.output import write_whole
-from surefoot.scenarios.run.processes import interrupts_ignored
-from surefoot.scenarios.show.console import TerminalLine
+from surefoot.studies.campaigns import reached
 from surefoot.studies.campaigns.campaign import Campaign
-from surefoot.studies.campaigns.engine import Worker, cluster_workers, local_workers
-from surefoot.studies.campaigns.journal import Journal, outcome_of
-from surefoot.studies.campaigns.points import Outcome, Point, Record, Runs, RunStatus, Searched, cells, facts
+from surefoot.studies.campaigns.points import cells
+from surefoot.studies.campaigns.reached import reached_lines, varied
 from surefoot.studies.campaigns.table import (
     has_parquet,
     runs_table,
     threshold_lines,
     thresholds_table,
-    wilson,
     write_table,
 )
 from surefoot.version import install_command
 
-if TYPE_CHECKING:
-    from rich.progress import ProgressColumn
-
 SPEC_FILE, PAGE, RUNS_TABLE, THRESHOLDS_TABLE = "campaign.yaml", "report.html", "table", "thresholds"
 STATUSES: tuple[RunStatus, ...] = get_args(RunStatus)
-
-
-class CampaignBar(TerminalLine):
-    """The progress of a campaign: how many are done, how many failed, how long the rest takes.
-
-    Args:
-        total: number of cells.
-        what: they are called.
-    """
-
-    def __init__(self, total: int, what: str = "runs") -> None:
-        super().__init__(partial(_columns, what), total, "")
-        self._counts = dict.fromkeys(("fail", "refused", "broken"), 0)
-        self._runs = 0
-
-    def run(self, record: Record) -> None:
-        """Count a run."""
-        self._runs += 1
-        if record.status in self._counts:
-            self._counts[record.status] += 1
-        counts = ", ".join(f"{count} {status}" for status, count in self._counts.items() if count)
-        self.update(state=f"{self._runs} runs" + (f", {counts}" if counts else ""))
-
-    def cell(self) -> None:
-        """Count a cell."""
-        self.update(advance=1)
-
-
-def _columns(what: str) -> "Iterable[ProgressColumn]":
-    from rich.progress import BarColumn, MofNCompleteColumn, TextColumn, TimeElapsedColumn, TimeRemainingColumn
-
-    done = (TextColumn(what), BarColumn(), MofNCompleteColumn(), TextColumn("{task.fields[state]}"))
-    return *done, TimeElapsedColumn(), TextColumn("left"), TimeRemainingColumn()
-
-
-class InterruptedRunsError(Exception):
-    """The user stopped the campaign; what was done is kept."""
-
-
-def run_cells(
-    cells: Iterable[Searched],
-    journal: Journal,
-    workers: Sequence[Worker],
-    on_run: Callable[[Record], None] = lambda _: None,
-    on_cell: Callable[[], None] = lambda: None,
-) -> None:
-    """Run what has no result yet; one that fails does not stop the others.
-
-    Args:
-        cells: to run.
-        journal: gets every result.
-        workers: that make the runs.
-        on_run: called with each new result.
-        on_cell: called when a cell is done.
-
-    Raises:
-        InterruptedRunsError: Ctrl-C; runs under way were brought to their end first, unless it came twice.
-        LogError: a result could not be written down.
-    """
-    news_queue: queue.SimpleQueue[_News] = queue.SimpleQueue()
-    left: queue.SimpleQueue[Searched] = queue.SimpleQueue()
-    for cell in cells:
-        left.put(cell)
-    stop = threading.Event()
-    slots = [
-        threading.Thread(target=_slot, args=(worker, left, journal, news_queue, stop), daemon=True)
-        for worker in workers
-    ]
-    running = len(slots)
-    try:
-        for slot in slots:
-            slot.start()
-        while running:
-            news = news_queue.get()
-            if isinstance(news, Exception):
-                raise news
-            if isinstance(news, Record):
-                on_run(news)
-            elif news == "cell":
-                on_cell()
-            else:
-                running -= 1
-    except KeyboardInterrupt:
-        stop.set()
-        with suppress(KeyboardInterrupt):
-            for slot in slots:
-                slot.join()
-        raise InterruptedRunsError from None
-    finally:
-        stop.set()
-        with interrupts_ignored():
-            for worker in workers:
-                worker.close()
-
-
-_News = Record | Exception | Literal["cell", "end"]
-"""News of a slot: a result, what went wrong, that a cell is done, that it has nothing more to do."""
-
-
-def _slot(
-    worker: Worker,
-    left: "queue.SimpleQueue[Searched]",
-    journal: Journal,
-    news_queue: "queue.SimpleQueue[_News]",
-    stop: threading.Event,
-) -> None:
-    """Take one cell after the other that is left, and have what has no result run."""
-
-    def made(point: Point) -> bool:
-        if journal.get(point) is None:
-            if stop.is_set():
-                return False
-            record = worker(point)
-            journal.add(point, record)
-            news_queue.put(record)
-        found = journal.said(point)
-        return found is not None and found.status != "broken"
-
-    try:
-        while not stop.is_set():
-            outcome_of(left.get_nowait(), journal, made)
-            news_queue.put("cell")
-    except queue.Empty:
-        pass
-    except Exception as error:
-        news_queue.put(error)
-    finally:
-        news_queue.put("end")
 
 
 @dataclass(frozen=True, slots=True)
@@ -241,11 +107,12 @@ class Swept:
         runs = len(self.records)
         counts = ", ".join(f"{n} {status}" for status in STATUSES if (n := self.count(status)))
         yield f"{self.campaign.spec.name}: {runs} runs" + (f", {counts}" if counts else "")
-        if self.campaign.spec.bisect is None and self.ran:
+        if self.campaign.spec.bisect is None and self.ran and not varied(self):
             judged = [record.status for _, record in self.facts if record.status in ("pass", "fail")]
             rate = wilson(judged.count("pass"), len(judged))
             yield f"success rate {100 * rate.rate:.1f} %, 95 % interval {rate.between} %"
         yield from threshold_lines(self.outcomes)
+        yield from reached_lines(self)
         yield from map(str, reversed(self.files))
 
     def to_json(self) -> dict[str, Any]:
@@ -254,7 +121,8 @@ class Swept:
         files = [path.name for path in self.files]
         name, runs = self.campaign.spec.name, len(self.records)
         counts["repeated"] = runs - len(self.facts)
-        return {"campaign": name, "runs": runs, **counts, "out": str(self.folder), "files": files}
+        told = {"campaign": name, "runs": runs, **counts, "out": str(self.folder), "files": files}
+        return {**told, **reached.to_json(self)}
 
 
 def sweep(campaign: Campaign, out: Path, jobs: int, cluster: str | None = None) -> Swept:
@@ -272,7 +140,7 @@ def sweep(campaign: Campaign, out: Path, jobs: int, cluster: str | None = None) 
         InterruptedRunsError: the user stopped it; tables and page are of what was done.
     """
     keep_all, every = campaign.spec.keep == "all", tuple(cells(campaign))
-    workers = _workers(out, jobs, cluster, keep_all)
+    workers = workers_of(out, jobs, cluster, keep_all)
     with Journal(out, keep_all) as journal:
         stopped: InterruptedRunsError | None = None
         try:
@@ -285,12 +153,6 @@ def sweep(campaign: Campaign, out: Path, jobs: int, cluster: str | None = None) 
     if stopped is not None:
         raise stopped
     return swept
-
-
-def _workers(out: Path, jobs: int, cluster: str | None, keep_all: bool) -> Sequence[Worker]:
-    if cluster is None:
-        return local_workers(out, jobs, keep_all)
-    return cluster_workers(cluster, out, keep_all)
 
 
 def write(swept: Swept) -> None:

@@ -9,13 +9,13 @@ import math
 from collections.abc import Callable, Iterable, Iterator, Mapping, Sequence
 from dataclasses import dataclass
 from pathlib import Path
-from statistics import NormalDist
-from typing import Any, NamedTuple
+from typing import Any
 
 from surefoot.scenarios.errors import require
 from surefoot.scenarios.judge.metrics import known
+from surefoot.scenarios.many.points import Outcome, facts
 from surefoot.scenarios.output import write_whole
-from surefoot.studies.campaigns.points import Cell, Outcome, facts
+from surefoot.studies.campaigns.points import Cell
 from surefoot.studies.campaigns.spec import described, text
 
 TableValue = bool | int | float | str | None
@@ -163,31 +163,6 @@ def _shown(outcome: Outcome) -> str:
     if found.value is not None and found.side == "inside":
         return text(float(found.value))
     return f"below {text(float(bisect.low))}" if found.side == "below" else f"above {text(float(bisect.high))}"
-
-
-class SuccessRate(NamedTuple):
-    """A share with its interval."""
-
-    rate: float
-    low: float
-    high: float
-
-    @property
-    def between(self) -> str:
-        """The interval in percent."""
-        return f"{100 * self.low:.1f} to {100 * self.high:.1f}"
-
-
-def wilson(successes: int, trials: int) -> SuccessRate:
-    """A success rate with its 95 % interval by Wilson's score, which holds near 0 and 1 and for few trials too.
-
-    E. B. Wilson, Probable inference, the law of succession, and statistical inference, JASA 22, 1927. It is
-    written out, since scipy.stats, which has it too, takes longer to be imported than a short run takes.
-    """
-    rate, z_squared = successes / trials, NormalDist().inv_cdf(0.975) ** 2
-    center = (successes + 0.5 * z_squared) / (trials + z_squared)
-    half = math.sqrt(z_squared * (trials * rate * (1.0 - rate) + 0.25 * z_squared)) / (trials + z_squared)
-    return SuccessRate(rate, center - half if successes else 0.0, center + half if successes < trials else 1.0)
 
 
 def write_table(table: Table, path: Path) -> list[Path]:

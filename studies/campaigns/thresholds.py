@@ -11,9 +11,9 @@ from matplotlib.lines import Line2D
 from matplotlib.patches import Patch
 from matplotlib.projections.polar import PolarAxes
 
+from surefoot.scenarios.many.points import Threshold
 from surefoot.scenarios.palette import BLACK, BLUE, GREY, VERMILION, Color, paler
 from surefoot.scenarios.show.kit.figures import CYCLE, DASHED, PAGE_WIDTH, in_style, panels
-from surefoot.studies.campaigns.points import Threshold
 from surefoot.studies.campaigns.spec import (
     MOST_PANELS,
     Axis,

@@ -11,14 +11,14 @@ from typing import Any, NamedTuple
 import yaml
 from matplotlib.figure import Figure
 
+from surefoot.scenarios.many.engine import Worker, local_workers
+from surefoot.scenarios.many.slots import CampaignBar
 from surefoot.scenarios.output import refuse_existing, write_whole
 from surefoot.scenarios.run.run import made_folder
 from surefoot.scenarios.show.kit import html
 from surefoot.scenarios.show.kit.html import MISSING, PageTable, TableCell, TableRow, escape, section, tag
 from surefoot.scenarios.show.kit.html import tally as tally_html
 from surefoot.scenarios.show.kit.svg import figure_html
-from surefoot.studies.campaigns.engine import Worker, local_workers
-from surefoot.studies.campaigns.sweep import CampaignBar
 from surefoot.studies.paper import studies
 from surefoot.studies.paper.claims import Assessment, Claim, Grade, claims
 from surefoot.studies.paper.figures import PLATES

@@ -12,14 +12,13 @@ from typing import Any, NamedTuple
 from surefoot.scenarios.errors import LogError
 from surefoot.scenarios.file.source import setting
 from surefoot.scenarios.log import read
+from surefoot.scenarios.many.engine import Worker
+from surefoot.scenarios.many.journal import Journal
+from surefoot.scenarios.many.points import Base, Point, Record, Single
+from surefoot.scenarios.many.slots import CampaignBar, run_cells
 from surefoot.scenarios.record.provenance import ABSENT, END_RECORD
 from surefoot.scenarios.setup.load import written
 from surefoot.scenarios.show.kit.html import MISSING, TableCell, number
-from surefoot.studies.campaigns.campaign import Base
-from surefoot.studies.campaigns.engine import Worker
-from surefoot.studies.campaigns.journal import Journal
-from surefoot.studies.campaigns.points import Point, Record, Single
-from surefoot.studies.campaigns.sweep import CampaignBar, run_cells
 from surefoot.studies.paper import studies
 from surefoot.studies.paper.studies import Experiment, PaperWorld, Study
 

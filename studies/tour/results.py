@@ -7,8 +7,8 @@ from typing import Any
 
 import numpy as np
 
+from surefoot.maths.chance import wilson
 from surefoot.scenarios.judge.metrics import plain
-from surefoot.studies.campaigns.table import wilson
 from surefoot.studies.tour.ride import PunchTaken, TourResult
 from surefoot.studies.tour.rules import DURATION, SLOT
 

@@ -10,13 +10,12 @@ from surefoot.scenarios.check.check import cases, check, run_case
 from surefoot.scenarios.file.schema import Scenario
 from surefoot.scenarios.judge.scenario import scenario_of
 from surefoot.scenarios.log import read
+from surefoot.scenarios.many.engine import local_workers
+from surefoot.scenarios.many.journal import Journal, outcome_of
+from surefoot.scenarios.many.points import Base, Point, Single
+from surefoot.scenarios.many.slots import run_cells
 from surefoot.scenarios.run.processes import processes
 from surefoot.scenarios.setup.load import load, written
-from surefoot.studies.campaigns.campaign import Base
-from surefoot.studies.campaigns.engine import local_workers
-from surefoot.studies.campaigns.journal import Journal, outcome_of
-from surefoot.studies.campaigns.points import Point, Single
-from surefoot.studies.campaigns.sweep import run_cells
 
 
 @pytest.fixture

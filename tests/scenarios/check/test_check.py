@@ -215,18 +215,27 @@ def test_a_missed_criterion_fails_whatever_the_baseline_says_and_is_no_baseline(
     assert case.baseline.read_text() == before
 
 
-def test_a_baseline_of_other_settings_is_not_compared(kept, tmp_path):
+def test_a_baseline_of_other_settings_is_told_and_compared_all_the_same(kept, tmp_path):
     case, baseline = kept
     assert yaml.safe_load(baseline.settings)["gait"]["steps"] == 2
     other = baseline.settings.replace("steps: 2", "steps: 3").replace("  double_support: 0.1\n", "") + "seed: 4\n"
-    write_baseline(case.baseline, replace(baseline, settings=other))
-    found = run_case(case, tmp_path / "again")
-    assert (found.status, found.moves, found.partings) == ("other scenario", (), ())
-    assert found.reasons == (
+    settings = (
         "gait.steps is 2, 3 in the baseline",
         "seed is the default, 4 in the baseline",
         "gait.double_support is 0.1, the default in the baseline",
     )
+    write_baseline(case.baseline, replace(baseline, settings=other))
+    found = run_case(case, tmp_path / "again")
+    assert (found.status, found.moves, found.partings) == ("other scenario", (), ())
+    assert found.reasons == (*settings, checking.UNMOVED)
+    metrics = {**baseline.metrics, "speed_mean": 2.0 * baseline.metrics["speed_mean"]}
+    trace = moved(baseline.trace, "com_y", 2, 0.004)
+    write_baseline(case.baseline, replace(baseline, settings=other, metrics=metrics, trace=trace))
+    found = run_case(case, tmp_path / "moved")
+    assert (found.status, found.reasons) == ("other scenario", settings)
+    assert [(move.name, move.direction) for move in found.moves] == [("speed_mean", "worse")]
+    assert [one.text for one in found.partings] == ["CoM at the end of step 1: 4.0 mm to the right of the baseline"]
+    assert any(line.startswith("look at: surefoot plot") for line in report.lines_of(found))
 
 
 @pytest.mark.parametrize(
@@ -258,7 +267,9 @@ def test_what_cannot_run_and_what_is_no_baseline_is_told(case, tmp_path):
 
 
 def test_what_update_wrote_it_says_it_wrote(case, tmp_path):
-    (found,) = checking.check([case], tmp_path / "runs", 1, update=True)
+    told = []
+    (found,) = checking.check([case], tmp_path / "runs", 1, told.append, update=True)
+    assert [one.status for one in told] == ["without baseline", "written"]
     assert (found.status, found.passed) == ("written", True)
     assert report.lines_of(found) == ["was: without baseline", f"written: {case.baseline}"]
     assert report.summary([found]) == "1 scenario: 1 written"
@@ -392,12 +403,12 @@ def test_what_the_baseline_could_not_tell_and_the_run_can_parts(kept):
     assert found.text == "largest distance of the ZMP from its reference in step 1 could not be told in the baseline"
 
 
-def test_a_baseline_of_another_name_is_not_compared(kept, first):
+def test_a_baseline_of_another_name_is_told_and_compared_all_the_same(kept, first):
     case, baseline = kept
     write_baseline(case.baseline, replace(baseline, scenario="1e5"))
     assert read_baseline(case.baseline).scenario == "1e5"
     found = compared(case, read_baseline(case.baseline), first.now)
-    assert (found.status, found.reasons) == ("other scenario", ("the baseline is of '1e5'",))
+    assert (found.status, found.reasons) == ("other scenario", ("the baseline is of '1e5'", checking.UNMOVED))
 
 
 def test_an_option_of_the_world_that_changed_is_named(kept, first):

@@ -34,6 +34,18 @@ def test_it_passes_fails_with_what_was_missed_and_keeps_the_log_of_the_failure(t
     assert kept == ["bad.scenario-0"]
 
 
+def test_a_scenario_with_seeds_passes_when_each_of_them_meets_its_criteria(tmp_path):
+    (tmp_path / "pytest.ini").write_text("[pytest]\n")
+    noisy = f"{GOOD.replace('steps: 0', 'steps: 1')}sensing: {{com_noise: 0.003}}\nseeds: 3\n"
+    (tmp_path / "good.scenario.yaml").write_text(noisy)
+    (tmp_path / "bad.scenario.yaml").write_text(noisy.replace("fell: false", "zmp_error_rms: {max: 0.0001}"))
+    done = pytest_in(tmp_path)
+    assert "1 failed, 1 passed" in done.stdout
+    assert "0 of 3 seeds met their criteria" in done.stdout
+    assert "seed 2 missed its criteria: zmp_error_rms[0] is" in done.stdout
+    assert "Traceback" not in done.stdout
+
+
 def test_a_baseline_whose_name_matches_no_scenario_fails_the_one_that_has_none(tmp_path):
     (tmp_path / "pytest.ini").write_text("[pytest]\n")
     (tmp_path / "good.scenario.yaml").write_text(GOOD)

@@ -7,9 +7,10 @@ from typer.testing import CliRunner
 
 from surefoot.scenarios.cli.program import app
 from surefoot.scenarios.errors import ScenarioError
+from surefoot.scenarios.many.points import Outcome, Threshold
 from surefoot.studies.campaigns.against import BASELINE, Table, table
 from surefoot.studies.campaigns.campaign import read_campaign
-from surefoot.studies.campaigns.points import Cell, Outcome, Threshold, cells
+from surefoot.studies.campaigns.points import Cell, cells
 
 pytestmark = pytest.mark.unit
 

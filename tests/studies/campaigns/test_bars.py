@@ -3,8 +3,8 @@
 import pytest
 from matplotlib.colors import to_rgb
 
+from surefoot.scenarios.many.points import Threshold
 from surefoot.scenarios.palette import BLUE, VERMILION
-from surefoot.studies.campaigns.points import Threshold
 from surefoot.studies.campaigns.spec import Axis, Published
 from surefoot.studies.campaigns.thresholds import LIMIT_NAME, Found, are_named, bars
 

@@ -7,11 +7,12 @@ import pytest
 
 from surefoot.scenarios.errors import ScenarioError
 from surefoot.scenarios.file.schema import RobotSettings
+from surefoot.scenarios.many.points import Record
 from surefoot.scenarios.setup.load import read_scenario
 from surefoot.scenarios.setup.robot import robots
 from surefoot.scenarios.setup.robot.robots import Robots
 from surefoot.studies.campaigns.campaign import read_campaign
-from surefoot.studies.campaigns.points import Record, cells
+from surefoot.studies.campaigns.points import cells
 from surefoot.studies.campaigns.shipped import shipped
 
 pytestmark = pytest.mark.unit

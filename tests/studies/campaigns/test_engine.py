@@ -9,12 +9,11 @@ from dataclasses import dataclass, field
 import pytest
 
 from surefoot.scenarios.errors import LogError
+from surefoot.scenarios.many.engine import LocalWorker, perform
+from surefoot.scenarios.many.journal import CHANGED, JOURNAL, LOGS, SCRATCH, Journal, MadeOf, outcome_of
+from surefoot.scenarios.many.points import Base, Point, Record, Single, facts
+from surefoot.scenarios.many.slots import InterruptedRunsError, run_cells
 from surefoot.scenarios.setup.load import written
-from surefoot.studies.campaigns.campaign import Base
-from surefoot.studies.campaigns.engine import LocalWorker, perform
-from surefoot.studies.campaigns.journal import CHANGED, JOURNAL, LOGS, SCRATCH, Journal, MadeOf, outcome_of
-from surefoot.studies.campaigns.points import Point, Record, Single, facts
-from surefoot.studies.campaigns.sweep import InterruptedRunsError, run_cells
 
 pytestmark = pytest.mark.unit
 

@@ -9,10 +9,11 @@ from typer.testing import CliRunner
 
 from surefoot.scenarios.cli.program import app
 from surefoot.scenarios.errors import ScenarioError
+from surefoot.scenarios.many.points import Record, Threshold
 from surefoot.studies.campaigns.beside import SPEED, WALKER, Beside
 from surefoot.studies.campaigns.beside_figure import turned
 from surefoot.studies.campaigns.campaign import read_campaign
-from surefoot.studies.campaigns.points import Cell, Record, Threshold
+from surefoot.studies.campaigns.points import Cell
 from surefoot.studies.campaigns.spec import Axis
 from surefoot.studies.campaigns.thresholds import Found, compass
 

@@ -6,11 +6,10 @@ from pathlib import Path
 
 import pytest
 
+from surefoot.scenarios.many.journal import MadeOf
+from surefoot.scenarios.many.points import Base, Point
 from surefoot.scenarios.record.provenance import relevant_versions
 from surefoot.scenarios.setup.load import written
-from surefoot.studies.campaigns.campaign import Base
-from surefoot.studies.campaigns.journal import MadeOf
-from surefoot.studies.campaigns.points import Point
 
 pytestmark = pytest.mark.unit
 

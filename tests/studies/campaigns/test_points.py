@@ -5,10 +5,11 @@ import shlex
 import numpy as np
 import pytest
 
+from surefoot.scenarios.many.points import Record, Threshold
 from surefoot.scenarios.run.run import run_scenario
 from surefoot.scenarios.setup.load import load, read_scenario
 from surefoot.studies.campaigns.campaign import read_campaign
-from surefoot.studies.campaigns.points import Record, Threshold, cells, draw_value
+from surefoot.studies.campaigns.points import cells, draw_value
 from surefoot.studies.campaigns.spec import Draw
 
 pytestmark = pytest.mark.unit

@@ -16,10 +16,11 @@ from strangers import listening
 from surefoot.scenarios.cli import program as cli
 from surefoot.scenarios.cli.program import INTERRUPTED
 from surefoot.scenarios.errors import ScenarioError
-from surefoot.studies.campaigns import engine as cluster
-from surefoot.studies.campaigns.engine import perform
-from surefoot.studies.campaigns.journal import JOURNAL, LOGS, SCRATCH
-from surefoot.studies.campaigns.sweep import PAGE, CampaignBar
+from surefoot.scenarios.many import engine as cluster
+from surefoot.scenarios.many.engine import perform
+from surefoot.scenarios.many.journal import JOURNAL, LOGS, SCRATCH
+from surefoot.scenarios.many.slots import CampaignBar
+from surefoot.studies.campaigns.sweep import PAGE
 
 CAMPAIGN = """
 scenario: paper-walk
@@ -48,7 +49,7 @@ class Here:
 def surefoot(monkeypatch, capsys, tmp_path):
     """Run the command in this process."""
     monkeypatch.setattr(
-        "surefoot.studies.campaigns.sweep.local_workers",
+        "surefoot.scenarios.many.slots.local_workers",
         lambda folder, jobs, keep_all: [Here(folder, keep_all)],
     )
     (tmp_path / "short.yaml").write_text(CAMPAIGN % 2)
@@ -85,9 +86,8 @@ def test_who_stops_a_campaign_has_tables_and_page_of_what_was_done(surefoot, mon
 def test_tables_counts_and_logs(surefoot, tmp_path):
     code, out, err = surefoot("short.yaml")
     assert (code, err) == (0, "")
-    assert out.startswith(
-        "short: 12 runs, 4 pass, 4 fail, 4 refused\nsuccess rate 50.0 %, 95 % interval 21.5 to 78.5 %\n"
-    )
+    assert out.startswith("short: 12 runs, 4 pass, 4 fail, 4 refused\n")
+    assert "success rate" not in out  # of what varies each value has its own
     folder = tmp_path / "runs" / "short"
     table = rows(folder)
     assert [row["status"] for row in table] == ["pass"] * 2 + ["fail"] * 2 + ["pass"] * 2 + ["fail"] * 2 + [

@@ -12,14 +12,16 @@ from urllib.parse import unquote
 
 import pytest
 
+from surefoot.maths.chance import wilson
 from surefoot.scenarios.errors import ScenarioError
+from surefoot.scenarios.many.engine import LocalWorker
+from surefoot.scenarios.many.journal import Journal, MadeOf, outcome_of
+from surefoot.scenarios.many.points import Record
+from surefoot.scenarios.many.slots import run_cells
 from surefoot.studies.campaigns import report
 from surefoot.studies.campaigns.campaign import read_campaign
-from surefoot.studies.campaigns.engine import LocalWorker
-from surefoot.studies.campaigns.journal import Journal, MadeOf, outcome_of
-from surefoot.studies.campaigns.points import Record, cells
-from surefoot.studies.campaigns.sweep import PAGE, Swept, run_cells, write
-from surefoot.studies.campaigns.table import wilson
+from surefoot.studies.campaigns.points import cells
+from surefoot.studies.campaigns.sweep import PAGE, Swept, write
 
 pytestmark = pytest.mark.unit
 

@@ -2,9 +2,9 @@
 
 import pytest
 
+from surefoot.scenarios.many.engine import perform
+from surefoot.scenarios.many.journal import LOGS, SCRATCH
 from surefoot.scenarios.run.run import run_scenario
-from surefoot.studies.campaigns.engine import perform
-from surefoot.studies.campaigns.journal import LOGS, SCRATCH
 
 
 class HereWorker:

@@ -11,9 +11,9 @@ from paper_samples import FALL, outcome, results
 from surefoot.scenarios.cli import program as cli
 from surefoot.scenarios.judge.verdict import judge
 from surefoot.scenarios.log import read
+from surefoot.scenarios.many.slots import InterruptedRunsError
 from surefoot.scenarios.show.kit.html import number
 from surefoot.scenarios.show.kit.svg import svg
-from surefoot.studies.campaigns.sweep import InterruptedRunsError
 from surefoot.studies.paper import page
 from surefoot.studies.paper.figures import JERKS, PLATES, POSITIONS, PanelColumn, grid
 from surefoot.studies.paper.page import balance_table, shove_table

@@ -1,4 +1,4 @@
-"""The directory of a campaign: every result as soon as it is there, and the logs that are kept."""
+"""The directory of many runs: every result as soon as it is there, and the logs that are kept."""
 
 import contextlib
 import fcntl
@@ -7,7 +7,7 @@ import json
 import os
 import shutil
 import threading
-from collections.abc import Callable, Iterator, Mapping
+from collections.abc import Callable, Iterable, Iterator, Mapping
 from dataclasses import fields, is_dataclass, replace
 from functools import lru_cache
 from pathlib import Path
@@ -21,13 +21,12 @@ from surefoot.models.types import RobotOptions
 from surefoot.scenarios.errors import LogError
 from surefoot.scenarios.file.schema import Scenario
 from surefoot.scenarios.file.source import parse
+from surefoot.scenarios.many.points import Base, Outcome, Point, Record, Searched
 from surefoot.scenarios.output import reason
 from surefoot.scenarios.record.packages import packages_of
 from surefoot.scenarios.record.provenance import relevant_versions
 from surefoot.scenarios.run.run import made_folder
 from surefoot.scenarios.setup.load import Written
-from surefoot.studies.campaigns.campaign import Campaign
-from surefoot.studies.campaigns.points import Outcome, Point, Record, Searched
 
 JOURNAL, LOGS, SCRATCH = "runs.jsonl", "logs", ".running"
 
@@ -64,10 +63,15 @@ class MadeOf:
         return _digest(made_of)
 
 
-def overlooked(campaign: Campaign) -> Iterator[str]:
-    """A sentence if packages bring parts of a campaign: what of them its results do not follow."""
-    words = set(_words(campaign.spec.model_dump(mode="json")))
-    for base in campaign.bases.values():
+def overlooked(values: Any, bases: Iterable[Base]) -> Iterator[str]:
+    """A sentence if packages bring parts of runs: what of them their results do not follow.
+
+    Args:
+        values: that are set in them, with their keys.
+        bases: scenarios that they start from.
+    """
+    words = set(_words(values))
+    for base in bases:
         words |= _named(base.written)[1]
     if names := ", ".join(packages_of(frozenset(words))):
         seen = f"results are made anew when the code of {names} changes, or a file beside it that it names"

@@ -1,4 +1,4 @@
-"""The engine of a campaign's runs: processes on this machine, or the machines of a dask.distributed cluster."""
+"""The engine of many runs: processes on this machine, or the machines of a dask.distributed cluster."""
 
 import asyncio
 import shutil
@@ -16,12 +16,12 @@ from surefoot.errors import PluginError
 from surefoot.parts.guard import said
 from surefoot.scenarios.errors import LogError, ScenarioError, SetupError, require
 from surefoot.scenarios.file.schema import Scenario
+from surefoot.scenarios.many.journal import LOGS, OF_A_MACHINE, SCRATCH, MadeOf
+from surefoot.scenarios.many.points import Point, Record
 from surefoot.scenarios.record.provenance import LOG_NAME, relevant_versions
 from surefoot.scenarios.run.processes import interrupts_ignored, processes
 from surefoot.scenarios.run.run import Result, made_folder, run_scenario
 from surefoot.scenarios.setup.load import read_scenario
-from surefoot.studies.campaigns.journal import LOGS, OF_A_MACHINE, SCRATCH, MadeOf
-from surefoot.studies.campaigns.points import Point, Record
 
 TRIES = 2
 """Number of times that a run whose process dies is begun."""

@@ -193,8 +193,7 @@ def log_plant(walk: Walk, world: World, drives: Drives | None, options: Mapping[
         LogError: the log cannot be read, or is not one of such a walk.
     """
     path, until = options.get("log"), options.get("until")
-    sound = isinstance(path, str) and isinstance(until, int | float) and not isinstance(until, bool)
-    if not sound or len(options) != 2:
+    if not (isinstance(path, str) and isinstance(until, int | float)) or len(options) != 2:
         what = f"plant.options of a log with {', '.join(options) or 'nothing'}"
         raise ParameterError(("plant", "options"), what, "give log, its path, and until, a time in seconds")
     if walk.control.driven_joints:

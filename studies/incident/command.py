@@ -13,6 +13,9 @@ from surefoot.scenarios.show.options import INTERRUPTED, MISSED, AsJson, LogFile
 if TYPE_CHECKING:
     from surefoot.studies.incident.regression import Trial
 
+_LONGEST = 1e9
+"""No log is longer [s]."""
+
 app = typer.Typer(help="Scenarios from what has happened.", no_args_is_help=True)
 
 
@@ -44,17 +47,23 @@ class FromOptions:
 def from_(options: FromOptions) -> None:
     """Write the smallest scenario that shows the incident of a log."""
     with importing():
+        from surefoot.scenarios.errors import LogError
         from surefoot.scenarios.output import refuse_existing
         from surefoot.studies.incident import report
         from surefoot.studies.incident.regression import Incident, Trials, regression, write
 
     seconds = options.seconds
+    for name, time in (("--around", options.around), ("--seconds", seconds)):
+        if time is not None and not time <= _LONGEST:
+            raise typer.BadParameter(f"{name} {time} is no time of a log; give seconds, such as 2.5")
     if options.around is not None and seconds is None:
         raise typer.BadParameter("--around T is a moment; give --seconds S with it, the time before that to begin at")
     incident = Incident.of(options.log)
     path = options.out or Path(f"{incident.scenario.name}-incident.yaml")
     refuse_existing(path, options.force)
-    trials = Trials(incident, path.stem, _say)
+    if not path.parent.is_dir():
+        raise LogError(f"{path}: cannot be written, there is no such folder; choose another file with --out")
+    trials = Trials(incident, incident.name_of(path), _say)
     try:
         found = regression(incident, trials, options.around, seconds, small=not options.whole)
         last = None

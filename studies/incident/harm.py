@@ -17,7 +17,7 @@ from surefoot.scenarios.output import shown
 
 Array = NDArray[np.float64]
 
-SAME_TIME = 0.5
+SAME_TIME = 0.3
 """Difference of the times of two falls that count as the same, of the reference robot [s]."""
 
 SAME_WAY = 60.0

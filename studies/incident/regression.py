@@ -1,6 +1,7 @@
 """From the log of an incident to a scenario that shows it again, with no more causes than it takes."""
 
 import os
+import re
 import shutil
 from collections.abc import Callable, Iterator, Mapping, Sequence
 from dataclasses import dataclass, field
@@ -16,6 +17,7 @@ from surefoot.scenarios.errors import LogError, ScenarioError, SetupError
 from surefoot.scenarios.file.schema import Scenario
 from surefoot.scenarios.judge.digest import RunView
 from surefoot.scenarios.judge.health import findings
+from surefoot.scenarios.judge.loss import loss
 from surefoot.scenarios.judge.metrics import digest
 from surefoot.scenarios.log import Log, read
 from surefoot.scenarios.output import write_whole
@@ -30,7 +32,9 @@ from surefoot.studies.incident.harm import Harm, Likeness, harm_of, likeness
 from surefoot.studies.incident.smallest import smallest
 
 AFTER = 2.0
-"""Time after the fall of the log for which the scenario goes on where it does not fall, of the reference robot [s]."""
+"""Time after the fall of the log at which the scenario ends where it does not fall, of the reference robot [s]."""
+
+_LONGEST_NAME = 100
 
 STARTS = (4.0, 2.0, 1.0, 0.5)
 """Times before the incident at which a scenario begins whose log does not come back from its beginning [s]."""
@@ -73,6 +77,7 @@ class Incident:
         scenario: of the run, as it can be run again.
         harm: what came to the robot.
         named: checks that name its causes.
+        lost: time at which balance was lost before a fall [s]; None without one.
         notes: what of the run no scenario holds.
     """
 
@@ -80,6 +85,7 @@ class Incident:
     scenario: Scenario
     harm: Harm
     named: tuple[str, ...]
+    lost: float | None
     notes: tuple[str, ...] = ()
 
     @classmethod
@@ -98,8 +104,15 @@ class Incident:
         if harm is None:
             what = f"{path}: shows no incident: the robot did not fall, and no criterion was missed"
             raise LogError(f"{what}; give the log of a run that failed")
-        named = (one.check for one in findings(digest(log)) if one.relation == "cause")
-        return cls(log, scenario, harm, tuple(named), notes)
+        gathered = digest(log)
+        named = tuple(one.check for one in findings(gathered) if one.relation == "cause")
+        lost = loss(RunView(gathered))
+        return cls(log, scenario, harm, named, None if lost is None else lost.time, notes)
+
+    def name_of(self, path: Path) -> str:
+        """The name of the scenario in a file: its own, as far as a name may have its letters."""
+        name = re.sub(r"[^A-Za-z0-9._-]+", "-", path.stem).strip("-._")
+        return name[:_LONGEST_NAME] or "incident"
 
     @property
     def repeatable(self) -> bool:
@@ -118,7 +131,7 @@ def _notes(log: Log) -> Iterator[str]:
     made, now = log.metadata.get(VERSIONS_RECORD, {}), relevant_versions()
     others = [name for name, version in now.items() if name in made and made[name] != version]
     if others:
-        yield f"it was made by other versions: {', '.join(others)}"
+        yield f"it was made by other versions: {', '.join(others)}".replace("source_digest", "Surefoot's own code")
 
 
 @dataclass
@@ -268,10 +281,10 @@ def shortened(incident: Incident) -> Values:
     values, harm = values_of(incident.scenario), incident.harm
     values.pop("criteria", None)
     values.get("controller", {}).pop("left_out", None)
+    if not harm.fell:
+        return values
     walk = resolve(incident.scenario)
     end = harm.time + AFTER * walk.size.time
-    if not harm.fell or end >= walk.duration:
-        return values
     shorter = {**values, "duration": round(end, 6), **_before(harm.time, end, values, walk)}
     shorter = {name: value for name, value in shorter.items() if value != []}
     try:

@@ -31,7 +31,7 @@ def comment(found: Regression, path: Path) -> tuple[str, ...]:
     begins = "at the beginning of the run" if found.begin == 0.0 else f"in the state of the log at {found.begin:.3f} s"
     lines = [
         f"{_capital(found.incident.harm.text)}, as in {found.incident.log.path.name}; it begins {begins}.",
-        *(f"Of the log {note}." for note in found.incident.notes),
+        *(f"Note on the log: {note}." for note in found.incident.notes),
         "It takes each of these, and without any single one it is another run:" if found.needed else _BY_ITSELF,
     ]
     for cause in found.needed:
@@ -87,10 +87,17 @@ def lines(found: Regression, path: Path, last: Trial | None) -> Iterator[str]:
         else:
             yield f"  not needed  {_short(cause.text)}"
     yield f"{path}: {told(last)}"
+    yield from _too_late(found)
     yield f"red until it is mended: surefoot check {quote(str(path))}"
     for cause in found.needed:
         if found.without(cause).harm is None and not found.without(cause).refused:
             yield f"green without a cause: {_without(found, cause, path)} --update"
+
+
+def _too_late(found: Regression) -> Iterator[str]:
+    lost = found.incident.lost
+    if lost is not None and found.begin >= lost:
+        yield f"note: balance was lost at {lost:.3f} s, before it begins, so that nothing can mend it; begin earlier"
 
 
 def rule(harm: Harm) -> str:

@@ -1,6 +1,7 @@
 """The smallest part of a set that still has a property, by delta debugging."""
 
 from collections.abc import Callable, Sequence
+from itertools import pairwise
 from typing import TypeVar
 
 T = TypeVar("T")
@@ -43,7 +44,7 @@ def smallest(all_of: Sequence[T], holds: Callable[[tuple[T, ...]], bool], first:
     return left
 
 
-def _complements(of: tuple[T, ...], pieces: int) -> "list[tuple[T, ...]]":
+def _complements(of: tuple[T, ...], pieces: int) -> list[tuple[T, ...]]:
     """What is left of a set without each of so many pieces of it."""
     bounds = [len(of) * number // pieces for number in range(pieces + 1)]
-    return [of[:begin] + of[end:] for begin, end in zip(bounds, bounds[1:], strict=False) if end > begin]
+    return [of[:begin] + of[end:] for begin, end in pairwise(bounds) if end > begin]

@@ -7,6 +7,7 @@ from dataclasses import dataclass
 from typing import Any
 
 from surefoot.scenarios.errors import Key, dotted
+from surefoot.scenarios.file.registries import DEFAULTS
 from surefoot.scenarios.file.schema import Scenario
 from surefoot.scenarios.file.sensing import SENSOR_KEYS
 
@@ -27,6 +28,8 @@ _PLACES = ("x", "y", "yaw")
 
 SETTINGS = ("control", "planner", "wbc", "controller")
 """Groups of the controller, which a test is to try: what of them fells a robot is to be mended there."""
+
+_TRUTH = DEFAULTS["sensing"]
 
 _NAMED = {
     "push": ("pushes",),
@@ -69,6 +72,10 @@ def values_of(scenario: Scenario) -> Values:
     """The keys of a scenario that are not at their defaults, but for those that only say what its log holds."""
     found = scenario.model_dump(mode="json", exclude_defaults=True, exclude_none=True, exclude={"log", "name"})
     plain: Values = json.loads(json.dumps(found))
+    sensing = plain.get("sensing", {})
+    if scenario.sensing.source == _TRUTH:  # which reads no sensors; a preset alone would name another source
+        for name in set(SENSOR_KEYS) & sensing.keys():
+            _remove(plain, ("sensing", name))
     return plain
 
 
@@ -95,7 +102,8 @@ def _of_ground(terrain: Mapping[str, Any], values: Values) -> Iterator[Cause]:
     shape = tuple(("terrain", name) for name in terrain if name not in ("friction", "height_noise"))
     if shape:
         noise = (("terrain", "height_noise"),) if "height_noise" in terrain else ()
-        yield _cause(values, (*shape, *noise), "terrain")
+        text = f"terrain.kind {terrain['kind']}" if "kind" in terrain else ""
+        yield _cause(values, (*shape, *noise), text)
     for name in ("height_noise", "friction"):
         if name in terrain:
             yield _cause(values, (("terrain", name),))

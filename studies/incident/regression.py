@@ -344,7 +344,7 @@ def write(found: Regression, path: Path, comment: Sequence[str], replaced: bool 
         LogError: the file exists, and shall not be replaced, or cannot be written.
     """
     values = {
-        "name": path.stem,
+        "name": found.incident.name_of(path),
         **portable(found.values, path.resolve().parent),
         "criteria": criteria_of(found.incident),
     }

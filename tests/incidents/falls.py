@@ -69,7 +69,7 @@ FALLS: dict[str, Fall] = {
             "gait.com_height": 0.67,
             "gait.initial_stand": 0.2,
             "sensing.gyro_noise": 0.02,
-            "pushes": [{"time": 0.6, "impulse": 0.45}, {"time": 0.2, "impulse": 0.05}],
+            "pushes": [{"time": 0.6, "impulse": 0.35}, {"time": 0.2, "impulse": 0.05}],
         },
     ),
 }

@@ -440,6 +440,7 @@ TABLES: dict[str, tuple[str, Callable[[], str]]] = {
             ("policy-faults", "policies.md"),
             ("policies-catalogue", "policies-beside.md"),
             ("sabotage", "checking.md"),
+            ("incidents", "incidents.md"),
             ("criteria", "scenarios.md"),
             ("public-humanoids", "robots.md"),
             ("robustness", "campaigns.md"),

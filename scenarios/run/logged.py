@@ -112,12 +112,13 @@ class LogPlant:
             raise ParameterError(("plant", "options"), what, "give a time that the log has")
         self._walk, self._world, self._run, self._drives = walk, world, run, drives
         self._pushes: list[Push] = []
-        self._row, self.control_tick = -1, -1
+        self._row = self._heard = self.control_tick = -1
         self._sensors: Any = None
 
     def reset(self, q: Array, v: Array | None = None, torque: Array | None = None) -> None:
         """See `surefoot.Plant`; its start is that of the log."""
-        self._row, self.control_tick, self._pushes, self._sensors = -1, -1, [], None
+        self._row = self._heard = self.control_tick = -1
+        self._pushes, self._sensors = [], None
 
     @property
     def _live(self) -> bool:
@@ -163,7 +164,9 @@ class LogPlant:
 
             walk = self._walk
             self._sensors = SensorSuite(self._world, walk.hardware.sensors, walk.rates.control, walk.seed)
-        made: Readings = self._sensors.read(measurement, tick)
+        while self._heard < tick:  # also of ticks whose states the log has not
+            self._heard += 1
+            made: Readings = self._sensors.read(measurement, self._heard)
         return made if self._live else self._run.readings(self._row, measurement.time)
 
     def act(self, command: JointCommand, period: float) -> None:

@@ -34,7 +34,7 @@ class FromOptions:
     ] = None
     seconds: Annotated[
         float | None,
-        typer.Option(metavar="S", min=0.0, help="Begin in the state of the log so long before that moment [s]."),
+        typer.Option(metavar="S", min=0.0, help="Begin in the state of the log so long before; 2 with --around [s]."),
     ] = None
     out: Annotated[Path | None, typer.Option(help="File to write; NAME-incident.yaml by default.")] = None
     whole: Annotated[bool, typer.Option("--whole", help="Keep all that acted, also what is not needed.")] = False
@@ -56,13 +56,11 @@ def from_(options: FromOptions) -> None:
     for name, time in (("--around", options.around), ("--seconds", seconds)):
         if time is not None and not time <= _LONGEST:
             raise typer.BadParameter(f"{name} {time} is no time of a log; give seconds, such as 2.5")
-    if options.around is not None and seconds is None:
-        raise typer.BadParameter("--around T is a moment; give --seconds S with it, the time before that to begin at")
+    if options.out is not None and not options.out.parent.is_dir():
+        raise LogError(f"{options.out}: cannot be written, there is no such folder; choose another file with --out")
     incident = Incident.of(options.log)
     path = options.out or Path(f"{incident.scenario.name}-incident.yaml")
     refuse_existing(path, options.force)
-    if not path.parent.is_dir():
-        raise LogError(f"{path}: cannot be written, there is no such folder; choose another file with --out")
     trials = Trials(incident, incident.name_of(path), _say)
     try:
         found = regression(incident, trials, options.around, seconds, small=not options.whole)

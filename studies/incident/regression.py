@@ -34,6 +34,9 @@ from surefoot.studies.incident.smallest import smallest
 AFTER = 2.0
 """Time after the fall of the log at which the scenario ends where it does not fall, of the reference robot [s]."""
 
+BEFORE = 2.0
+"""Time before a moment at which a scenario begins that is to show it, of the reference robot [s]."""
+
 _LONGEST_NAME = 100
 
 STARTS = (4.0, 2.0, 1.0, 0.5)
@@ -118,6 +121,11 @@ class Incident:
     def repeatable(self) -> bool:
         """False of a run that a program with parts of its own has made, or that followed the wall's clock."""
         return PARTS_RECORD not in self.log.metadata and "/link" not in self.log
+
+    @property
+    def has_state(self) -> bool:
+        """True of a log in whose states a run may begin, as those of a pendulum are not."""
+        return "/measurement" in self.log.numeric
 
     @property
     def length(self) -> float:
@@ -227,10 +235,10 @@ class Regression:
         """A cause that is needed, as it is numbered where all others are left out."""
         return causes_of(self.values)[self.needed.index(cause)]
 
-    def without(self, cause: Cause) -> Trial:
-        """The run with all that is needed but one."""
+    def without(self, cause: Cause) -> Trial | None:
+        """The run with all that is needed but one; None where it was not made."""
         left = tuple(one for one in self.needed if one is not cause)
-        return next(trial for trial in reversed(self.trials) if trial.causes == left)
+        return next((trial for trial in reversed(self.trials) if trial.causes == left), None)
 
 
 def regression(
@@ -242,10 +250,13 @@ def regression(
         incident: of the log.
         trials: makes the runs.
         around: moment that the scenario is to show, by default that of the incident [s].
-        seconds: at which time before that it begins; by default the run begins where it began [s].
+        seconds: at which time before that it begins; by default it begins where the run began, and with a moment
+            `BEFORE` that [s].
         small: whether to look for causes that it does without.
     """
     moment = incident.harm.time if around is None else around
+    if around is not None and seconds is None:
+        seconds = BEFORE * incident.length
     whole = shortened(incident)
     starts: list[tuple[float, Trial]] = []
     values, begin = whole, 0.0
@@ -268,6 +279,8 @@ def regression(
 
 def _begins(incident: Incident, moment: float, seconds: float | None) -> Sequence[float]:
     """Times at which a scenario may begin, the wanted one first, each once [s]."""
+    if not incident.has_state:
+        return (0.0,)
     if seconds is not None:
         wanted = [moment - seconds, moment - 0.5 * seconds, moment - 0.25 * seconds, 0.0]
     else:

@@ -5,7 +5,7 @@ from pathlib import Path
 from shlex import quote
 from typing import Any
 
-from surefoot.studies.incident.causes import settings
+from surefoot.studies.incident.causes import Cause, settings
 from surefoot.studies.incident.harm import SAME_WAY, Harm
 from surefoot.studies.incident.regression import Regression, Trial
 
@@ -32,17 +32,29 @@ def comment(found: Regression, path: Path) -> tuple[str, ...]:
     lines = [
         f"{_capital(found.incident.harm.text)}, as in {found.incident.log.path.name}; it begins {begins}.",
         *(f"Note on the log: {note}." for note in found.incident.notes),
-        "It takes each of these, and without any single one it is another run:" if found.needed else _BY_ITSELF,
+        _heading(found),
     ]
     for cause in found.needed:
         lines += [
-            f"- {_short(found.in_file(cause).text)}; without it {found.without(cause).text}",
+            f"- {_short(found.in_file(cause).text)}{_then(found, cause, '; ')}",
             f"  {_without(found, cause, path)}",
         ]
     return (*lines, *_left_out(found))
 
 
-_BY_ITSELF = "It takes nothing but the walk itself: the cause is in the robot, the gait or the code."
+def _heading(found: Regression) -> str:
+    """What the list of causes is, in a sentence."""
+    if not found.needed:
+        return "It takes nothing but the walk itself: the cause is in the robot, the gait or the code."
+    if found.without(found.needed[0]) is None:
+        return "All that acted then, also what need not:"
+    return "It takes each of these, and without any single one it is another run:"
+
+
+def _then(found: Regression, cause: Cause, mark: str) -> str:
+    """What becomes of the run without a cause, after a mark; empty where that was not tried."""
+    trial = found.without(cause)
+    return "" if trial is None else f"{mark}without it {trial.text}"
 
 
 def _left_out(found: Regression) -> Iterator[str]:
@@ -59,7 +71,7 @@ def _capital(text: str) -> str:
     return text[:1].upper() + text[1:]
 
 
-def _without(found: Regression, cause: Any, path: Path) -> str:
+def _without(found: Regression, cause: Cause, path: Path) -> str:
     given = " ".join(f"--set {quote(one)}" for one in settings(found.values, found.in_file(cause)))
     return f"surefoot check {quote(str(path))} {given}"
 
@@ -83,14 +95,15 @@ def lines(found: Regression, path: Path, last: Trial | None) -> Iterator[str]:
     for cause in found.causes:
         if cause in found.needed:
             setting = ", a setting of the controller" if cause.is_setting else ""
-            yield f"  needed      {_short(cause.text)}{setting}: without it {found.without(cause).text}"
+            yield f"  needed      {_short(cause.text)}{setting}{_then(found, cause, ': ')}"
         else:
             yield f"  not needed  {_short(cause.text)}"
     yield f"{path}: {told(last)}"
     yield from _too_late(found)
     yield f"red until it is mended: surefoot check {quote(str(path))}"
     for cause in found.needed:
-        if found.without(cause).harm is None and not found.without(cause).refused:
+        trial = found.without(cause)
+        if trial is not None and trial.harm is None and not trial.refused:
             yield f"green without a cause: {_without(found, cause, path)} --update"
 
 
@@ -122,7 +135,7 @@ def to_json(found: Regression, path: Path, last: Trial | None) -> dict[str, Any]
                 "needed": cause in found.needed,
                 "setting": cause.is_setting,
                 "without": list(settings(found.values, found.in_file(cause))) if cause in found.needed else None,
-                "then": _trial(found.without(cause)) if cause in found.needed and last is not None else None,
+                "then": _trial(then) if (then := found.without(cause)) is not None and cause in found.needed else None,
             }
             for cause in found.causes
         ],

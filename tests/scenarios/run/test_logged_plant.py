@@ -1,5 +1,8 @@
 """A run that goes on from the state of a log: what the log holds until then, and the same motion from there."""
 
+import subprocess
+import sys
+
 import numpy as np
 import pytest
 
@@ -90,13 +93,30 @@ def test_its_log_runs_again_to_the_bit(logs, tmp_path, same_content):
     assert same_content(again.path, surefoot.run(str(again.path), out=tmp_path).log) == []
 
 
-def test_paths_are_those_beside_the_file(logs, tmp_path):
+def test_it_goes_through_check_sweep_and_pytest_wherever_they_are_started(logs, tmp_path):
     log, _ = logs["humanoid100"]
-    (tmp_path / "held.mcap").write_bytes(log.path.read_bytes())
-    file = tmp_path / "held.yaml"
-    file.write_text("plant: {name: log, options: {log: held.mcap, until: 0.1}}\ngait: {steps: 0}\nduration: 0.2\n")
-    loaded = surefoot.load(str(file))
-    assert loaded.plant.options["log"] == str(tmp_path / "held.mcap")
+    folder = tmp_path / "tests"
+    folder.mkdir()
+    (folder / "held.mcap").write_bytes(log.path.read_bytes())
+    text = "plant: {name: log, options: {log: held.mcap, until: 0.1}}\ngait: {steps: 0}\nduration: 0.2\n"
+    file = folder / "held.scenario.yaml"
+    file.write_text(text + "robot_options: {foot_length: 0.22, foot_width: 0.11}\ncriteria: {fell: false}\n")
+    assert surefoot.load(str(file)).plant.options["log"] == str(folder / "held.mcap")
+    (tmp_path / "two.yaml").write_text(f"scenario: {file}\ngrid: {{terrain.friction: [0.8, 0.7]}}\n")
+
+    def given(*words):
+        asked = [sys.executable, "-m", *words]
+        done = subprocess.run(asked, cwd=tmp_path, capture_output=True, text=True, check=False)
+        return done.returncode, done.stdout + done.stderr
+
+    assert given("surefoot", "check", "tests/held.scenario.yaml", "--update")[0] == 0
+    assert given("surefoot", "check", "tests/held.scenario.yaml") == (0, "held.scenario: same\n1 scenario: 1 same\n")
+    code, said = given("surefoot", "sweep", "two.yaml", "--jobs", "1", "--out", "swept")
+    assert code == 0, said
+    assert "2" in said
+    code, said = given("pytest", "-q", "-p", "no:cacheprovider", "tests")
+    assert code == 0, said
+    assert "1 passed" in said
 
 
 @pytest.mark.parametrize(

@@ -8,7 +8,7 @@ import yaml
 import surefoot
 from surefoot.scenarios.cli import program
 
-pytestmark = pytest.mark.unit
+pytestmark = pytest.mark.physics
 
 FALLS = {
     "fidelity": "pendulum",

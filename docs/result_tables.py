@@ -442,6 +442,7 @@ TABLES: dict[str, tuple[str, Callable[[], str]]] = {
             ("steered", "policies-beside.md"),
             ("sabotage", "checking.md"),
             ("power", "checking.md"),
+            ("incidents", "incidents.md"),
             ("criteria", "scenarios.md"),
             ("public-humanoids", "robots.md"),
             ("robustness", "campaigns.md"),

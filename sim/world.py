@@ -107,18 +107,19 @@ class World:
         """Poses of its bodies as it was made, whatever its model has become."""
         return BodyPoses(_compiled(self._mjcf))
 
-    def reset(self, q: Array, v: Array | None = None, torque: Array | None = None) -> None:
-        """Start at tick 0 from a state in Pinocchio's convention, without the pushes that were added since.
+    def reset(self, q: Array, v: Array | None = None, torque: Array | None = None, tick: int = 0) -> None:
+        """Start from a state in Pinocchio's convention, without the pushes that were added since.
 
         Args:
             q: configuration, shape (7 + nj,) [m, -, rad].
             v: velocity, shape (6 + nj,) [m/s, rad/s]; rest if None.
             torque: joint torques that the first measured contact forces belong to, shape (nj,) [N m]; none if None.
+            tick: physics step at which it starts; the world's own pushes begin with the first.
         """
         mujoco.mj_resetData(self._model, self.data)
         self._coordinates.to_mujoco(q, np.zeros(len(q) - 1) if v is None else v, self._qpos, self._qvel)
         self._pushes.rewind(self._xfrc)
-        self.tick = 0
+        self.tick = tick
         if torque is not None:
             self._ctrl[:] = torque
         if self._drives is not None:

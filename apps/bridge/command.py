@@ -24,6 +24,7 @@ from surefoot.scenarios.show.options import (
 )
 
 if TYPE_CHECKING:
+    from surefoot.scenarios.log import Log
     from surefoot.scenarios.run.run import Result
 
 DEFAULT_SCENARIO = "walk"
@@ -116,6 +117,14 @@ class WalkOptions:
     shadow: Annotated[Path | None, typer.Option(metavar="LOG", help="Hear what this log holds, and move nothing.")] = (
         None
     )
+    against: Annotated[
+        Path | None,
+        typer.Option(metavar="BASELINE", help="With --shadow: hold the outputs against those in this log."),
+    ] = None
+    tolerance: Annotated[
+        float | None, typer.Option(help="Of values that agree: relative, and absolute below 1; 1e-6 by default.")
+    ] = None
+    update: Annotated[bool, typer.Option("--update", help="Make the new log the baseline.")] = False
     policy: SeatOf = None
     set_: Settings = None
     seed: Seed = None
@@ -126,12 +135,14 @@ class WalkOptions:
 @with_options(WalkOptions)
 def walk(options: WalkOptions) -> None:
     """Walk a robot that another process serves, or a log's shadow."""
+    _refuse_odd(options)
     if options.on is not None and options.shadow is None:
         walked = partial(_on, options.on)
     elif options.shadow is not None and options.on is None:
         walked = partial(_in_shadow, options.shadow)
     else:
         raise typer.BadParameter("give one of --on ADDRESS and --shadow LOG")
+    before = None if options.against is None else _baseline(options)
     with importing():
         from surefoot.scenarios.setup.load import locate
         from surefoot.scenarios.show.console import print_result
@@ -144,6 +155,8 @@ def walk(options: WalkOptions) -> None:
         if reference is None:
             raise ScenarioError([str(refusal)]) from None
         raise locate(reference, asked, refusal) from None
+    if options.against is not None and not result.interrupted:
+        raise typer.Exit(_hold(options, options.against, before, result.log))
     if options.as_json:
         typer.echo(json.dumps({**result.verdict.to_json(), "log": str(result.log)}, allow_nan=False))
     else:
@@ -152,6 +165,44 @@ def walk(options: WalkOptions) -> None:
         typer.echo(f"interrupted; the log up to here is whole: {result.log}", err=True)
         raise typer.Exit(INTERRUPTED)
     raise typer.Exit(0 if result.verdict.passed else MISSED)
+
+
+def _refuse_odd(options: WalkOptions) -> None:
+    """Refuse options of a baseline without one, or without a shadow."""
+    baseline, shadow = options.against, options.shadow
+    if baseline is None and (options.update or options.tolerance is not None):
+        raise typer.BadParameter("--update and --tolerance are of a baseline; give it by --against BASELINE")
+    if baseline is not None and shadow is None:
+        raise typer.BadParameter("--against BASELINE is of a shadow; give --shadow LOG with it")
+    if options.update and baseline is not None and shadow is not None and baseline.resolve() == shadow.resolve():
+        raise typer.BadParameter("--update would replace the log that is heard; give a baseline of its own")
+
+
+def _baseline(options: WalkOptions) -> "Log | None":
+    """The log of the baseline, looked at before anything is walked."""
+    from surefoot.apps.bridge.against import known
+
+    assert options.against is not None
+    return known(options.against, options.update)
+
+
+def _hold(options: WalkOptions, baseline: Path, before: "Log | None", log: Path) -> int:
+    """Hold a log against its baseline, say it, and make it the baseline where that is asked; gives the exit code."""
+    from surefoot.apps.bridge.against import held, update
+    from surefoot.scenarios.show.compare import TOLERANCE
+
+    found = None if before is None else held(before, log, TOLERANCE if options.tolerance is None else options.tolerance)
+    if options.as_json:
+        typer.echo(json.dumps({"log": str(log), "agrees": None} if found is None else found.to_json(), allow_nan=False))
+    else:
+        typer.echo("\n".join(() if found is None else found.lines()) or f"no baseline at {baseline} yet")
+        typer.echo(f"log: {log}")
+    if not options.update:
+        return 0 if found is not None and found.agrees else MISSED
+    if found is None or not found.agrees:
+        update(baseline, log)
+        typer.echo(f"written: {baseline}", err=options.as_json)
+    return 0
 
 
 def _on(address: str, options: WalkOptions, asked: list[str]) -> "tuple[str, Result]":

@@ -30,7 +30,10 @@ SOURCES: Declared[Any] = Declared(
 
 PLANT_NAMES: Declared[Any] = Declared(
     "surefoot.plants",
-    {"mujoco": "The simulated world of MuJoCo, with the true robot on the true ground"},
+    {
+        "mujoco": "The simulated world of MuJoCo, with the true robot on the true ground",
+        "log": "What a log holds up to a time, then the simulated world from the state of the log on",
+    },
 )
 """Names of ``plant.name``; `surefoot.scenarios.run.plant` brings the plants, which move the robot."""
 

@@ -334,7 +334,14 @@ class Agenda:
 
 PACKAGES = ("surefoot", "mujoco", "pin", "proxsuite", "qpsolvers", "daqp", "piqp", "numpy", "scipy", "mcap")
 CODE = ("planner", "wbc", "sim", "models", "scenarios", "studies", "apps", "native")
-READERS = ("scenarios/check", "scenarios/many", "scenarios/show", "studies/paper", "studies/campaigns")
+READERS = (
+    "scenarios/check",
+    "scenarios/many",
+    "scenarios/show",
+    "studies/paper",
+    "studies/campaigns",
+    "studies/incident",
+)
 """Folders of the code, and those in it that only read logs: no run depends on them."""
 
 _VERSION = re.compile(r"^Version: (\S+)$", re.MULTILINE)

@@ -6,6 +6,7 @@ import numpy as np
 from numpy.typing import NDArray
 
 from surefoot.errors import ParameterError
+from surefoot.forces import Push
 from surefoot.joints import JointCommand
 from surefoot.parts.guard import Guard
 from surefoot.parts.plugins import Registry
@@ -85,13 +86,28 @@ def full_loop(walk: Walk, writer: LogWriter, parts: Parts | None = None) -> Clos
 
 def simulated(walk: Walk) -> World:
     """The simulated world of MuJoCo, with the true robot on the true ground, its motors and the scenario's pushes."""
+    return _world(walk, walk.pushes, _drives(walk))
+
+
+def _drives(walk: Walk) -> Drives | None:
+    """The motors of a walk; None for ones that give each torque at once."""
     errors = walk.hardware.drives
-    drives = None if errors == IDEAL else Drives(walk.robot, errors, walk.rates.physics, walk.seed)
-    rate, size = walk.rates.physics, walk.size
-    return World(walk.true_robot, walk.ground.true_terrain, rate, walk.pushes, size, drives)
+    return None if errors == IDEAL else Drives(walk.robot, errors, walk.rates.physics, walk.seed)
 
 
-PLANTS: Registry[PlantMaker] = PLANT_NAMES.filled(None, {"mujoco": simulated})
+def _world(walk: Walk, pushes: tuple[Push, ...], drives: Drives | None) -> World:
+    return World(walk.true_robot, walk.ground.true_terrain, walk.rates.physics, pushes, walk.size, drives)
+
+
+def _going_on(walk: Walk, **options: object) -> Plant:
+    """What a log holds, and then the simulated world from its state on."""
+    from surefoot.scenarios.run.logged import log_plant
+
+    drives = _drives(walk)
+    return log_plant(walk, _world(walk, (), drives), drives, options)
+
+
+PLANTS: Registry[PlantMaker] = PLANT_NAMES.filled(None, {"mujoco": simulated, "log": _going_on})
 """Makers of a plant from a walk and ``plant.options``, by the value of ``plant.name``."""
 
 

@@ -61,8 +61,12 @@ _UNSAID = re.compile(r"(?m)^  (?:encoder_noise|gyro_noise|accelerometer_noise|wr
 """Lines of the group `sensing` in logs of versions without presets, of which none had any other value."""
 
 
-def attached_scenario(path: str) -> tuple[str, str]:
+def attached_scenario(path: str, own_parts: bool = False) -> tuple[str, str]:
     """Text of the scenario that a log carries, and what to call it in messages.
+
+    Args:
+        path: of the log.
+        own_parts: whether Surefoot's own parts may stand for those that a program has brought.
 
     Raises:
         ScenarioError: the log cannot be read, or carries none.
@@ -77,7 +81,7 @@ def attached_scenario(path: str) -> tuple[str, str]:
     except (AttributeError, KeyError, TypeError, ValueError, RecursionError):
         what = f"{path}: carries no readable {provenance.SCENARIO_FILE}, so it cannot be run again"
         raise ScenarioError([f"{what}; give a log that `surefoot run` has written"]) from None
-    if provenance.PARTS_RECORD in log.metadata:
+    if provenance.PARTS_RECORD in log.metadata and not own_parts:
         parts = ", ".join(f"{name} {part}" for name, part in log.metadata[provenance.PARTS_RECORD].items())
         what = f"{path}: was made by a program with parts of its own ({parts}), which no log can carry"
         raise ScenarioError([f"{what}; run that program again"])
@@ -322,6 +326,15 @@ def _place_files(source: Source, folder: Path) -> None:
         source.value["robot"] = os.path.normpath(folder.absolute() / robot)
     if seat is not None and isinstance(seat.get("policy"), str):
         seat["policy"] = os.path.normpath(folder.absolute() / seat["policy"])
+    if isinstance(log := _log_option(source.value).get("log"), str):
+        _log_option(source.value)["log"] = os.path.normpath(folder.absolute() / log)
+
+
+def _log_option(values: dict[str, Any]) -> dict[str, Any]:
+    """The options of a plant that goes on from a log, as they are written; empty of another one."""
+    plant = values.get("plant")
+    options = plant.get("options") if isinstance(plant, dict) and plant.get("name") == "log" else None
+    return options if isinstance(options, dict) else {}
 
 
 def _seat(values: Any) -> dict[str, Any] | None:

@@ -1,6 +1,6 @@
 """Differences of two runs, channel by channel, bit by bit and by a tolerance; and of what their logs were made of."""
 
-from collections.abc import Callable, Collection, Iterator, Mapping, Sequence
+from collections.abc import Callable, Collection, Iterable, Iterator, Mapping, Sequence
 from dataclasses import dataclass
 from functools import partial
 from operator import itemgetter
@@ -78,7 +78,15 @@ class ChannelDifference:
     @property
     def time(self) -> float | None:
         """First time at which the channels part, by value or because one has no message there [s]."""
-        times = [time for time in (self.exact.time if self.exact else None, self.only_one) if time is not None]
+        return self._first_of(self.exact)
+
+    @property
+    def beyond(self) -> float | None:
+        """First time at which they part by more than the tolerance, or because one has no message there [s]."""
+        return self._first_of(self.tolerated)
+
+    def _first_of(self, value: FirstDifference | None) -> float | None:
+        times = [time for time in (value.time if value else None, self.only_one) if time is not None]
         return min(times, default=None)
 
 
@@ -169,9 +177,19 @@ class _Fold:
         return ChannelDifference(topic, counts, self._exact, self._tolerated, alone, self._layout)
 
 
+def disagreeing(channels: Iterable[ChannelDifference]) -> tuple[ChannelDifference, ...]:
+    """Those of the channels that do not agree within the tolerance, in the order in which they part by more."""
+    found = (channel for channel in channels if not channel.agrees)
+    return tuple(sorted(found, key=lambda one: _place(one.beyond, one.topic)))
+
+
 def _order(found: ChannelDifference) -> tuple[float, int]:
-    place = _CHAIN.index(found.topic) if found.topic in _CHAIN else len(_CHAIN)
-    return (np.inf if found.time is None else found.time, place)
+    return _place(found.time, found.topic)
+
+
+def _place(time: float | None, topic: str) -> tuple[float, int]:
+    place = _CHAIN.index(topic) if topic in _CHAIN else len(_CHAIN)
+    return (np.inf if time is None else time, place)
 
 
 def _paired(a: NDArray[np.int64], b: NDArray[np.int64]) -> tuple[NDArray[np.intp], NDArray[np.intp]]:

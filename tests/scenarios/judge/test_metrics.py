@@ -33,7 +33,8 @@ NAMES = (
 """Names of the public contract."""
 
 WITHOUT_A_VALUE = (
-    "fall_time fall_warning place_error heading_error waypoints_missed velocity_error yaw_rate_error stair_edge_margin_min "
+    "fall_time fall_warning place_error heading_error waypoints_missed velocity_error yaw_rate_error "
+    "stair_edge_margin_min "
     "coupling_error memory_growth com_estimation_error_rms velocity_estimation_error_rms "
     "tilt_estimation_error_rms estimation_drift estimation_yaw estimation_yaw_rate estimation_nees "
     "contact_estimation_error command_age commands_missed states_missed commands_limited "

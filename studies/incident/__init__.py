@@ -1,0 +1,1 @@
+"""From the log of an incident to the smallest scenario that shows it again."""

@@ -1,0 +1,132 @@
+"""Falls of ten kinds come back from their logs, by fewer causes; `check` is red with them and green without."""
+
+import json
+import subprocess
+import sys
+from pathlib import Path
+
+import numpy as np
+import pytest
+import yaml
+from needs import POLICY
+
+import surefoot
+from surefoot.studies.incident.harm import harm_of
+from surefoot.wbc.controller import WholeBodyController
+
+sys.path.append(str(Path(__file__).parents[2] / "incidents"))
+
+from falls import FALLS, scenario_of
+from table import told
+
+pytestmark = pytest.mark.physics
+
+FEW = ("push", "G1, a policy")
+"""Kinds that are tried with every change: two robots, one under a policy."""
+
+
+def comes_back(kind, folder, seconds=None):
+    """Hold what all incidents have in common."""
+    if kind.endswith("a policy"):
+        POLICY.or_skip()
+    one = told(kind, folder, seconds)
+    found = one.found
+    assert found.comes_back, kind
+    assert one.again.same, kind
+    assert len(found.needed) < len(found.causes), kind
+    assert not any(found.without(cause).same for cause in found.needed), kind
+    assert one.red.status == "failed", kind
+    assert any(first.passed and second.status == "same" for _, first, second in one.green), kind
+    return one
+
+
+@pytest.mark.parametrize("kind", [pytest.param(kind, marks=() if kind in FEW else pytest.mark.long) for kind in FALLS])
+def test_a_fall_comes_back_by_fewer_causes(kind, tmp_path):
+    one = comes_back(kind, tmp_path)
+    assert one.found.begin == 0.0
+    assert one.found.again.likeness.parts is None, "run again it is the same to the bit"
+
+
+@pytest.mark.parametrize("kind", ["push", pytest.param("G1, a rule left out", marks=pytest.mark.long)])
+def test_it_begins_in_the_state_of_the_log(kind, tmp_path):
+    one = comes_back(kind, tmp_path, 1.0)
+    assert one.found.begin == pytest.approx(one.found.incident.harm.time - 1.0, abs=1e-6)
+    assert one.found.again.likeness.distance < 1e-3
+    keys = yaml.safe_load(one.path.read_text())["plant"]
+    assert keys["options"]["until"] == one.found.begin
+    assert not Path(keys["options"]["log"]).is_absolute()
+
+
+def test_live_pushes_come_back_by_the_command_in_a_process_of_its_own(tmp_path):
+    scenario = surefoot.load("walk", {"gait.steps": 4, "sensing.source": "truth"})
+    with surefoot.Simulation(scenario, log=tmp_path / "live.mcap") as sim:
+        while sim.time < 1.6:
+            sim.step()
+        sim.push((0.0, 5.0, 0.0), duration=0.1)
+        while sim.time < 2.2:
+            sim.step()
+        sim.push((0.0, -1700.0, 0.0), duration=0.1)
+        while not sim.done:
+            sim.step()
+        assert sim.fell
+    (tmp_path / "my tests").mkdir()
+    words = ["scenario", "from", "live.mcap", "--out", "my tests/thrown over.yaml", "--json"]
+    done = subprocess.run(
+        [sys.executable, "-m", "surefoot", *words], cwd=tmp_path, capture_output=True, text=True, check=False
+    )
+    assert done.returncode == 0, done.stderr
+    told_by_it = json.loads(done.stdout)
+    assert told_by_it["starts"][0]["likeness"]["to_the_bit"]
+    assert [one["needed"] for one in told_by_it["causes"] if one["cause"].startswith("pushes")] == [False, True]
+    loaded = surefoot.load(str(tmp_path / "my tests/thrown over.yaml"))
+    assert loaded.name == "thrown-over"
+    assert loaded.duration > told_by_it["incident"]["time"] + 1.5
+    assert len(loaded.pushes) == 1
+    again = subprocess.run(
+        [sys.executable, "-m", "surefoot", *words], cwd=tmp_path, capture_output=True, text=True, check=False
+    )
+    assert again.returncode == 2
+    assert "exists already" in again.stderr
+
+
+def test_a_fault_of_a_program_does_not_come_back_with_sound_parts(tmp_path):
+    class Weak(WholeBodyController):
+        """Gives no torque for a while, which no scenario tells."""
+
+        def update(self, *given):
+            report = super().update(*given)
+            self.ticks = getattr(self, "ticks", 0) + 1
+            if 700 < self.ticks < 900:
+                report.torque[:] = 0.0
+            return report
+
+    values = {"gait.steps": 3, "sensing.source": "truth", "motors.noise": 0.05}
+    parts = surefoot.Parts(controller=Weak)
+    log = surefoot.run(surefoot.load("walk", values), out=tmp_path, parts=parts).log
+    before = harm_of(surefoot.read(log), {})
+    assert before is not None
+    words = ["scenario", "from", str(log), "--out", "weak.yaml", "--json"]
+    done = subprocess.run(
+        [sys.executable, "-m", "surefoot", *words], cwd=tmp_path, capture_output=True, text=True, check=False
+    )
+    found = json.loads(done.stdout)
+    assert "parts of a program (controller)" in found["notes"][0]
+    begins = [one["begin"] for one in found["starts"]]
+    assert done.returncode == 1, "the sound controller does not fall, from wherever it takes over"
+    assert begins == sorted(begins)
+    assert begins[-1] == pytest.approx(before.time - 0.5, abs=1e-6)
+    assert not any(one["same"] for one in found["starts"])
+    assert not (tmp_path / "weak.yaml").exists()
+
+
+def test_what_falls_otherwise_is_another_incident(tmp_path):
+    """The control of the tests above: the same push the other way is no return of the fall."""
+    scenario = scenario_of("push", tmp_path)
+    log = surefoot.read(surefoot.run(scenario, out=tmp_path / "one").log)
+    pushes = [one.model_dump(exclude_none=True) for one in scenario.pushes]
+    turned = [pushes[0], {**pushes[1], "direction": pushes[1]["direction"] + np.pi}]
+    other = surefoot.load(str(log.path), {"pushes": turned})
+    fallen = surefoot.read(surefoot.run(other, out=tmp_path / "two").log)
+    one, two = harm_of(log, {}), harm_of(fallen, {})
+    assert one is not None
+    assert not one.same(two)

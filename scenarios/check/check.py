@@ -28,9 +28,6 @@ from surefoot.scenarios.setup.load import load
 OWN = Path(catalogue.__file__).resolve().parents[1] / "baselines"
 """Baselines of the catalogue."""
 
-_NO_SETTINGS = {"name", "criteria", "seeds", "margins"}
-"""Keys that do not shape a run."""
-
 _MEANT = re.compile(r"\.ya?ml|baseline", re.IGNORECASE)
 """In the name of a file that may be a baseline, also of one with a mistyped ending."""
 
@@ -60,6 +57,10 @@ INCONCLUSIVE: tuple[CheckStatus, ...] = ("could not run", "could not write", "un
 """Statuses in which the run says nothing for or against the walk."""
 
 
+UNSHAPING = ("name", "criteria", "seeds", "margins", "requirements")
+"""Keys of a scenario that do not shape its run."""
+
+
 @dataclass(frozen=True, slots=True)
 class Case:
     """A scenario, fit to run, that a user referred to.
@@ -79,7 +80,7 @@ class Case:
     @property
     def settings(self) -> str:
         """Settings that shape the run and are not defaults, for which a baseline is good."""
-        chosen = self.scenario.model_dump(mode="json", exclude_defaults=True, exclude=_NO_SETTINGS)
+        chosen = self.scenario.model_dump(mode="json", exclude_defaults=True, exclude=set(UNSHAPING))
         return yaml.safe_dump(chosen, sort_keys=False)
 
 
@@ -151,10 +152,15 @@ def _unfolded(reference: str) -> list[str]:
     folder = Path(reference)
     if reference in catalogue.OURS or not folder.is_dir():
         return [reference]
-    files = sorted(str(path) for path in folder.iterdir() if _is_scenario(path))
+    files = scenario_files(folder)
     if not files:
         raise ScenarioError([f"{reference}: holds no scenario; give a folder with *.yaml files"])
     return files
+
+
+def scenario_files(folder: Path) -> list[str]:
+    """The scenario files of a folder in order."""
+    return sorted(str(path) for path in folder.iterdir() if _is_scenario(path))
 
 
 def strays(case: Case) -> tuple[Path, ...]:

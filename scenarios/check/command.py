@@ -63,6 +63,7 @@ def check(options: CheckOptions) -> None:
         from surefoot.scenarios.check import check as checking
         from surefoot.scenarios.check import record, report, seeds
         from surefoot.scenarios.check.annotations import annotations
+        from surefoot.scenarios.check.requirements import Requirements
         from surefoot.scenarios.many.slots import InterruptedRunsError
         from surefoot.scenarios.output import refuse_existing
         from surefoot.scenarios.run.processes import cores
@@ -82,11 +83,15 @@ def check(options: CheckOptions) -> None:
     except KeyboardInterrupt:
         typer.echo("interrupted", err=True)
         raise typer.Exit(INTERRUPTED) from None
+    requirements = Requirements.of(found)
     if options.junit is not None:
         report.write(options.junit, report.junit(found), options.force)
     if options.markdown is not None:
-        report.write(options.markdown, report.markdown(found).encode(), options.force)
+        report.write(options.markdown, report.markdown(found, requirements).encode(), options.force)
     for line in annotations(found) if options.annotations else ():
         typer.echo(line)
-    typer.echo(json.dumps(record.to_json(found), allow_nan=False) if options.as_json else report.summary(found))
+    if options.as_json:
+        typer.echo(json.dumps(record.to_json(found, requirements), allow_nan=False))
+    else:
+        typer.echo("\n".join([*requirements.lines, report.summary(found)]))
     raise typer.Exit(checking.exit_code(found))

@@ -9,6 +9,7 @@ import typer
 
 from surefoot.scenarios.check.baseline import Move
 from surefoot.scenarios.check.check import Checked, CheckStatus
+from surefoot.scenarios.check.requirements import PROPERTY, Requirements
 from surefoot.scenarios.check.signs import FAR, Parting
 from surefoot.scenarios.check.wording import seed_lines
 from surefoot.scenarios.judge.verdict import shown_unit, value_text
@@ -90,13 +91,13 @@ def summary(checked: Sequence[Checked]) -> str:
     )
 
 
-def markdown(checked: Sequence[Checked]) -> str:
+def markdown(checked: Sequence[Checked], requirements: Requirements) -> str:
     """A summary for the page of a CI run."""
     rows = ["| scenario | result | what |", "|---|---|---|"]
     for one in checked:
         what = "<br>".join(line.replace("|", "\\|") for line in lines_of(one))
         rows.append(f"| {one.case.scenario.name} | {'✅' if one.passed else '❌'} {one.status} | {what} |")
-    return "\n".join([f"### surefoot check: {summary(checked)}", "", *rows, ""])
+    return "\n".join([f"### surefoot check: {summary(checked)}", "", *rows, "", *requirements.markdown])
 
 
 def junit(checked: Sequence[Checked]) -> bytes:
@@ -109,6 +110,10 @@ def junit(checked: Sequence[Checked]) -> bytes:
         name, time = one.case.scenario.name, f"{one.took:.3f}"
         case = Xml.SubElement(suite, "testcase", classname="surefoot", name=name, time=time)
         text = "\n".join(lines_of(one))
+        if one.case.scenario.requirements:
+            properties = Xml.SubElement(case, "properties")
+            for requirement in dict.fromkeys(one.case.scenario.requirements):
+                Xml.SubElement(properties, "property", name=PROPERTY, value=requirement)
         if not one.passed:
             kind = "error" if one.status in _ERRORS else "failure"
             Xml.SubElement(case, kind, message=one.status).text = text

@@ -7,7 +7,7 @@ import time
 from collections.abc import Callable, Mapping, Sequence
 from dataclasses import dataclass, replace
 from pathlib import Path
-from typing import Any, Literal
+from typing import TYPE_CHECKING, Any, Literal
 
 import yaml
 
@@ -24,6 +24,9 @@ from surefoot.scenarios.log import read
 from surefoot.scenarios.run.processes import side_by_side
 from surefoot.scenarios.run.run import run_scenario
 from surefoot.scenarios.setup.load import load
+
+if TYPE_CHECKING:
+    from surefoot.scenarios.check.beside import Beside
 
 OWN = Path(catalogue.__file__).resolve().parents[1] / "baselines"
 """Baselines of the catalogue."""
@@ -99,6 +102,7 @@ class Checked:
         verdict: on the run, None when there was none.
         sampled: what runs of several seeds say, None when there was one.
         took: time on the wall's clock of the run and of its comparison [s].
+        beside: the run before, of a history in which this one parts from it.
     """
 
     case: Case
@@ -111,6 +115,7 @@ class Checked:
     verdict: Verdict | None = None
     sampled: Sampled | None = None
     took: float = 0.0
+    beside: "Beside | None" = None
 
     @property
     def metrics(self) -> Mapping[str, Any]:
@@ -247,6 +252,7 @@ def check(
     jobs: int,
     on_done: Callable[[Checked], None] = lambda _: None,
     update: bool = False,
+    keep: Callable[[Checked], Checked] = lambda checked: checked,
 ) -> tuple[Checked, ...]:
     """Run cases side by side; the logs of those that are the same as their baselines are not kept.
 
@@ -255,6 +261,7 @@ def check(
         out: directory of their logs.
         jobs: runs at once.
         on_done: called with each as it is done, and again with what `update` made of it.
+        keep: called with each while its log is there; gives what is told of it.
         update: whether to write the baselines anew of the runs that met their criteria and are not the same.
 
     Returns:
@@ -262,6 +269,7 @@ def check(
     """
     done: dict[str, Checked] = {}
     for checked in side_by_side(run_case, [(case, out) for case in chosen], jobs, _lost):
+        checked = keep(checked)
         if checked.status == "same" and checked.log is not None:
             shutil.rmtree(checked.log.parent)
             checked = replace(checked, log=None)

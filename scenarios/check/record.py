@@ -2,6 +2,7 @@
 
 import math
 from collections.abc import Sequence
+from dataclasses import asdict
 from typing import Any
 
 from surefoot.scenarios.check.baseline import Move
@@ -47,6 +48,7 @@ def scenario_json(one: Checked) -> dict[str, Any]:
         "seeds": None if one.sampled is None else _seeds(one.sampled),
         "log": None if one.log is None else shown(one.log),
         "took": one.took,
+        "beside": None if one.beside is None else asdict(one.beside),
     }
 
 

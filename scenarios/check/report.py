@@ -9,6 +9,7 @@ import typer
 
 from surefoot.scenarios.check.baseline import Move
 from surefoot.scenarios.check.check import Checked, CheckStatus
+from surefoot.scenarios.check.pictures import Gallery
 from surefoot.scenarios.check.requirements import PROPERTY, Requirements
 from surefoot.scenarios.check.signs import FAR, Parting
 from surefoot.scenarios.check.wording import seed_lines
@@ -62,6 +63,12 @@ def lines_of(checked: Checked) -> list[str]:
     return lines
 
 
+def _with_channels(checked: Checked) -> list[str]:
+    """The same, and the channels that part first, where a history has the run before."""
+    channels = () if checked.beside is None else checked.beside.channels
+    return [*lines_of(checked), *(f"parts first of the channels: {text}" for text in channels)]
+
+
 def _figures(partings: Sequence[Parting]) -> list[str]:
     """Options by which `surefoot plot` shows each; none of them for the page of all figures."""
     shown = []
@@ -77,7 +84,7 @@ def print_checked(checked: Checked) -> None:
     status = typer.style(checked.status, fg=color, bold=True)
     typer.echo(f"{checked.case.scenario.name}: {status}")
     lines = {"written": [str(checked.case.baseline)], "could not write": list(checked.reasons[-1:])}
-    for line in lines.get(checked.status, lines_of(checked)):
+    for line in lines.get(checked.status, _with_channels(checked)):
         typer.echo(f"  - {line}")
 
 
@@ -91,13 +98,15 @@ def summary(checked: Sequence[Checked]) -> str:
     )
 
 
-def markdown(checked: Sequence[Checked], requirements: Requirements) -> str:
+def markdown(checked: Sequence[Checked], requirements: Requirements, gallery: Gallery) -> str:
     """A summary for the page of a CI run."""
     rows = ["| scenario | result | what |", "|---|---|---|"]
     for one in checked:
         what = "<br>".join(line.replace("|", "\\|") for line in lines_of(one))
         rows.append(f"| {one.case.scenario.name} | {'✅' if one.passed else '❌'} {one.status} | {what} |")
-    return "\n".join([f"### surefoot check: {summary(checked)}", "", *rows, "", *requirements.markdown])
+    return "\n".join(
+        [f"### surefoot check: {summary(checked)}", "", *rows, "", *gallery.markdown(checked), *requirements.markdown]
+    )
 
 
 def junit(checked: Sequence[Checked]) -> bytes:
@@ -109,7 +118,7 @@ def junit(checked: Sequence[Checked]) -> bytes:
     for one in checked:
         name, time = one.case.scenario.name, f"{one.took:.3f}"
         case = Xml.SubElement(suite, "testcase", classname="surefoot", name=name, time=time)
-        text = "\n".join(lines_of(one))
+        text = "\n".join(_with_channels(one))
         if one.case.scenario.requirements:
             properties = Xml.SubElement(case, "properties")
             for requirement in dict.fromkeys(one.case.scenario.requirements):

@@ -1,6 +1,6 @@
 """``surefoot new``: a package of one's own, or a workflow for CI, to start from."""
 
-from enum import Enum
+from enum import StrEnum
 from pathlib import Path
 from shlex import quote
 from typing import Annotated
@@ -8,7 +8,7 @@ from typing import Annotated
 import typer
 
 
-class Server(str, Enum):
+class Server(StrEnum):
     """A kind of CI server."""
 
     GITHUB = "github"

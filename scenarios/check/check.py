@@ -252,7 +252,7 @@ def check(
     jobs: int,
     on_done: Callable[[Checked], None] = lambda _: None,
     update: bool = False,
-    keep: Callable[[Checked], Checked] = lambda checked: checked,
+    keep: Callable[[Checked], Checked] | None = None,
 ) -> tuple[Checked, ...]:
     """Run cases side by side; the logs of those that are the same as their baselines are not kept.
 
@@ -269,7 +269,7 @@ def check(
     """
     done: dict[str, Checked] = {}
     for checked in side_by_side(run_case, [(case, out) for case in chosen], jobs, _lost):
-        checked = keep(checked)
+        checked = checked if keep is None else keep(checked)
         if checked.status == "same" and checked.log is not None:
             shutil.rmtree(checked.log.parent)
             checked = replace(checked, log=None)

@@ -69,6 +69,7 @@ def check(options: CheckOptions) -> None:
         from surefoot.scenarios.check import check as checking
         from surefoot.scenarios.check import record, report, seeds
         from surefoot.scenarios.check.annotations import annotations
+        from surefoot.scenarios.check.history import Keeper
         from surefoot.scenarios.check.pictures import Gallery
         from surefoot.scenarios.check.requirements import Requirements
         from surefoot.scenarios.many.slots import InterruptedRunsError
@@ -79,11 +80,7 @@ def check(options: CheckOptions) -> None:
         if report_file is not None:
             refuse_existing(report_file, options.force)
     chosen = checking.cases(options.scenarios or (), options.baselines, overrides(options.set_, policy=options.policy))
-    keep: Callable[[checking.Checked], checking.Checked] = lambda checked: checked
-    if options.history is not None:
-        from surefoot.scenarios.check.history import Keeper
-
-        keep = Keeper(options.history).keep
+    keep = None if options.history is None else Keeper(options.history).keep
     told: Callable[[checking.Checked], None] = (lambda _: None) if options.as_json else report.print_checked
     running = seeds.Running(options.out, options.jobs or cores(), options.seeds, options.cluster, options.update)
     try:

@@ -175,12 +175,12 @@ def _walk(walk: Walk, names: Mapping[int, str]) -> str:
 
 
 _LEGEND = (
-    "Over the checks in order: grey is what a check allows about the first value since a change, a dashed line a bound of "
-    "the scenario, a number one of the commits above. A cross is a check that did not pass."
+    "Over the checks in order: grey is what a check allows about the first value since a change. A dashed line is a "
+    "bound of the scenario, a number one of the commits above, a cross a check that did not pass."
 )
 _CLOCK = (
-    "Grey is the median of each level. A shift of level may be the program's or the machine's, so no commit is marked for "
-    "it. It is told from noise by at least four checks."
+    "Grey is the median of each level. A shift of level may be the program's or the machine's, so no commit is marked "
+    "for it. It is told from noise by at least four checks."
 )
 
 

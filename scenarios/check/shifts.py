@@ -18,8 +18,8 @@ LEAST = 4
 PENALTY = 24.0
 """Sum of squares, over the noise's variance, that a shift must save [-].
 
-Of 4000 series of 60 values without a shift 0.2 % are told to have one, and 1 % of noise with Student's t of 3 degrees of
-freedom (`tests/scenarios/check/test_shifts.py`).
+Of series of 60 or 200 values without a shift fewer than 0.5 % are told to have one, and fewer than 2 % where the noise
+is Student's t of 3 degrees of freedom. Of noise that lasts, with a correlation of 0.5 from check to check, a third are.
 """
 
 LEAST_NOISE = 0.03

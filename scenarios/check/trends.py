@@ -3,6 +3,7 @@
 import math
 from collections.abc import Iterator, Mapping, Sequence
 from dataclasses import dataclass
+from itertools import pairwise
 from typing import Any
 
 import numpy as np
@@ -158,7 +159,7 @@ def _draw_values(axes: Axes, trend: Trend, values: np.ndarray[Any, Any]) -> None
 
 def _draw_allowed(axes: Axes, trend: Trend, values: np.ndarray[Any, Any], levels: Sequence[int]) -> None:
     """Draw what a check would allow about the first value since each change."""
-    for begin, end in zip(levels, levels[1:], strict=False):
+    for begin, end in pairwise(levels):
         found = np.flatnonzero(np.isfinite(values[begin:end]))
         if len(found):
             level = float(values[begin + found[0]])
@@ -172,7 +173,7 @@ def _draw_levels(axes: Axes, trend: Trend, values: np.ndarray[Any, Any]) -> None
     if not len(rows):
         return
     begins = [0, *shifts(values[rows].tolist()), len(rows)]
-    for begin, end in zip(begins, begins[1:], strict=False):
+    for begin, end in pairwise(begins):
         level = float(np.median(values[rows[begin:end]]))
         axes.plot([rows[begin] - 0.5, rows[end - 1] + 0.5], [level, level], color=GREY, linewidth=1.2, zorder=1)
 

@@ -241,9 +241,8 @@ def main(kind: str, wheel: Path) -> None:
                 origin.commit(words, "change")
             branch, event = ("change", "pull_request") if change else ("main", "push")
             job, clone = origin.github(event, branch) if kind == "github" else origin.gitlab(branch)
-            print(
-                f"== {words}: {'red' if job.failed else 'green'} {job.steps}\n{job.output}\n{(clone / 'check.md').read_text()}"
-            )
+            print(f"== {words}: {'red' if job.failed else 'green'} {job.steps}\n{job.output}")
+            print((clone / "check.md").read_text())
         print(sorted(origin.files("surefoot-history")))
 
 

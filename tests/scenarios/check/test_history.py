@@ -160,9 +160,10 @@ def test_damage_is_told_and_takes_nothing_else_away(tmp_path, runs):
     folder = tmp_path / "history"
     kept(folder, runs, ["as it was", "longer"])
     good = len(read_lines(folder)[0])
+    first = next((folder / "checks").glob("*.jsonl")).read_text().splitlines()[0]
     for number, text in enumerate((
         "{", "[]", '{"format": 2}', '{"format": 1}', "NaN", "[" * 100_000, '{"format": 1, "took": 1e400}',
-        next((folder / "checks").glob("*.jsonl")).read_text().splitlines()[0].replace('"scenario": "', '"scenario": "../'),
+        first.replace('"scenario": "', '"scenario": "../'),
     )):  # fmt: skip
         (folder / "checks" / f"z{number}.jsonl").write_text(text)
     (folder / "checks" / "folder.jsonl").mkdir()

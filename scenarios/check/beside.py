@@ -54,7 +54,8 @@ class Beside:
 
     Attributes:
         commit: at which that was checked; empty outside of a repository.
-        time: of the pictures: the end of the stage in which the runs first part, or of the shorter run [s].
+        time: of the pictures: the end of the stage in which the runs first part, or of the shorter run; where no stage
+            parts, when the CoMs are farthest apart [s].
         channels: that part first, a text each with place, time and both values.
         pictures: paths of the two pictures in the folder of the history, that of the run before first; () without any.
         note: why there are none.
@@ -79,7 +80,7 @@ def beside(before: Log, now: Log, partings: Sequence[Parting], history: Path, na
         commit: at which the run before was checked.
     """
     channels = parting_first(before, now)
-    time = _moment(before, now, partings, channels)
+    time = _moment(before, now, partings)
     found = Beside(commit, time, tuple(map(_text, channels)))
     try:
         drawn = draw(before, now, time)
@@ -116,12 +117,18 @@ def _text(one: ChannelDifference) -> str:
     return f"{one.topic} {at.field} at {at.time:.3f} s: {before} -> {now}"
 
 
-def _moment(before: Log, now: Log, partings: Sequence[Parting], channels: Sequence[ChannelDifference]) -> float:
-    """The end of the stage in which two runs first part, or when a channel does, as far as both logs reach [s]."""
+def _moment(before: Log, now: Log, partings: Sequence[Parting]) -> float:
+    """The end of the stage in which two runs first part, as far as both logs reach; without one see `_farthest` [s]."""
     last = min(log.time_range()[1] for log in (before, now))
-    if partings:
-        return min(partings[0].end, last)
-    return min(*(_time(one) or last for one in channels), last, last)
+    return min(partings[0].end if partings else _farthest(before, now), last)
+
+
+def _farthest(before: Log, now: Log) -> float:
+    """Time at which the CoMs of two runs are farthest apart [s]."""
+    both = [log["/truth"] for log in (before, now)]
+    rows = min(map(len, both))
+    apart = np.linalg.norm(both[1].field("com")[:rows] - both[0].field("com")[:rows], axis=1)
+    return float(both[0].time[np.argmax(np.nan_to_num(apart))]) if rows else 0.0
 
 
 def draw(before: Log, now: Log, time: float) -> list[Image]:

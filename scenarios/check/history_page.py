@@ -144,7 +144,8 @@ def _pair(history: History, change: Change) -> str:
         why = held.note if held is not None and held.note else "no pictures: the history has none of this change"
         return tag("p", escape(f"{why[:1].upper()}{why[1:]}."), kind="note")
     before = next((line.commit.short for line in history.lines if line.commit.name == held.commit), "")
-    words = (f"before, {before}" if before else "before", f"now, {change.now.commit.short}".rstrip(", "))
+    good = "before" if change.now.passed else "last good"
+    words = (f"{good}, {before}" if before else good, f"now, {change.now.commit.short}".rstrip(", "))
     shown = []
     for path, word in zip(paths, words, strict=True):
         data = base64.b64encode(path.read_bytes()).decode()

@@ -6,6 +6,7 @@ from dataclasses import dataclass
 from pathlib import Path
 from urllib.parse import quote
 
+from surefoot.scenarios.check.beside import Beside
 from surefoot.scenarios.check.check import Checked
 from surefoot.scenarios.check.lines import Commit
 from surefoot.scenarios.output import shown
@@ -32,35 +33,28 @@ class Gallery:
         way = os.path.relpath(history, markdown.parent)
         return cls(address.rstrip("/") if address else quote(shown(Path(way).as_posix())))
 
-    def markdown(self, checked: Sequence[Checked]) -> list[str]:
-        """Lines on each run that is not as it should be, with the last one beside it that was."""
-        red = [one for one in checked if not one.passed and one.now is not None]
-        lines = [line for one in red for line in self._beside(one)]
-        if red and not self.address:
-            lines.append(
-                "No pictures: `surefoot check --history FOLDER` keeps how runs moved, to show one beside another.\n"
-            )
-        return lines
+    def markdown(self, one: Checked) -> list[str]:
+        """Lines on a run that is not as it should be, with the last one beside it that was."""
+        return [] if one.passed or one.beside is None or not self.address else [*self._beside(one, one.beside)]
 
-    def _beside(self, one: Checked) -> Iterator[str]:
-        name, held = one.case.scenario.name, one.beside
-        if not self.address or (held is None and not one.moves and not one.partings):
-            return
-        yield f"#### {name}"
-        yield ""
-        if held is None:
-            yield "No pictures: the history has no run before that is another.\n"
-            return
+    def note(self, checked: Sequence[Checked]) -> list[str]:
+        """A line where a run has moved and there is no history that could show how."""
+        red = any(not one.passed and (one.moves or one.partings) for one in checked)
+        what = "No pictures: `surefoot check --history FOLDER` keeps how runs moved, to show one beside another."
+        return [what, ""] if red and not self.address else []
+
+    def _beside(self, one: Checked, held: Beside) -> Iterator[str]:
         before = f"last good: {Commit(held.commit).short}" if held.commit else "last good"
         if held.pictures:
-            pictures = (
-                self._picture(path, f"{name}, {what}")
-                for path, what in zip(held.pictures, (before, "now"), strict=True)
+            yield "<table>"
+            heads = (f'<th width="50%">{word}</th>' for word in (before, "now"))
+            yield f"<tr>{''.join(heads)}</tr>"
+            name = one.case.scenario.name
+            cells = (
+                self._picture(*each) for each in zip(held.pictures, (f"{name} before", f"{name} now"), strict=True)
             )
-            yield f"| {before} | now |"
-            yield "|---|---|"
-            yield f"| {' | '.join(pictures)} |"
-            yield ""
+            yield f"<tr>{''.join(cells)}</tr>"
+            yield "</table>\n"
             yield f"Both at {held.time:.3f} s, by one camera.\n"
         elif held.note:
             yield f"{held.note[:1].upper()}{held.note[1:]}.\n"
@@ -70,10 +64,10 @@ class Gallery:
             yield ""
 
     def _picture(self, path: str, alt: str) -> str:
-        return f'<img src="{self.address}/{quote(path)}" alt="{alt}" width="{_WIDTH}">'
+        return f'<td><img src="{self.address}/{quote(path)}" alt="{alt}" width="{_WIDTH}"></td>'
 
 
 def _channel(text: str) -> str:
     """A channel's text with its place as code."""
     place, at, rest = text.partition(" at ")
-    return f"`{place}`{at}{rest}".replace("|", "\\|")
+    return f"`{place}`{at}{rest}"

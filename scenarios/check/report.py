@@ -1,5 +1,6 @@
 """The findings of a check, for a person, for a CI page and for a CI server."""
 
+import html
 import math
 from collections.abc import Sequence
 from pathlib import Path
@@ -99,14 +100,25 @@ def summary(checked: Sequence[Checked]) -> str:
 
 
 def markdown(checked: Sequence[Checked], requirements: Requirements, gallery: Gallery) -> str:
-    """A summary for the page of a CI run."""
-    rows = ["| scenario | result | what |", "|---|---|---|"]
+    """A summary for the page of a CI run: a narrow table, and what was found of each run that is not the same."""
+    rows = ["| scenario | result |", "|---|---|"]
+    rows += [f"| {one.case.scenario.name} | {_MARKS[one.passed]} {one.status} |" for one in checked]
+    lines = [f"### surefoot check: {summary(checked)}", "", *rows, ""]
     for one in checked:
-        what = "<br>".join(line.replace("|", "\\|") for line in lines_of(one))
-        rows.append(f"| {one.case.scenario.name} | {'✅' if one.passed else '❌'} {one.status} | {what} |")
-    return "\n".join(
-        [f"### surefoot check: {summary(checked)}", "", *rows, "", *gallery.markdown(checked), *requirements.markdown]
-    )
+        if found := lines_of(one):
+            lines += [f"#### {one.case.scenario.name}", "", *map(_item, found), "", *gallery.markdown(one)]
+    return "\n".join([*lines, *gallery.note(checked), *requirements.markdown])
+
+
+_MARKS = {True: "✅", False: "❌"}
+
+
+def _item(line: str) -> str:
+    """A line as an item of a list; a command is code, and text is no HTML."""
+    what, look, command = line.partition("look at: ")
+    if look and not what:
+        return f"- look at: `{command}`"
+    return f"- {html.escape(line, quote=False)}"
 
 
 def junit(checked: Sequence[Checked]) -> bytes:

@@ -112,7 +112,7 @@ def _elements(metrics: Mapping[str, Any]) -> Iterator[tuple[str, float | None]]:
             parts = {f"{name}.{part}": one for part, one in value.items()}
         for part, one in parts.items():
             if isinstance(one, bool) or (is_number(one) and math.isfinite(one)):
-                yield part, float(one)
+                yield part, int(one) if isinstance(one, bool) else one
 
 
 def picture(trend: Trend, changed: Mapping[int, str]) -> Figure:
@@ -162,8 +162,8 @@ def _draw_allowed(axes: Axes, trend: Trend, values: np.ndarray[Any, Any], levels
     for begin, end in pairwise(levels):
         found = np.flatnonzero(np.isfinite(values[begin:end]))
         if len(found):
-            level = float(values[begin + found[0]])
-            allowed = trend.scale * trend.allowed(level / trend.scale)
+            first = begin + int(found[0])
+            level, allowed = values[first], trend.scale * trend.allowed(trend.values[first] or 0.0)
             axes.fill_between([begin - 0.5, end - 0.5], level - allowed, level + allowed, color=paler(GREY, 0.7), lw=0)
 
 

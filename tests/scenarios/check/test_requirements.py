@@ -9,6 +9,7 @@ import pytest
 
 from surefoot.scenarios.check import report
 from surefoot.scenarios.check.check import PASSING, CheckStatus, cases, run_case
+from surefoot.scenarios.check.pictures import Gallery
 from surefoot.scenarios.check.requirements import Requirements, RequirementState, Shown, table
 
 pytestmark = pytest.mark.unit
@@ -71,11 +72,11 @@ def test_reports_have_them_and_those_of_a_scenario_without_are_as_they_were(stro
         {"name": "requirement", "value": "REQ-8"},
     ]
     shown = Requirements.of([replace(stroll, status="failed")])
-    assert "| REQ-7 | ❌ fail | stroll (failed) |" in report.markdown([stroll], shown)
+    assert "| REQ-7 | ❌ fail | stroll (failed) |" in report.markdown([stroll], shown, Gallery())
     (tmp_path / "stroll.yaml").write_text(STROLL.replace("requirements: [REQ-7, REQ-8]", ""))
     plain = run_case(*cases([str(tmp_path / "stroll.yaml")]), tmp_path / "runs")
     assert b"propert" not in report.junit([plain])
-    assert "equirement" not in report.markdown([plain], Requirements.of([plain]))
+    assert "equirement" not in report.markdown([plain], Requirements.of([plain]), Gallery())
 
 
 def test_they_do_not_shape_the_run_so_a_baseline_holds_with_others(stroll):

@@ -2,15 +2,18 @@
 
 A run repeats to the bit, so its metrics have no noise: a change is any difference by more than the tolerances of
 `surefoot check`. Each run is held against the first one since the last change, as a check would hold it against a
-baseline that is written anew at every change. So slow drifts are found when they leave the tolerance.
+baseline that is written anew at every change. So slow drifts are found when they leave the tolerance. Runs of several
+seeds are held against each other by the laws of chance of `findings`; the same seeds of the same program are the same.
 """
 
 from collections.abc import Callable, Iterable, Iterator, Sequence
 from dataclasses import dataclass
 
 from surefoot.scenarios.check.baseline import Baseline, Move
+from surefoot.scenarios.check.findings import Asked, Finding, findings
 from surefoot.scenarios.check.lines import Line
 from surefoot.scenarios.check.signs import Parting
+from surefoot.scenarios.judge.verdict import value_text
 from surefoot.scenarios.record.provenance import PACKAGES
 
 RunOf = Callable[[Line], Baseline | None]
@@ -87,4 +90,15 @@ def _change(before: Line, reference: Baseline | None, line: Line, run: Baseline 
     told = (*reference.others(line.scenario, run.settings), *reference.other_world(run))
     reasons = tuple(sentence.replace(" in the baseline", " before") for sentence in told)
     partings = tuple(reference.trace.partings(run.trace))
-    return Change(before, line, partings, tuple(reference.moves(run.metrics, line.criteria)), reasons, versions)
+    if reference.sample is None or run.sample is None:
+        return Change(before, line, partings, tuple(reference.moves(run.metrics, line.criteria)), reasons, versions)
+    found = findings(reference.sample, run.sample, Asked(line.criteria, line.margins))
+    moved = tuple(one for one in found if one.verdict not in ("same", "not decided"))
+    reasons += tuple(_seeds_text(one) for one in moved)
+    return Change(before, line, partings if moved else (), (), reasons, versions)
+
+
+def _seeds_text(one: Finding) -> str:
+    """A finding in a sentence."""
+    was, now = (value_text(one.name.partition("[")[0], value) for value in (one.before, one.now))
+    return f"{one.name} over seeds: {was} -> {now}, {one.verdict}"

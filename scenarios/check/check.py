@@ -7,7 +7,7 @@ import time
 from collections.abc import Callable, Mapping, Sequence
 from dataclasses import dataclass, replace
 from pathlib import Path
-from typing import TYPE_CHECKING, Any, Literal
+from typing import TYPE_CHECKING, Any, Literal, Protocol
 
 import yaml
 
@@ -246,13 +246,23 @@ def _first_and_most(partings: Sequence[Parting]) -> tuple[Parting, ...]:
     return (partings[0],) if most is partings[0] else (partings[0], most)
 
 
+class Keeping(Protocol):
+    """Keeps what a check finds, as a history does."""
+
+    def hold(self, checked: Checked) -> None:
+        """Take what is needed of the log of a run, which may go afterwards."""
+
+    def keep(self, checked: Checked) -> Checked:
+        """Keep what came of a scenario; gives what is told of it."""
+
+
 def check(
     chosen: Sequence[Case],
     out: Path,
     jobs: int,
     on_done: Callable[[Checked], None] = lambda _: None,
     update: bool = False,
-    keep: Callable[[Checked], Checked] | None = None,
+    keeping: Keeping | None = None,
 ) -> tuple[Checked, ...]:
     """Run cases side by side; the logs of those that are the same as their baselines are not kept.
 
@@ -261,7 +271,7 @@ def check(
         out: directory of their logs.
         jobs: runs at once.
         on_done: called with each as it is done, and again with what `update` made of it.
-        keep: called with each while its log is there; gives what is told of it.
+        keeping: takes what it needs of each log, and keeps each that is done.
         update: whether to write the baselines anew of the runs that met their criteria and are not the same.
 
     Returns:
@@ -269,7 +279,9 @@ def check(
     """
     done: dict[str, Checked] = {}
     for checked in side_by_side(run_case, [(case, out) for case in chosen], jobs, _lost):
-        checked = checked if keep is None else keep(checked)
+        if keeping is not None:
+            keeping.hold(checked)
+            checked = keeping.keep(checked)
         if checked.status == "same" and checked.log is not None:
             shutil.rmtree(checked.log.parent)
             checked = replace(checked, log=None)

@@ -80,9 +80,10 @@ def check(options: CheckOptions) -> None:
         if report_file is not None:
             refuse_existing(report_file, options.force)
     chosen = checking.cases(options.scenarios or (), options.baselines, overrides(options.set_, policy=options.policy))
-    keep = None if options.history is None else Keeper(options.history).keep
+    keeper = None if options.history is None else Keeper(options.history)
     told: Callable[[checking.Checked], None] = (lambda _: None) if options.as_json else report.print_checked
-    running = seeds.Running(options.out, options.jobs or cores(), options.seeds, options.cluster, options.update)
+    how = (options.jobs or cores(), options.seeds, options.cluster, options.update, keeper)
+    running = seeds.Running(options.out, *how)
     try:
         found = seeds.check(chosen, running, told)
     except InterruptedRunsError:

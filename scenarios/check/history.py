@@ -61,9 +61,9 @@ class History:
                 self.notes.append(str(fault).partition(",")[0])
         return self._runs[name]
 
-    def log_of(self, line: Line) -> Path:
-        """Path of the log of a line, whether it is there or not."""
-        return self.folder / LOGS / f"{line.scenario}-{line.run}.mcap"
+    def copy_of(self, scenario: str, copy: str) -> Path:
+        """Path of the copy of a log of a scenario by its digest, whether it is there or not."""
+        return self.folder / LOGS / f"{scenario}-{copy}.mcap"
 
     def changes(self, lines: list[Line]) -> Iterator[Change]:
         """The changes in lines of one scenario, in order."""
@@ -92,39 +92,48 @@ class Keeper:
         self._file = new_file(folder, self._time, self._commit)
         self.history = History(folder)
 
+    def hold(self, checked: Checked) -> None:
+        """Keep a copy of the log of a run, if none was the same before.
+
+        Raises:
+            LogError: it cannot be written.
+        """
+        if checked.log is not None and checked.now is not None:
+            copy = self.history.copy_of(checked.case.scenario.name, digest(replace(checked.now, sample=None)))
+            self._make(copy.parent)
+            if not copy.exists():
+                write_thinned(read(checked.log), copy, RATE, _LEFT_OUT)
+
     def keep(self, checked: Checked) -> Checked:
         """Write the line of a scenario; what was checked comes back with the run before beside it, if they parted.
 
         Raises:
             LogError: it cannot be written.
         """
-        history, text = self.history, "" if checked.now is None else checked.now.text()
-        run = hashlib.sha256(text.encode()).hexdigest()[:16] if text else ""
-        line = Line.of(checked, self._time, self._commit, run)
+        run = "" if checked.now is None else digest(checked.now)
+        own = "" if checked.now is None else digest(replace(checked.now, sample=None))
+        line = Line.of(checked, self._time, self._commit, run, own)
         before = [
-            one for one in history.lines
+            one
+            for one in self.history.lines
             if (one.scenario, one.machine) == (line.scenario, line.machine) and one.order <= line.order
-        ]  # fmt: skip
-        if run and checked.log is not None:
-            self._keep_run(line, text, checked.log)
+        ]
+        if checked.now is not None:
+            path = self.history.folder / RUNS / f"{line.scenario}-{run}.yaml"
+            self._make(path.parent)
+            with write_whole(path, replace=True) as temporary:
+                temporary.write_text(checked.now.text(), encoding="utf-8")
             checked, line = self._beside(checked, line, before)
-            self._forget(line, before)
-        history.lines = sorted([*history.lines, line], key=lambda one: one.order)
+            self._forget(line)
+        self.history.lines = sorted([*self.history.lines, line], key=lambda one: one.order)
         append(self._file, line.text(checked))
         return checked
 
-    def _keep_run(self, line: Line, text: str, log: Path) -> None:
-        """Keep what a run measured and a copy of its log, if no run before was the same."""
-        folder, copy = self.history.folder / RUNS, self.history.log_of(line)
+    def _make(self, folder: Path) -> None:
         try:
-            for place in (folder, copy.parent):
-                place.mkdir(exist_ok=True)
+            folder.mkdir(exist_ok=True)
         except OSError as error:
             raise LogError(f"{folder}: cannot be written, {reason(error)}; give another --history") from None
-        with write_whole(folder / f"{line.scenario}-{line.run}.yaml", replace=True) as temporary:
-            temporary.write_text(text, encoding="utf-8")
-        if not copy.exists():
-            write_thinned(read(log), copy, RATE, _LEFT_OUT)
 
     def _beside(self, checked: Checked, line: Line, before: list[Line]) -> tuple[Checked, Line]:
         """Hold a run that has changed, or is not as it should be, against the last one that was."""
@@ -132,30 +141,31 @@ class Keeper:
         changed = bool(found) and found[-1].now is line
         runs = [one for one in before if one.run and (checked.passed or one.passed)]
         against = runs[-1] if runs else None
-        if against is None or against.run == line.run or (checked.passed and not changed):
+        if against is None or against.copy == line.copy or (checked.passed and not changed):
             return checked, line
         was, now = (self.history.run_of(one) for one in (against, line))
-        logs = [self.history.log_of(one) for one in (against, line)]
+        logs = [self.history.copy_of(one.scenario, one.copy) for one in (against, line)]
         if not all(path.exists() for path in logs) or was is None or now is None:
             held = Beside(against.commit.name, note="no pictures: the history has no log of the run before")
         else:
-            name = f"{line.scenario}-{against.run}-{line.run}"
+            name = f"{line.scenario}-{against.copy}-{line.copy}"
             partings = was.trace.partings(now.trace)
             both = read(logs[0]), read(logs[1])
             held = beside(*both, partings, self.history.folder, name, against.commit.name)
         return replace(checked, beside=held), replace(line, beside=held)
 
-    def _forget(self, line: Line, before: list[Line]) -> None:
+    def _forget(self, line: Line) -> None:
         """Remove logs of the scenario other than of the last run, and the last one that passed, of each machine."""
         kept = set()
-        for machine in {one.machine for one in (*self.history.lines, line)}:
-            own = [
-                one for one in (*self.history.lines, line) if (one.scenario, one.machine) == (line.scenario, machine)
-            ]
-            own = sorted((one for one in own if one.run), key=lambda one: one.order)
-            kept |= {one.run for one in (*own[-1:], *[one for one in own if one.passed][-1:])}
-        for path in (self.history.folder / LOGS).glob(f"{line.scenario}-*.mcap"):
-            digest = path.stem.removeprefix(f"{line.scenario}-")
-            if len(digest) == len(line.run) and digest not in kept:
-                with suppress(OSError):
-                    path.unlink()
+        lines = [one for one in (*self.history.lines, line) if one.scenario == line.scenario and one.run]
+        for machine in {one.machine for one in lines}:
+            own = sorted((one for one in lines if one.machine == machine), key=lambda one: one.order)
+            kept |= {one.copy for one in (*own[-1:], *[one for one in own if one.passed][-1:])}
+        for copy in {one.copy for one in lines} - kept:
+            with suppress(OSError):
+                self.history.copy_of(line.scenario, copy).unlink(missing_ok=True)
+
+
+def digest(baseline: Baseline) -> str:
+    """Digest of what a run measured."""
+    return hashlib.sha256(baseline.text().encode()).hexdigest()[:16]

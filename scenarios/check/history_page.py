@@ -160,7 +160,7 @@ def _walk(walk: Walk, names: Mapping[int, str]) -> str:
     changed = {_place(lines, change.now): names[id(change)] for change in walk.changes}
     every = trends(lines)
     moved = {move.name for change in walk.changes for move in change.moves}
-    drawn = [one for one in every if one.repeatable and (one.bound is not None or one.name in moved)]
+    drawn = [one for one in every if one.repeatable and (one.bound is not None or one.name in moved or one.spread)]
     clocks = [one for one in every if not one.repeatable]
     rest = [one for one in every if one.repeatable and one not in drawn]
     title = f"{walk.scenario}, {walk.machine}"
@@ -177,7 +177,8 @@ def _walk(walk: Walk, names: Mapping[int, str]) -> str:
 
 _LEGEND = (
     "Over the checks in order: grey is what a check allows about the first value since a change. A dashed line is a "
-    "bound of the scenario, a number one of the commits above, a cross a check that did not pass."
+    "bound of the scenario, a number one of the commits above, a cross a check that did not pass. "
+    "A bar is an interval over seeds that holds with 95 %."
 )
 _CLOCK = (
     "Grey is the median of each level. A shift of level may be the program's or the machine's, so no commit is marked "

@@ -18,6 +18,7 @@ from surefoot.scenarios.check.record import scenario_json
 from surefoot.scenarios.errors import LogError, ScenarioError
 from surefoot.scenarios.file.criteria import Bound
 from surefoot.scenarios.file.schema import NAME
+from surefoot.scenarios.file.search import Bisect
 from surefoot.scenarios.file.source import decoded
 from surefoot.scenarios.output import reason
 from surefoot.scenarios.record.provenance import git, versions
@@ -67,6 +68,19 @@ class Commit:
 
 
 @dataclass(frozen=True, slots=True)
+class Seeds:
+    """Runs of several seeds.
+
+    Attributes:
+        passed: whether each met its criteria.
+        values: by metric, element or part, one for each run; None where it means nothing there.
+    """
+
+    passed: tuple[bool, ...]
+    values: Mapping[str, tuple[bool | int | float | None, ...]]
+
+
+@dataclass(frozen=True, slots=True)
 class Line:
     """What a check has found of a scenario.
 
@@ -82,6 +96,9 @@ class Line:
         criteria: bounds of the scenario, by metric.
         took: time on the wall's clock [s].
         run: digest of all that is compared of it; empty where there was no run.
+        copy: digest of the same without other seeds, by which the copy of its log is called.
+        seeds: of several: what each measured, and the pass rate; None of one.
+        margins: searches of the scenario by name.
         settings: of the scenario that are no defaults, in YAML.
         beside: the run before, where this one has parted from it.
     """
@@ -97,8 +114,11 @@ class Line:
     criteria: Mapping[str, Bound] = field(default_factory=dict)
     took: Annotated[float, Field(ge=0.0)] = 0.0
     run: Digest = ""
+    copy: Digest = ""
     settings: str = ""
+    margins: Mapping[str, Bisect] = field(default_factory=dict)
     beside: Beside | None = None
+    seeds: Seeds | None = None
 
     @property
     def machine(self) -> str:
@@ -111,17 +131,20 @@ class Line:
         return self.commit.time or self.time, self.time
 
     @classmethod
-    def of(cls, checked: Checked, time: str, commit: Commit, run: str) -> "Line":
+    def of(cls, checked: Checked, time: str, commit: Commit, run: str, copy: str) -> "Line":
         """The line of a scenario that was checked."""
         case = checked.case
         came = (checked.status, checked.passed, checked.reasons, checked.metrics, case.scenario.criteria, checked.took)
-        return cls(time, commit, dict(versions()), case.scenario.name, *came, run, case.settings, checked.beside)
+        margins = dict(case.scenario.margins or {})
+        return cls(time, commit, dict(versions()), case.scenario.name, *came, run, copy, case.settings, margins)
 
     def text(self, checked: Checked) -> str:
         """The line as it is written: all that `surefoot check --json` says of it, and what a history adds."""
         own = {"format": FORMAT, "time": self.time, "commit": asdict(self.commit), "versions": dict(self.versions)}
         criteria = {name: bound.model_dump(exclude_none=True) for name, bound in self.criteria.items()}
-        told = {**own, "run": self.run, **scenario_json(checked), "criteria": criteria}
+        margins = {name: bisect.model_dump(mode="json", exclude_none=True) for name, bisect in self.margins.items()}
+        told = {**own, "run": self.run, "copy": self.copy, "criteria": criteria, "margins": margins}
+        told |= scenario_json(checked)
         return json.dumps(told, allow_nan=False)
 
 

@@ -8,8 +8,8 @@ from typing import Any
 from surefoot.scenarios.check.baseline import Move
 from surefoot.scenarios.check.check import Checked, exit_code
 from surefoot.scenarios.check.findings import Finding
-from surefoot.scenarios.check.sampled import Sampled
 from surefoot.scenarios.check.requirements import Requirements
+from surefoot.scenarios.check.sampled import Sampled
 from surefoot.scenarios.check.signs import Parting
 from surefoot.scenarios.output import shown
 from surefoot.scenarios.record.provenance import versions

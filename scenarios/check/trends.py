@@ -11,7 +11,9 @@ from matplotlib.axes import Axes
 from matplotlib.figure import Figure
 from matplotlib.ticker import MaxNLocator
 
-from surefoot.scenarios.check.lines import Line
+from surefoot.maths.chance import wilson
+from surefoot.scenarios.check.findings import RATE
+from surefoot.scenarios.check.lines import Line, Seeds
 from surefoot.scenarios.check.shifts import shifts
 from surefoot.scenarios.file.criteria import Bound
 from surefoot.scenarios.file.units import is_number
@@ -29,8 +31,15 @@ _MARGINS = {"left": 0.2, "right": 0.97, "bottom": 0.27, "top": 0.9}
 _ROOM = 2.0
 """Spans of a trend from it within which a bound is drawn [-]."""
 
+_INTERVAL = 1.96
+"""Half of an interval over the standard error of a mean [-]."""
+
 TOOK = "took"
 """Name of the trend of how long a check of the scenario took."""
+
+
+Span = tuple[float, float]
+"""Ends of an interval that holds with 95 %."""
 
 
 @dataclass(frozen=True, slots=True)
@@ -42,12 +51,14 @@ class Trend:
         values: of each check, None where it has none.
         passed: whether each check passed.
         bound: of the scenario on it, None without one.
+        spans: interval of each value that is a mean or a share of several seeds, None of one seed.
     """
 
     name: str
     values: tuple[float | None, ...]
     passed: tuple[bool, ...]
     bound: Bound | None = None
+    spans: tuple[Span | None, ...] = ()
 
     @property
     def metric(self) -> "Metric[Any] | None":
@@ -70,6 +81,11 @@ class Trend:
         return "s" if self.name == TOOK else "" if self.metric is None else self.metric.shown
 
     @property
+    def spread(self) -> bool:
+        """True if a value of it is of several seeds."""
+        return any(self.spans)
+
+    @property
     def label(self) -> str:
         """Its name with its unit."""
         return f"{self.name} [{self.unit}]" if self.unit else self.name
@@ -90,16 +106,38 @@ class Trend:
 
 def trends(lines: Sequence[Line]) -> list[Trend]:
     """The trend of each element of each metric that any of some lines has a number of, and of the time they took."""
-    found: dict[str, list[float | None]] = {}
+    found: dict[str, dict[int, float]] = {}
+    spans: dict[str, dict[int, Span]] = {}
     for at, line in enumerate(lines):
         for name, value in (*_elements(line.metrics), (TOOK, line.took)):
-            found.setdefault(name, [None] * len(lines))[at] = value
-    passed, bounds = tuple(line.passed for line in lines), lines[-1].criteria
+            found.setdefault(name, {})[at] = value
+        for name, mean, span in () if line.seeds is None else _over_seeds(line.seeds):
+            found.setdefault(name, {})[at] = mean
+            spans.setdefault(name, {})[at] = span
+    every, bounds = range(len(lines)), lines[-1].criteria
+    passed = tuple(line.passed for line in lines)
     return [
-        Trend(name, tuple(values), passed, bounds.get(name.partition("[")[0]))
+        Trend(
+            name,
+            tuple(values.get(at) for at in every),
+            passed,
+            bounds.get(name.partition("[")[0]),
+            tuple(spans.get(name, {}).get(at) for at in every),
+        )
         for name, values in found.items()
-        if any(value is not None for value in values)
     ]
+
+
+def _over_seeds(seeds: Seeds) -> Iterator[tuple[str, float, Span]]:
+    """The pass rate, and the mean of each number, with their intervals."""
+    rate = wilson(seeds.passed.count(True), len(seeds.passed))
+    yield RATE, rate.rate, (rate.low, rate.high)
+    for name, column in seeds.values.items():
+        numbers = [float(one) for one in column if one is not None and math.isfinite(one)]
+        if len(numbers) > 1:
+            mean = math.fsum(numbers) / len(numbers)
+            half = _INTERVAL * float(np.std(numbers, ddof=1)) / math.sqrt(len(numbers))
+            yield name, mean, (mean - half, mean + half)
 
 
 def _elements(metrics: Mapping[str, Any]) -> Iterator[tuple[str, float | None]]:
@@ -151,6 +189,9 @@ def _draw_values(axes: Axes, trend: Trend, values: np.ndarray[Any, Any]) -> None
     if not np.isfinite(values).any():
         note(axes, "no value")
         return
+    for at, span in enumerate(trend.spans):
+        if span is not None:
+            axes.plot([at, at], [trend.scale * end for end in span], color=paler(BLUE), linewidth=1.4, zorder=1)
     places, passed = np.arange(len(values)), np.array(trend.passed)
     axes.plot(places, values, color=paler(BLUE), linewidth=0.8, zorder=2)
     for which, color, marker in ((passed, BLUE, "o"), (~passed, FAIL, "X")):

@@ -60,6 +60,12 @@ def commit(number, message="words"):
     return Commit(f"{number:08x}" * 5, f"2026-01-01T{number // 60:02d}:{number % 60:02d}:00Z", message)
 
 
+def keep(keeper, checked):
+    """Keep what was checked, as a check does."""
+    keeper.hold(checked)
+    return keeper.keep(checked)
+
+
 def kept(folder, runs, words):
     """A history of commits, each with the check of a program."""
     keeper = Keeper(folder, commit(1))
@@ -68,7 +74,7 @@ def kept(folder, runs, words):
         for one in runs[word]:
             status = "same" if word in ("as it was", "a little") else "moved"
             now = replace(one.now, settings=runs["as it was"][0].now.settings)
-            keeper.keep(replace(one, status=status, reasons=(), now=now))
+            keep(keeper, replace(one, status=status, reasons=(), now=now))
     return History(folder)
 
 
@@ -112,10 +118,10 @@ def test_a_commit_that_cannot_run_is_marked_and_so_is_the_one_that_runs_again(tm
     kept(folder, runs, ["as it was"] * 2)
     keeper = Keeper(folder, commit(3))
     for one in broken:
-        keeper.keep(one)
+        keep(keeper, one)
     keeper = Keeper(folder, commit(4))
     for one in runs["as it was"]:
-        keeper.keep(one)
+        keep(keeper, one)
     found = changed_commits(walks(History(folder)))
     assert [(int(line.commit.short, 16), changes[0][1].reasons) for line, changes in found] == [
         (3, ("no such robot",)),
@@ -128,25 +134,23 @@ def test_it_is_ordered_by_commits_whenever_they_were_checked(tmp_path, runs):
     for number, word in ((4, "longer"), (1, "as it was"), (3, "longer"), (2, "as it was")):
         keeper = Keeper(folder, commit(number))
         for one in runs[word]:
-            keeper.keep(replace(one, now=replace(one.now, settings=runs["as it was"][0].now.settings)))
+            keep(keeper, replace(one, now=replace(one.now, settings=runs["as it was"][0].now.settings)))
     assert [int(line.commit.short, 16) for line, _ in changed_commits(walks(History(folder)))] == [3]
 
 
 def test_few_logs_are_kept_of_the_last_run_and_the_last_good_one(tmp_path, runs):
     history = kept(tmp_path / "history", runs, ["as it was", "longer", "long"])
     logs = {path.name for path in (tmp_path / "history" / "logs").iterdir()}
-    digests = [line.run for line in history.lines if line.scenario == "stroll"]
+    digests = [line.copy for line in history.lines if line.scenario == "stroll"]
     assert logs == {
         f"{name}-{digest}.mcap"
         for name, each in (
             ("stroll", digests),
-            ("amble", [line.run for line in history.lines if line.scenario == "amble"]),
+            ("amble", [line.copy for line in history.lines if line.scenario == "amble"]),
         )
         for digest in (each[0], each[2])
     }
-    small = read(
-        history.log_of(next(line for line in history.lines if line.status == "moved" and history.log_of(line).exists()))
-    )
+    small = read(history.copy_of("stroll", digests[2]))
     steps = np.diff(small["/truth"].time)
     assert steps.min() >= 0.04 - 1e-9
     assert small.metadata["run"] and "/plan" not in small
@@ -181,7 +185,7 @@ def test_damage_is_told_and_takes_nothing_else_away(tmp_path, runs):
 
 def test_an_interrupted_check_keeps_what_it_has_done(tmp_path, runs):
     keeper = Keeper(tmp_path / "history", commit(1))
-    keeper.keep(runs["as it was"][0])
+    keep(keeper, runs["as it was"][0])
     file = next((tmp_path / "history" / "checks").iterdir())
     with file.open("a") as opened:
         opened.write('{"format": 1, "time": "20')
@@ -192,7 +196,7 @@ def test_an_interrupted_check_keeps_what_it_has_done(tmp_path, runs):
 def test_two_checks_at_once_have_files_of_their_own(tmp_path, runs):
     keepers = [Keeper(tmp_path / "history", commit(1)) for _ in range(3)]
     for keeper in keepers:
-        keeper.keep(runs["as it was"][0])
+        keep(keeper, runs["as it was"][0])
     assert len([*(tmp_path / "history" / "checks").iterdir()]) == 3
     assert len(History(tmp_path / "history").lines) == 3
 
@@ -259,5 +263,5 @@ def test_outside_of_a_repository_checks_are_in_the_order_of_their_times(tmp_path
         keeper = Keeper(tmp_path / "history", Commit())
         keeper._time = f"2026-01-01T00:00:0{len(word)}Z"
         for one in runs[word]:
-            keeper.keep(replace(one, now=replace(one.now, settings=runs["as it was"][0].now.settings)))
+            keep(keeper, replace(one, now=replace(one.now, settings=runs["as it was"][0].now.settings)))
     assert list(summary(walks(History(tmp_path / "history"))))

@@ -38,7 +38,8 @@ def pytest_configure(config: pytest.Config) -> None:
 def pytest_sessionfinish(session: pytest.Session) -> None:
     """Tell the process that has begun this one, if pytest-xdist did, which files were collected."""
     if hasattr(session.config, "workeroutput"):
-        session.config.workeroutput["surefoot"] = sorted(session.config.stash[_COLLECTED])
+        collected = session.config.stash[_COLLECTED]
+        session.config.workeroutput["surefoot"] = sorted(collected)
 
 
 @pytest.hookimpl(optionalhook=True)
@@ -49,7 +50,8 @@ def pytest_testnodedown(node: Any) -> None:
 
 def pytest_terminal_summary(terminalreporter: Any, config: pytest.Config) -> None:
     """Print requirements against their state, if a scenario names any."""
-    if not config.stash[_COLLECTED]:
+    collected = config.stash[_COLLECTED]
+    if not collected:
         return
     from surefoot.scenarios.check.requirements import PROPERTY, Requirements, Shown
 
@@ -61,7 +63,7 @@ def pytest_terminal_summary(terminalreporter: Any, config: pytest.Config) -> Non
         names = [value for name, value in one.user_properties if name == PROPERTY]
         shown.append(Shown.of(told.get(NAMED, one.location[2]), names, told.get(STATUS, one.outcome), one.passed))
     files = [Path(config.rootpath, one.fspath) for one in ran]
-    found = Requirements.held(shown, files, map(Path, config.stash[_COLLECTED]))
+    found = Requirements.held(shown, files, map(Path, sorted(collected)))
     if found.table:
         terminalreporter.section("requirements")
         for line in found.lines:

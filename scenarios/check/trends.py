@@ -140,7 +140,7 @@ def _over_seeds(seeds: Seeds) -> Iterator[tuple[str, float, Span]]:
             yield name, mean, (mean - half, mean + half)
 
 
-def _elements(metrics: Mapping[str, Any]) -> Iterator[tuple[str, float | None]]:
+def _elements(metrics: Mapping[str, Any]) -> Iterator[tuple[str, float]]:
     """Each number of each metric, named; what is true or false is 1 or 0."""
     for name, value in metrics.items():
         parts = {name: value}

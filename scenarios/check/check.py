@@ -7,7 +7,7 @@ import time
 from collections.abc import Callable, Mapping, Sequence
 from dataclasses import dataclass, replace
 from pathlib import Path
-from typing import Any, Literal
+from typing import TYPE_CHECKING, Any, Literal, Protocol
 
 import yaml
 
@@ -25,11 +25,11 @@ from surefoot.scenarios.run.processes import side_by_side
 from surefoot.scenarios.run.run import run_scenario
 from surefoot.scenarios.setup.load import load
 
+if TYPE_CHECKING:
+    from surefoot.scenarios.check.beside import Beside
+
 OWN = Path(catalogue.__file__).resolve().parents[1] / "baselines"
 """Baselines of the catalogue."""
-
-_NO_SETTINGS = {"name", "criteria", "seeds", "margins"}
-"""Keys that do not shape a run."""
 
 _MEANT = re.compile(r"\.ya?ml|baseline", re.IGNORECASE)
 """In the name of a file that may be a baseline, also of one with a mistyped ending."""
@@ -60,6 +60,10 @@ INCONCLUSIVE: tuple[CheckStatus, ...] = ("could not run", "could not write", "un
 """Statuses in which the run says nothing for or against the walk."""
 
 
+UNSHAPING = ("name", "criteria", "seeds", "margins", "requirements")
+"""Keys of a scenario that do not shape its run."""
+
+
 @dataclass(frozen=True, slots=True)
 class Case:
     """A scenario, fit to run, that a user referred to.
@@ -79,7 +83,7 @@ class Case:
     @property
     def settings(self) -> str:
         """Settings that shape the run and are not defaults, for which a baseline is good."""
-        chosen = self.scenario.model_dump(mode="json", exclude_defaults=True, exclude=_NO_SETTINGS)
+        chosen = self.scenario.model_dump(mode="json", exclude_defaults=True, exclude=set(UNSHAPING))
         return yaml.safe_dump(chosen, sort_keys=False)
 
 
@@ -98,6 +102,7 @@ class Checked:
         verdict: on the run, None when there was none.
         sampled: what runs of several seeds say, None when there was one.
         took: time on the wall's clock of the run and of its comparison [s].
+        beside: the run before, of a history in which this one parts from it.
     """
 
     case: Case
@@ -110,6 +115,7 @@ class Checked:
     verdict: Verdict | None = None
     sampled: Sampled | None = None
     took: float = 0.0
+    beside: "Beside | None" = None
 
     @property
     def metrics(self) -> Mapping[str, Any]:
@@ -151,10 +157,15 @@ def _unfolded(reference: str) -> list[str]:
     folder = Path(reference)
     if reference in catalogue.OURS or not folder.is_dir():
         return [reference]
-    files = sorted(str(path) for path in folder.iterdir() if _is_scenario(path))
+    files = scenario_files(folder)
     if not files:
         raise ScenarioError([f"{reference}: holds no scenario; give a folder with *.yaml files"])
     return files
+
+
+def scenario_files(folder: Path) -> list[str]:
+    """The scenario files of a folder in order."""
+    return sorted(str(path) for path in folder.iterdir() if _is_scenario(path))
 
 
 def strays(case: Case) -> tuple[Path, ...]:
@@ -235,12 +246,23 @@ def _first_and_most(partings: Sequence[Parting]) -> tuple[Parting, ...]:
     return (partings[0],) if most is partings[0] else (partings[0], most)
 
 
+class Keeping(Protocol):
+    """Keeps what a check finds, as a history does."""
+
+    def hold(self, checked: Checked) -> None:
+        """Take what is needed of the log of a run, which may go afterwards."""
+
+    def keep(self, checked: Checked) -> Checked:
+        """Keep what came of a scenario; gives what is told of it."""
+
+
 def check(
     chosen: Sequence[Case],
     out: Path,
     jobs: int,
     on_done: Callable[[Checked], None] = lambda _: None,
     update: bool = False,
+    keeping: Keeping | None = None,
 ) -> tuple[Checked, ...]:
     """Run cases side by side; the logs of those that are the same as their baselines are not kept.
 
@@ -249,6 +271,7 @@ def check(
         out: directory of their logs.
         jobs: runs at once.
         on_done: called with each as it is done, and again with what `update` made of it.
+        keeping: takes what it needs of each log, and keeps each that is done.
         update: whether to write the baselines anew of the runs that met their criteria and are not the same.
 
     Returns:
@@ -256,6 +279,9 @@ def check(
     """
     done: dict[str, Checked] = {}
     for checked in side_by_side(run_case, [(case, out) for case in chosen], jobs, _lost):
+        if keeping is not None:
+            keeping.hold(checked)
+            checked = keeping.keep(checked)
         if checked.status == "same" and checked.log is not None:
             shutil.rmtree(checked.log.parent)
             checked = replace(checked, log=None)

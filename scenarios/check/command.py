@@ -46,6 +46,12 @@ class CheckOptions:
     out: Annotated[Path, typer.Option(help="Directory of the logs.")] = Path("runs/check")
     junit: Annotated[Path | None, typer.Option(help="Also write JUnit XML to this file.")] = None
     markdown: Annotated[Path | None, typer.Option(help="Also write a summary for a CI page to this file.")] = None
+    history: Annotated[
+        Path | None, typer.Option(help="Also keep what was found in this folder, for `surefoot history`.")
+    ] = None
+    pictures_at: Annotated[
+        str | None, typer.Option(metavar="URL", help="Address of the history's folder, for pictures in --markdown.")
+    ] = None
     annotations: Annotated[
         bool, typer.Option("--annotations", help="Also print findings as GitHub shows them beside a file.")
     ] = False
@@ -63,6 +69,9 @@ def check(options: CheckOptions) -> None:
         from surefoot.scenarios.check import check as checking
         from surefoot.scenarios.check import record, report, seeds
         from surefoot.scenarios.check.annotations import annotations
+        from surefoot.scenarios.check.history import Keeper
+        from surefoot.scenarios.check.pictures import Gallery
+        from surefoot.scenarios.check.requirements import Requirements
         from surefoot.scenarios.many.slots import InterruptedRunsError
         from surefoot.scenarios.output import refuse_existing
         from surefoot.scenarios.run.processes import cores
@@ -71,8 +80,10 @@ def check(options: CheckOptions) -> None:
         if report_file is not None:
             refuse_existing(report_file, options.force)
     chosen = checking.cases(options.scenarios or (), options.baselines, overrides(options.set_, policy=options.policy))
+    keeper = None if options.history is None else Keeper(options.history)
     told: Callable[[checking.Checked], None] = (lambda _: None) if options.as_json else report.print_checked
-    running = seeds.Running(options.out, options.jobs or cores(), options.seeds, options.cluster, options.update)
+    how = (options.jobs or cores(), options.seeds, options.cluster, options.update, keeper)
+    running = seeds.Running(options.out, *how)
     try:
         found = seeds.check(chosen, running, told)
     except InterruptedRunsError:
@@ -82,11 +93,51 @@ def check(options: CheckOptions) -> None:
     except KeyboardInterrupt:
         typer.echo("interrupted", err=True)
         raise typer.Exit(INTERRUPTED) from None
+    requirements = Requirements.of(found)
     if options.junit is not None:
         report.write(options.junit, report.junit(found), options.force)
     if options.markdown is not None:
-        report.write(options.markdown, report.markdown(found).encode(), options.force)
+        gallery = Gallery.of(options.history, options.markdown, options.pictures_at)
+        report.write(options.markdown, report.markdown(found, requirements, gallery).encode(), options.force)
     for line in annotations(found) if options.annotations else ():
         typer.echo(line)
-    typer.echo(json.dumps(record.to_json(found), allow_nan=False) if options.as_json else report.summary(found))
+    if options.as_json:
+        typer.echo(json.dumps(record.to_json(found, requirements), allow_nan=False))
+    else:
+        typer.echo("\n".join([*requirements.lines, report.summary(found)]))
     raise typer.Exit(checking.exit_code(found))
+
+
+@dataclass(frozen=True, slots=True)
+class HistoryOptions:
+    """The arguments of `surefoot history`."""
+
+    folder: Annotated[Path, typer.Argument(help="A folder that `surefoot check --history` has written to.")]
+    out: Annotated[Path | None, typer.Option(help="Also write the page with all trends to this .html file.")] = None
+    force: Replace = False
+    as_json: AsJson = False
+
+
+@app.command()
+@with_options(HistoryOptions)
+def history(options: HistoryOptions) -> None:
+    """Tell which commits changed something, by checks that were kept."""
+    with importing():
+        from surefoot.scenarios.check import history_page
+        from surefoot.scenarios.check.history import History
+        from surefoot.scenarios.output import refuse_existing, write_whole
+
+    if options.out is not None:
+        refuse_existing(options.out, options.force)
+    found = History(options.folder)
+    if options.as_json:
+        typer.echo(json.dumps(history_page.to_json(found), allow_nan=False))
+    else:
+        walks = history_page.walks(found)
+        typer.echo("\n".join(history_page.summary(walks)) or "no commit changed anything")
+    if options.out is not None:
+        with write_whole(options.out, options.force) as temporary:
+            temporary.write_text(history_page.page(found), encoding="utf-8")
+        typer.echo(str(options.out), err=True)
+    for note in dict.fromkeys(found.notes):
+        typer.echo(f"note: {note}", err=True)

@@ -23,6 +23,53 @@ if TYPE_CHECKING:
 ENDINGS = (".scenario.yaml", ".scenario.yml")
 
 
+NAMED, STATUS = "scenario", "check"
+"""Names of properties of a test that names requirements: the scenario's name, and the status of its check."""
+
+_COLLECTED = pytest.StashKey[set[str]]()
+"""Files of all scenarios that were collected, also of those that were left out then."""
+
+
+def pytest_configure(config: pytest.Config) -> None:
+    """Begin with no file."""
+    config.stash[_COLLECTED] = set()
+
+
+def pytest_sessionfinish(session: pytest.Session) -> None:
+    """Tell the process that has begun this one, if pytest-xdist did, which files were collected."""
+    if hasattr(session.config, "workeroutput"):
+        collected = session.config.stash[_COLLECTED]
+        session.config.workeroutput["surefoot"] = sorted(collected)
+
+
+@pytest.hookimpl(optionalhook=True)
+def pytest_testnodedown(node: Any) -> None:
+    """Take what a process of pytest-xdist tells."""
+    node.config.stash[_COLLECTED].update(getattr(node, "workeroutput", {}).get("surefoot", ()))
+
+
+def pytest_terminal_summary(terminalreporter: Any, config: pytest.Config) -> None:
+    """Print requirements against their state, if a scenario names any."""
+    collected = config.stash[_COLLECTED]
+    if not collected:
+        return
+    from surefoot.scenarios.check.requirements import PROPERTY, Requirements, Shown
+
+    reports = [one for group in ("passed", "failed") for one in terminalreporter.stats.get(group, ())]
+    ran = [one for one in reports if one.when == "call" and is_scenario(Path(one.fspath))]
+    shown = []
+    for one in ran:
+        told = dict(one.user_properties)
+        names = [value for name, value in one.user_properties if name == PROPERTY]
+        shown.append(Shown.of(told.get(NAMED, one.location[2]), names, told.get(STATUS, one.outcome), one.passed))
+    files = [Path(config.rootpath, one.fspath) for one in ran]
+    found = Requirements.held(shown, files, map(Path, sorted(collected)))
+    if found.table:
+        terminalreporter.section("requirements")
+        for line in found.lines:
+            terminalreporter.write_line(line)
+
+
 def is_scenario(path: Path) -> bool:
     """Return true if a path is named as a scenario that is a test."""
     return path.name.lower().endswith(ENDINGS)
@@ -81,6 +128,7 @@ class ScenarioFile(pytest.File):
 
     def collect(self) -> Iterator["ScenarioTest"]:
         """Its one test."""
+        self.config.stash[_COLLECTED].add(str(self.path))
         ending = next(ending for ending in ENDINGS if self.path.name.lower().endswith(ending))
         yield ScenarioTest.from_parent(self, name=self.path.name[: -len(ending)])
 
@@ -100,9 +148,13 @@ class ScenarioTest(pytest.Item):
         """
         from surefoot.scenarios.check.check import cases, strays
         from surefoot.scenarios.check.report import lines_of
+        from surefoot.scenarios.check.requirements import PROPERTY
 
         (case,) = cases([str(self.path)])
         checked = self._checked(case, self.config.rootpath / "runs" / "pytest")
+        if names := case.scenario.requirements:
+            self.user_properties += [*((PROPERTY, name) for name in names), (NAMED, case.scenario.name)]
+            self.user_properties.append((STATUS, checked.status))
         astray = strays(case) if checked.status == "without baseline" else ()
         if astray:
             what = f"{astray[0]}: is of no scenario beside it; name it {case.baseline.name}, or remove it"

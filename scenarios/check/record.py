@@ -2,11 +2,13 @@
 
 import math
 from collections.abc import Sequence
+from dataclasses import asdict
 from typing import Any
 
 from surefoot.scenarios.check.baseline import Move
 from surefoot.scenarios.check.check import Checked, exit_code
 from surefoot.scenarios.check.findings import Finding
+from surefoot.scenarios.check.requirements import Requirements
 from surefoot.scenarios.check.sampled import Sampled
 from surefoot.scenarios.check.signs import Parting
 from surefoot.scenarios.output import shown
@@ -16,7 +18,7 @@ FORMAT = 1
 """Version of the object; it grows when a field goes or changes its meaning, and not when one comes."""
 
 
-def to_json(found: Sequence[Checked]) -> dict[str, Any]:
+def to_json(found: Sequence[Checked], requirements: Requirements) -> dict[str, Any]:
     """All of a check: what ran it, what came of it, and an object for each scenario in their order."""
     return {
         "format": FORMAT,
@@ -25,6 +27,7 @@ def to_json(found: Sequence[Checked]) -> dict[str, Any]:
         "exit_code": exit_code(found),
         "took": math.fsum(one.took for one in found),
         "scenarios": [scenario_json(one) for one in found],
+        "requirements": requirements.to_json(),
     }
 
 
@@ -35,6 +38,7 @@ def scenario_json(one: Checked) -> dict[str, Any]:
         "reference": shown(one.case.reference),
         "baseline": shown(one.case.baseline),
         "settings": one.case.settings,
+        "requirements": list(one.case.scenario.requirements or ()),
         "status": one.status,
         "passed": one.passed,
         "reasons": list(one.reasons),
@@ -44,6 +48,7 @@ def scenario_json(one: Checked) -> dict[str, Any]:
         "seeds": None if one.sampled is None else _seeds(one.sampled),
         "log": None if one.log is None else shown(one.log),
         "took": one.took,
+        "beside": None if one.beside is None else asdict(one.beside),
     }
 
 

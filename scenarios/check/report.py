@@ -1,5 +1,6 @@
 """The findings of a check, for a person, for a CI page and for a CI server."""
 
+import html
 import math
 from collections.abc import Sequence
 from pathlib import Path
@@ -9,6 +10,8 @@ import typer
 
 from surefoot.scenarios.check.baseline import Move
 from surefoot.scenarios.check.check import Checked, CheckStatus
+from surefoot.scenarios.check.pictures import Gallery
+from surefoot.scenarios.check.requirements import PROPERTY, Requirements
 from surefoot.scenarios.check.signs import FAR, Parting
 from surefoot.scenarios.check.wording import seed_lines
 from surefoot.scenarios.judge.verdict import shown_unit, value_text
@@ -61,6 +64,12 @@ def lines_of(checked: Checked) -> list[str]:
     return lines
 
 
+def _with_channels(checked: Checked) -> list[str]:
+    """The same, and the channels that part first, where a history has the run before."""
+    channels = () if checked.beside is None else checked.beside.channels
+    return [*lines_of(checked), *(f"parts first of the channels: {text}" for text in channels)]
+
+
 def _figures(partings: Sequence[Parting]) -> list[str]:
     """Options by which `surefoot plot` shows each; none of them for the page of all figures."""
     shown = []
@@ -76,7 +85,7 @@ def print_checked(checked: Checked) -> None:
     status = typer.style(checked.status, fg=color, bold=True)
     typer.echo(f"{checked.case.scenario.name}: {status}")
     lines = {"written": [str(checked.case.baseline)], "could not write": list(checked.reasons[-1:])}
-    for line in lines.get(checked.status, lines_of(checked)):
+    for line in lines.get(checked.status, _with_channels(checked)):
         typer.echo(f"  - {line}")
 
 
@@ -90,13 +99,26 @@ def summary(checked: Sequence[Checked]) -> str:
     )
 
 
-def markdown(checked: Sequence[Checked]) -> str:
-    """A summary for the page of a CI run."""
-    rows = ["| scenario | result | what |", "|---|---|---|"]
+def markdown(checked: Sequence[Checked], requirements: Requirements, gallery: Gallery) -> str:
+    """A summary for the page of a CI run: a narrow table, and what was found of each run that is not the same."""
+    rows = ["| scenario | result |", "|---|---|"]
+    rows += [f"| {one.case.scenario.name} | {_MARKS[one.passed]} {one.status} |" for one in checked]
+    lines = [f"### surefoot check: {summary(checked)}", "", *rows, ""]
     for one in checked:
-        what = "<br>".join(line.replace("|", "\\|") for line in lines_of(one))
-        rows.append(f"| {one.case.scenario.name} | {'✅' if one.passed else '❌'} {one.status} | {what} |")
-    return "\n".join([f"### surefoot check: {summary(checked)}", "", *rows, ""])
+        if found := lines_of(one):
+            lines += [f"#### {one.case.scenario.name}", "", *map(_item, found), "", *gallery.markdown(one)]
+    return "\n".join([*lines, *gallery.note(checked), *requirements.markdown])
+
+
+_MARKS = {True: "✅", False: "❌"}
+
+
+def _item(line: str) -> str:
+    """A line as an item of a list; a command is code, and text is no HTML."""
+    what, look, command = line.partition("look at: ")
+    if look and not what:
+        return f"- look at: `{command}`"
+    return f"- {html.escape(line, quote=False)}"
 
 
 def junit(checked: Sequence[Checked]) -> bytes:
@@ -108,7 +130,11 @@ def junit(checked: Sequence[Checked]) -> bytes:
     for one in checked:
         name, time = one.case.scenario.name, f"{one.took:.3f}"
         case = Xml.SubElement(suite, "testcase", classname="surefoot", name=name, time=time)
-        text = "\n".join(lines_of(one))
+        text = "\n".join(_with_channels(one))
+        if one.case.scenario.requirements:
+            properties = Xml.SubElement(case, "properties")
+            for requirement in dict.fromkeys(one.case.scenario.requirements):
+                Xml.SubElement(properties, "property", name=PROPERTY, value=requirement)
         if not one.passed:
             kind = "error" if one.status in _ERRORS else "failure"
             Xml.SubElement(case, kind, message=one.status).text = text

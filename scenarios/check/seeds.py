@@ -8,7 +8,7 @@ from typing import Any
 from surefoot.scenarios.check import check as checking
 from surefoot.scenarios.check.baseline import Baseline, comparable, read_baseline
 from surefoot.scenarios.check.blunt import blunt
-from surefoot.scenarios.check.check import Case, Checked, CheckStatus
+from surefoot.scenarios.check.check import Case, Checked, CheckStatus, Keeping
 from surefoot.scenarios.check.findings import Asked, findings
 from surefoot.scenarios.check.sample import MARGIN, SeedSample
 from surefoot.scenarios.check.sampled import FIRST, Sampled, size_of
@@ -47,6 +47,7 @@ class Running:
         seeds: runs of each scenario at most; None for what its file or its baseline says.
         cluster: address of a dask scheduler, to run there; None for this machine.
         update: whether baselines are written anew.
+        keeping: keeps what is found; None where nothing does.
     """
 
     out: Path
@@ -54,6 +55,22 @@ class Running:
     seeds: int | None = None
     cluster: str | None = None
     update: bool = False
+    keeping: Keeping | None = None
+
+
+@dataclass(frozen=True, slots=True)
+class Held:
+    """Holds the logs of runs for what keeps them; what came of them is not known before their seeds were run."""
+
+    keeping: Keeping
+
+    def hold(self, checked: Checked) -> None:
+        """See `Keeping`."""
+        self.keeping.hold(checked)
+
+    def keep(self, checked: Checked) -> Checked:
+        """Keep nothing yet."""
+        return checked
 
 
 def check(
@@ -77,11 +94,12 @@ def check(
     counts = {case.scenario.name: seeds_of(case, running.seeds) for case in chosen}
     single = [case for case in chosen if counts[case.scenario.name] == 1]
     several = [case for case in chosen if counts[case.scenario.name] > 1]
-    done = checking.check(single, running.out, running.jobs, on_done, running.update) if single else ()
+    keeping = running.keeping
+    done = checking.check(single, running.out, running.jobs, on_done, running.update, keeping) if single else ()
     for case in several:
         SeedRuns.of(case, ())  # what is wrong with a search is told before any run
     if several:
-        own = checking.check(several, running.out, running.jobs)
+        own = checking.check(several, running.out, running.jobs, keeping=None if keeping is None else Held(keeping))
         done += _over_seeds([Seeded.of(one, counts[one.case.scenario.name]) for one in own], running, on_done)
     by_name = {one.case.scenario.name: one for one in done}
     return tuple(by_name[case.scenario.name] for case in chosen)
@@ -247,6 +265,7 @@ def _over_seeds(left: Sequence[Seeded], running: Running, on_done: Callable[[Che
     done: list[Checked] = []
 
     def tell(checked: Checked) -> None:
+        checked = checked if running.keeping is None else running.keeping.keep(checked)
         on_done(checked)
         done.append(checked)
         if running.update and _is_to_be_written(checked):

@@ -46,6 +46,7 @@ Newtons = Annotated[float, Field(ge=-1e6, le=1e6), Unit("N")]
 Force = Annotated[tuple[Newtons, Newtons, Newtons], BeforeValidator(as_tuple)]
 Offset = Annotated[float, Field(ge=-0.5, le=0.5), METRE]
 Impulse = Annotated[float, Field(ge=0, le=100), Unit("N·s/kg")]
+Requirement = Annotated[str, Field(min_length=1, max_length=100, pattern=NAME)]
 Live = Annotated[bool, Field(description="given by hand while a run went on, so that it need not act for a pass")]
 
 
@@ -363,6 +364,9 @@ class Scenario(Group):
         None, "thresholds that `surefoot check` searches with each seed, by a name of one's own, null: none"
     )
     criteria: dict[str, Bound] = Field(default_factory=standing_walk, description="bounds on metrics")
+    requirements: Many[Requirement] | None = key(
+        None, "names of what the walk shows to be kept, such as REQ-7, for reports of checks, null: none"
+    )
 
     @property
     def walker(self) -> str:

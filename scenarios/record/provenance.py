@@ -399,11 +399,12 @@ def _version(package: str) -> str:
 def _git_revision() -> str:
     """Commit of the source tree, with ``-dirty`` when it was changed; empty when it is not under git."""
     here = Path(__file__)
-    tracked = _git(here.parent, "ls-files", "--error-unmatch", here.name)
-    return (_git(here.parent, "describe", "--always", "--dirty", "--abbrev=40", "--exclude=*") or "") if tracked else ""
+    tracked = git(here.parent, "ls-files", "--error-unmatch", here.name)
+    return (git(here.parent, "describe", "--always", "--dirty", "--abbrev=40", "--exclude=*") or "") if tracked else ""
 
 
-def _git(folder: Path, *arguments: str) -> str | None:
+def git(folder: Path, *arguments: str) -> str | None:
+    """Answer of git in a folder; None where it has none, as outside of a repository."""
     try:
         done = subprocess.run(["git", "-C", str(folder), *arguments], capture_output=True, text=True, timeout=10)
     except (OSError, subprocess.SubprocessError):

@@ -131,7 +131,7 @@ class _Likeness:
     Of what other packages bring nobody knows what it depends on.
     """
 
-    _ASIDE: ClassVar = {"name", "seed", "pushes", "faults", "criteria"}
+    _ASIDE: ClassVar = {"name", "seed", "pushes", "faults", "criteria", "requirements"}
 
     def __init__(self, walk: Walk, body: Body) -> None:
         self.walk, self.body = walk, body

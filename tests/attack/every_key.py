@@ -29,6 +29,7 @@ TEXTS = {
     "options": """
         robot: humanoid100
         sized_for: humanoid100
+        requirements: [REQ-7]
         seed: 3
         duration: 0.06
         robot_options: {foot_length: 0.16, foot_width: 0.08, payload_mass: 2, payload_body: torso}

@@ -78,6 +78,7 @@ BODIES = {
 VALUES: dict[str, tuple[Any, ...]] = {
     "robot": ("g1",),
     "sized_for": ("g1",),
+    "requirements": (["REQ-7"],),
     "fidelity": ("pendulum", "full"),
     "seed": (7,),
     "duration": (0.9,),

@@ -120,7 +120,7 @@ _DECIMALS = 4
 """Decimals of a height [m]."""
 
 
-_NO_STANCE: dict[str, Any] = dict.fromkeys(("name", "pushes", "faults", "criteria"), True) | {
+_NO_STANCE: dict[str, Any] = dict.fromkeys(("name", "pushes", "faults", "criteria", "requirements"), True) | {
     "planner": {"recovery": set(RecoverySettings.model_fields) - {"sole_gap"}}
 }
 """Keys of a scenario that change none of the stances that its gait goes through."""

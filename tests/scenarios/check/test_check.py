@@ -12,6 +12,8 @@ from surefoot.scenarios.check import check as checking
 from surefoot.scenarios.check import report
 from surefoot.scenarios.check.baseline import Baseline, read_baseline, write_baseline
 from surefoot.scenarios.check.check import cases, compared, exit_code, run_case, updated
+from surefoot.scenarios.check.pictures import Gallery
+from surefoot.scenarios.check.requirements import Requirements
 from surefoot.scenarios.check.signs import COLUMNS, SIGNS, Trace
 from surefoot.scenarios.errors import LogError, ScenarioError
 from surefoot.scenarios.file.criteria import Bound
@@ -453,9 +455,11 @@ def test_reports_say_what_moved_and_where_to_look(kept, tmp_path):
     assert "speed_mean: " in text
     assert "worse" in text
     assert f"look at: surefoot plot {bad.log}" in text.splitlines()
-    page = report.markdown([bad, good])
+    page = report.markdown([bad, good], Requirements.of([bad, good]), Gallery())
     assert "2 scenarios: 1 moved, 1 same" in page
-    assert page.count("| stroll |") == 2
+    assert "| stroll | ❌ moved |" in page and "| stroll | ✅ same |" in page
+    assert f"- look at: `surefoot plot {bad.log}`" in page.splitlines()
+    assert page.count("No pictures: `surefoot check --history FOLDER` keeps how runs moved") == 1
 
 
 def test_junit_has_the_time_on_the_walls_clock(first):

@@ -15,7 +15,8 @@ GOOD = "fidelity: pendulum\ngait: {steps: 0}\nduration: 0.5\ncriteria: {fell: fa
 
 
 def pytest_in(folder, *arguments):
-    command = [sys.executable, "-m", "pytest", "-q", "-p", "no:cacheprovider", "-p", "no:xdist", *arguments]
+    command = [sys.executable, "-m", "pytest", "-q", "-p", "no:cacheprovider", *arguments]
+    command += [] if "xdist" in arguments else ["-p", "no:xdist"]
     return subprocess.run(command, cwd=folder, capture_output=True, text=True, check=False)
 
 
@@ -106,6 +107,22 @@ def test_what_is_named_as_a_scenario_and_is_no_file_fails(tmp_path):
     assert f"{inner / 'folder.scenario.yaml'}: is named as a scenario and is no regular file" in done.stdout
     assert "Traceback" not in done.stdout
     assert "1 failed, 1 passed" in pytest_in(tmp_path, "inner").stdout
+
+
+def test_requirements_are_told_in_junit_and_in_a_table_and_what_is_left_out_is_not_run(tmp_path):
+    (tmp_path / "pytest.ini").write_text("[pytest]\n")
+    (tmp_path / "good.scenario.yaml").write_text(f"{GOOD}requirements: [REQ-7, REQ-8]\n")
+    (tmp_path / "inner").mkdir()
+    (tmp_path / "inner" / "other.scenario.yaml").write_text(f"{GOOD}requirements: [REQ-7]\n")
+    done = pytest_in(tmp_path, "--junitxml=found.xml")
+    assert "REQ-7  pass: good.scenario (without baseline), other.scenario (without baseline)" in done.stdout
+    assert '<property name="requirement" value="REQ-8" />' in (tmp_path / "found.xml").read_text()
+    done = pytest_in(tmp_path, "-k", "good")
+    assert "1 passed, 1 deselected" in done.stdout
+    assert "REQ-7  not run: other.scenario (not run), good.scenario (without baseline)" in done.stdout
+    assert "REQ-8  pass: good.scenario (without baseline)" in done.stdout
+    done = pytest_in(tmp_path, "-k", "good", "-p", "xdist", "-n", "2")
+    assert "REQ-7  not run: other.scenario (not run), good.scenario (without baseline)" in done.stdout
 
 
 def test_more_values_than_a_file_may_hold_are_refused_before_they_are_composed():

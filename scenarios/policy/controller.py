@@ -13,7 +13,6 @@ from surefoot.planner.steps.commands import Command
 from surefoot.planner.types import Twist
 from surefoot.readings import Readings
 from surefoot.scenarios.errors import nearest
-from surefoot.scenarios.file.registries import CONTROLLERS
 from surefoot.scenarios.policy.connection import Connection
 from surefoot.scenarios.policy.contract import KEY
 from surefoot.scenarios.policy.files import Files, read
@@ -170,6 +169,3 @@ class Policy:
         """Give an estimator what was decided; of a policy no acceleration is known."""
         torque = self._command.torque_at(state.q[7:], state.v[6:])
         self._senses.decided(Planned(np.zeros_like(state.v), torque, contact or (True, True), -1))
-
-
-CONTROLLERS.filled(None, {"policy": Policy})

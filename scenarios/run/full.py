@@ -91,7 +91,7 @@ def simulated(walk: Walk) -> World:
     return World(walk.true_robot, walk.ground.true_terrain, rate, walk.pushes, size, drives)
 
 
-PLANTS: Registry[PlantMaker] = PLANT_NAMES.filled(None, {"mujoco": simulated})
+PLANTS: Registry[PlantMaker] = PLANT_NAMES
 """Makers of a plant from a walk and ``plant.options``, by the value of ``plant.name``."""
 
 

@@ -94,7 +94,7 @@ def ekf(walk: Walk, **options: Any) -> "SensedState":
     return sensed_state(walk, **options)
 
 
-ESTIMATORS: Registry[EstimatorMaker] = SOURCES.filled(None, {"truth": TrueState, "ekf": ekf})
+ESTIMATORS: Registry[EstimatorMaker] = SOURCES
 """Makers of an estimator from a walk and ``sensing.options``, by the value of ``sensing.source``."""
 
 

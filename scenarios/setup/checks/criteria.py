@@ -12,7 +12,8 @@ from surefoot.scenarios.file.criteria import Bound
 from surefoot.scenarios.file.names import usable
 from surefoot.scenarios.file.schema import Scenario, TerrainSettings, model_of
 from surefoot.scenarios.judge.metric import TRUTH, Metric
-from surefoot.scenarios.judge.metrics import METRICS, known
+from surefoot.scenarios.judge.metrics import known
+from surefoot.scenarios.judge.names import METRICS
 from surefoot.scenarios.judge.verdict import applies
 from surefoot.scenarios.setup.robot.robots import Robots
 from surefoot.scenarios.setup.terrain import KINDS

@@ -64,6 +64,13 @@ CONTROLLERS: Declared[Any] = Declared(
 )
 """Makers of what takes the seat of planner and whole-body controller, by the value of ``controller.name``."""
 
+INSTRUMENTS: Declared[Any] = Declared(
+    "surefoot.instruments",
+    "surefoot.scenarios.run.instruments:Instrument",
+    {"altimeter": At("The height of the base over the world's zero", "surefoot.scenarios.run.altimeter:ALTIMETER")},
+)
+"""Instruments, which read the true state into the log, by the value of ``instruments.name``."""
+
 DEFAULTS = {
     "terrain": "flat",
     "planner": "default",
@@ -82,5 +89,6 @@ REGISTRIES: dict[Key, Registry[Any]] = {
     ("wbc", "tasks"): TASKS,
     ("plant", "name"): PLANT_NAMES,
     ("controller", "name"): CONTROLLERS,
+    ("instruments", "name"): INSTRUMENTS,
 }
-"""Registries by the key that names a part, or several."""
+"""Registries by the key that names a part, or several; it may be one of each element of a list."""

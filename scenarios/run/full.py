@@ -22,7 +22,7 @@ from surefoot.scenarios.record.walk import WalkRecorder
 from surefoot.scenarios.run.assembly import Parts
 from surefoot.scenarios.run.controller import Controller
 from surefoot.scenarios.run.driven import Somebody
-from surefoot.scenarios.run.moved import Moved, coupling_of, sensors_of
+from surefoot.scenarios.run.moved import Moved, coupling_of, instruments_of, sensors_of
 from surefoot.scenarios.run.planning import Planned, Planning
 from surefoot.scenarios.run.plant import Plant, PlantMaker, Sensors, completed, made, push_plant
 from surefoot.scenarios.run.skeleton import ClosedLoop
@@ -80,7 +80,7 @@ def full_loop(walk: Walk, writer: LogWriter, parts: Parts | None = None) -> Clos
     controller.planning.recorder = recorder
     coupled = coupling_of(writer, sizes, plant)
     walker = WholeBody(controller, plant, sensors, body_recorder, view, sensed, coupled)
-    return ClosedLoop.of(walk, walker, recorder)
+    return ClosedLoop.of(walk, walker, recorder, instruments_of(walk, writer, walker))
 
 
 def simulated(walk: Walk) -> World:

@@ -13,7 +13,16 @@ from pydantic import BaseModel, BeforeValidator, Field, SerializeAsAny
 from surefoot.parts.plugins import PluginError, Registry
 from surefoot.scenarios.file.control import ControlSettings, PlantSettings, SeatSettings
 from surefoot.scenarios.file.criteria import Bound, standing_walk
-from surefoot.scenarios.file.group import WHOLE, ControllerSettings, Group, Many, RecoverySettings, as_tuple, key
+from surefoot.scenarios.file.group import (
+    WHOLE,
+    ControllerSettings,
+    Group,
+    Many,
+    RecoverySettings,
+    Unfelt,
+    as_tuple,
+    key,
+)
 from surefoot.scenarios.file.names import OneOf, usable
 from surefoot.scenarios.file.registries import DEFAULTS, INSTRUMENTS, TERRAIN_KINDS
 from surefoot.scenarios.file.sensing import MotorSettings, Sensing
@@ -362,6 +371,9 @@ class LogSettings(Group):
     )
 
 
+_OF_A_BODY, _OF_ITS_CONTROLLER = Unfelt("pendulum"), Unfelt("pendulum", "seat")
+
+
 class Scenario(Group):
     """A walk to simulate and the criteria it must meet."""
 
@@ -384,15 +396,22 @@ class Scenario(Group):
     gait: Gait = key(Gait.model_construct(), "the walk")
     planner: PlannerSettings = key(PlannerSettings.model_construct(), "the planner")
     sensing: Sensing = key(Sensing.model_construct(), "the sensors")
-    instruments: Many[
-        Annotated[SerializeAsAny[InstrumentSettings], BeforeValidator(_by_its_kind(InstrumentSettings))]
+    instruments: Annotated[
+        Many[Annotated[SerializeAsAny[InstrumentSettings], BeforeValidator(_by_its_kind(InstrumentSettings))]],
+        _OF_A_BODY,
     ] = key((), "what reads the true state into the log beside all else")
     start: Start = key(Start.model_construct(), "the start pose")
     errors: BeliefErrors = key(BeliefErrors.model_construct(), "the planner's belief minus the truth")
-    motors: MotorSettings | None = key(None, "what motors do beside what is commanded, null: nothing")
-    plant: PlantSettings | None = key(None, "what moves the robot, null: the simulated world")
-    control: ControlSettings | None = key(None, "what the joints are given, null: torques, each control tick")
-    wbc: ControllerSettings | None = key(None, "the whole-body controller, null: as it is")
+    motors: Annotated[MotorSettings | None, _OF_A_BODY] = key(
+        None, "what motors do beside what is commanded, null: nothing"
+    )
+    plant: Annotated[PlantSettings | None, _OF_A_BODY] = key(None, "what moves the robot, null: the simulated world")
+    control: Annotated[ControlSettings | None, _OF_ITS_CONTROLLER] = key(
+        None, "what the joints are given, null: torques, each control tick"
+    )
+    wbc: Annotated[ControllerSettings | None, _OF_ITS_CONTROLLER] = key(
+        None, "the whole-body controller, null: as it is"
+    )
     controller: SeatSettings | None = key(
         None, "what has the seat of planner and whole-body controller, null: they have it"
     )

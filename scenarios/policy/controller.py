@@ -3,6 +3,7 @@
 import math
 from collections.abc import Mapping
 from pathlib import Path
+from typing import Any
 
 import numpy as np
 from numpy.typing import NDArray
@@ -51,7 +52,12 @@ class Policy:
         ParameterError: contract, network, robot and rates do not fit together, or onnxruntime is not installed.
     """
 
-    def __init__(self, walk: Walk, file: str, digest: str | None = None, known_as: str | None = None) -> None:
+    def __init__(
+        self, walk: Walk, file: str, digest: str | None = None, known_as: str | None = None, **others: Any
+    ) -> None:
+        if others:
+            what = f"controller.options of a policy, which takes none but known_as: {', '.join(others)}"
+            raise ParameterError(("controller", "options"), what, "leave them out")
         files: Files = read(Path(file), walk.robot.joint_names)
         self.walk, self.contract = walk, files.contract
         self.network = Network(files.network)

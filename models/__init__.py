@@ -5,7 +5,8 @@ from typing import TYPE_CHECKING
 from surefoot.lazy import face
 
 if TYPE_CHECKING:
-    from surefoot.models.registry import ROBOTS, describe, explain, robot_names
+    from surefoot.models.names import ROBOTS
+    from surefoot.models.registry import describe, explain, robot_names
     from surefoot.models.types import (
         JointRoles,
         Robot,
@@ -32,7 +33,8 @@ if not TYPE_CHECKING:  # a type checker shall still refuse names that are not th
     __getattr__, __dir__ = face(
         __name__,
         {
-            "registry": ("ROBOTS", "describe", "explain", "robot_names"),
+            "names": ("ROBOTS",),
+            "registry": ("describe", "explain", "robot_names"),
             "types": ("JointRoles", "Robot", "RobotDescription", "RobotError", "RobotOptions", "UnknownRobotError"),
         },
     )

@@ -1,10 +1,10 @@
 """The robots that there are; what makes them is imported when one is asked for."""
 
-from collections.abc import Iterator, Mapping
+from dataclasses import dataclass
 from pathlib import Path
 from typing import TYPE_CHECKING
 
-from surefoot.parts.plugins import Declared
+from surefoot.parts.plugins import At, Declared, Own
 
 if TYPE_CHECKING:
     from surefoot.models.types import Robot
@@ -16,25 +16,33 @@ SHIPPED = {file.stem: file for file in sorted((Path(__file__).parent / "robots")
 """Robot files that come with this package, by name; their models come with other packages."""
 
 
-class _FirstLines(Mapping[str, str]):
-    """The first line of each robot's file; empty for the one that has no file."""
+@dataclass(frozen=True, slots=True)
+class _Shipped:
+    """A robot of a file that comes with this package; it is said to be what the first line says."""
 
-    def __getitem__(self, name: str) -> str:
-        if name == REFERENCE:
-            return ""
-        return SHIPPED[name].read_text(encoding="utf-8").split("\n", 1)[0].lstrip("# ")
+    file: Path
 
-    def __iter__(self) -> Iterator[str]:
-        return iter((REFERENCE, *SHIPPED))
+    @property
+    def said(self) -> str:
+        """The first line of the file, without its mark."""
+        return self.file.read_text(encoding="utf-8").split("\n", 1)[0].lstrip("# ")
 
-    def __len__(self) -> int:
-        return 1 + len(SHIPPED)
+    def load(self) -> "Robot":
+        """The robot, whose file is read when it is described."""
+        from surefoot.models.registry import robot_of
+
+        return robot_of(self.file)
 
 
 REFERENCE = "humanoid100"
 """The robot of the paper's table, which is made by code."""
 
-ROBOTS: "Declared[Robot]" = Declared("surefoot.robots", _FirstLines(), "surefoot.models.registry")
+_OWN: dict[str, Own] = {
+    REFERENCE: At("", "surefoot.models.humanoid100:HUMANOID100"),
+    **{name: _Shipped(file) for name, file in SHIPPED.items()},
+}
+
+ROBOTS: "Declared[Robot]" = Declared("surefoot.robots", "surefoot.models.types:Robot", _OWN)
 """Every robot that `robot: NAME` of a scenario can mean."""
 
 

@@ -9,9 +9,7 @@ Another package needs one file, with a function from options to a description, a
 from functools import partial
 from pathlib import Path
 
-from surefoot.models import names
-from surefoot.models.humanoid100 import HUMANOID100
-from surefoot.models.names import SHIPPED, is_file
+from surefoot.models.names import ROBOTS, SHIPPED, is_file
 from surefoot.models.types import (
     Explanation,
     Robot,
@@ -35,10 +33,9 @@ def _of_file(path: Path, options: RobotOptions) -> RobotDescription:
     return _explained(path, options).description
 
 
-ROBOTS = names.ROBOTS.filled(
-    Robot,
-    {HUMANOID100.name: HUMANOID100, **{name: Robot(name, partial(_of_file, file)) for name, file in SHIPPED.items()}},
-)
+def robot_of(file: Path) -> Robot:
+    """The robot of a file under the name of that file."""
+    return Robot(file.stem, partial(_of_file, file))
 
 
 def robot_names() -> tuple[str, ...]:

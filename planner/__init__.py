@@ -18,7 +18,8 @@ from surefoot.lazy import face
 if TYPE_CHECKING:
     from surefoot.planner.ground.terrain import Box, Terrain, flat
     from surefoot.planner.laws.law import BuiltQps, Motion, MotionPlanner, MotionProblem, QpLaw
-    from surefoot.planner.laws.profiles import PROFILES, Profile
+    from surefoot.planner.laws.names import PROFILES
+    from surefoot.planner.laws.profiles import Profile
     from surefoot.planner.laws.qp import Qp, QpSolution, solve
     from surefoot.planner.look import View
     from surefoot.planner.parameters import LegInertia, PlannerParameters, StepAdaptation
@@ -78,7 +79,8 @@ if not TYPE_CHECKING:  # a type checker shall still refuse names that are not th
         {
             "ground.terrain": ("Box", "Terrain", "flat"),
             "laws.law": ("BuiltQps", "Motion", "MotionPlanner", "MotionProblem", "QpLaw"),
-            "laws.profiles": ("PROFILES", "Profile"),
+            "laws.names": ("PROFILES",),
+            "laws.profiles": ("Profile",),
             "laws.qp": ("Qp", "QpSolution", "solve"),
             "look": ("View",),
             "parameters": ("LegInertia", "PlannerParameters", "StepAdaptation"),

@@ -10,7 +10,8 @@ from surefoot.planner.check import check_durations, check_height
 from surefoot.planner.flight import swinging_to, upcoming
 from surefoot.planner.ground.terrain import Terrain, flat
 from surefoot.planner.laws.law import Motion
-from surefoot.planner.laws.profiles import PROFILES, Profile
+from surefoot.planner.laws.names import PROFILES
+from surefoot.planner.laws.profiles import Profile
 from surefoot.planner.look import View, look
 from surefoot.planner.measured import Measured
 from surefoot.planner.parameters import PlannerParameters

@@ -27,6 +27,7 @@ class Stream(IntEnum):
     DRIVEN = 13
     LINE = 14
     TOUR = 15
+    INSTRUMENT = 16
 
 
 def generator(seed: int, stream: Stream | None = None, part: int | None = None) -> np.random.Generator:

@@ -82,7 +82,7 @@ class Terrain:
         path_start: x, y [m] and heading [rad] from which footsteps are laid, wherever exactly the feet stand; None
             where any other place is as good.
         wide: whether its faces are so wide that a footstep may be moved anywhere in reach, and its successors with it.
-        plane: height of the ground plane [m].
+        plane: height of the ground plane wherever no box is [m]; the start may be on a box that is higher.
     """
 
     boxes: tuple[Box, ...] = ()

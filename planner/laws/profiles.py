@@ -3,10 +3,10 @@
 from collections.abc import Callable
 from dataclasses import dataclass, replace
 
-from surefoot.planner.laws import names
 from surefoot.planner.laws.dcm_feedback import DcmFeedback
 from surefoot.planner.laws.footstep_tvmpc import ConstantHeightTvmpc, FootstepTvmpc
 from surefoot.planner.laws.law import MotionPlanner
+from surefoot.planner.laws.names import PROFILES
 from surefoot.planner.laws.tvmpc import paper_law, repaired_law
 from surefoot.planner.laws.zmp_preview import ZmpPreview
 from surefoot.planner.model.jerk import BLOCK_STARTS
@@ -57,16 +57,11 @@ _PAPER = PlannerParameters(
 )
 _REPAIRED = replace(_PAPER, moves=BLOCK_STARTS)
 
-_SAID = names.PROFILES.said
+_SAID = PROFILES.said
 
-_OWN = (
-    Profile("default", _SAID["default"], PlannerParameters(), FootstepTvmpc, True, catches=True),
-    Profile("paper", _SAID["paper"], _PAPER, paper_law, moves=True, height=PaperHeight()),
-    Profile("repaired", _SAID["repaired"], _REPAIRED, repaired_law, moves=True),
-    Profile("lti", _SAID["lti"], PlannerParameters(), ConstantHeightTvmpc, True, catches=True),
-    Profile("preview", _SAID["preview"], PlannerParameters(), ZmpPreview, moves=False),
-    Profile("dcm", _SAID["dcm"], PlannerParameters(), DcmFeedback, moves=False),
-)
-
-PROFILES = names.PROFILES.filled(Profile, {profile.name: profile for profile in _OWN})
-"""Every profile by its name: these, and those of other packages (see `surefoot.parts.plugins`)."""
+DEFAULT = Profile("default", _SAID["default"], PlannerParameters(), FootstepTvmpc, True, catches=True)
+PAPER = Profile("paper", _SAID["paper"], _PAPER, paper_law, moves=True, height=PaperHeight())
+REPAIRED = Profile("repaired", _SAID["repaired"], _REPAIRED, repaired_law, moves=True)
+LTI = Profile("lti", _SAID["lti"], PlannerParameters(), ConstantHeightTvmpc, True, catches=True)
+PREVIEW = Profile("preview", _SAID["preview"], PlannerParameters(), ZmpPreview, moves=False)
+DCM = Profile("dcm", _SAID["dcm"], PlannerParameters(), DcmFeedback, moves=False)

@@ -87,7 +87,7 @@ def swing_course(
     course = _gentlest(start, end, needed, clearance, samples, parameters)
     if course is None:
         what = f"footstep {number} cannot be swung {EDGE_CLEARANCE * length:g} m clear of the edges before it"
-        raise ParameterError(("terrain", "depth"), what, "give the treads more depth, or the swing more height")
+        raise ParameterError(("terrain",), what, "put the edges farther apart, or give the swing more height")
     return course
 
 

@@ -10,7 +10,7 @@ from surefoot.planner.laws.names import PROFILES
 from surefoot.scenarios import catalogue
 from surefoot.scenarios.cli import texts
 from surefoot.scenarios.cli.files import brought, first_line
-from surefoot.scenarios.file.registries import CONTROLLERS, PLANT_NAMES, SOURCES, TERRAIN_KINDS
+from surefoot.scenarios.file.registries import CONTROLLERS, INSTRUMENTS, PLANT_NAMES, SOURCES, TERRAIN_KINDS
 from surefoot.scenarios.judge.names import METRICS
 from surefoot.wbc.tasks.registry import TASKS
 
@@ -21,6 +21,7 @@ _REGISTRIES: Mapping[str, Registry[Any]] = {
     "estimator": SOURCES,
     "controller": CONTROLLERS,
     "plant": PLANT_NAMES,
+    "instrument": INSTRUMENTS,
     "task": TASKS,
     "metric": METRICS,
 }
@@ -32,8 +33,8 @@ class Entry:
     """Something that can be run, or that a scenario can name.
 
     Attributes:
-        kind: scenario, control, robot, profile, terrain, estimator, controller, plant, task, metric, or one of files as
-            campaign.
+        kind: scenario, control, robot, profile, terrain, estimator, controller, plant, instrument, task, metric, or one
+            of files as campaign.
         name: its name.
         package: what brings it.
         doc: what it is, in one line; empty where nothing says so.

@@ -37,6 +37,17 @@ def key(default: Any, description: str) -> Any:
     return Field(default=default, description=description)
 
 
+class Unfelt:
+    """The mark of a key of `Scenario`, of a group or a list, that as a whole has no effect on kinds of walker.
+
+    Attributes:
+        by: these kinds, as `Scenario.walker` names them.
+    """
+
+    def __init__(self, *by: str) -> None:
+        self.by = by
+
+
 def groups_in(annotation: Any) -> Iterator[type[BaseModel]]:
     """The groups that an annotation names, however deep in it."""
     if isinstance(annotation, type) and issubclass(annotation, BaseModel):

@@ -65,12 +65,21 @@ def unknown(keys: Any) -> list[Problem]:
 
 def _named(keys: Any) -> Iterator[tuple[Key, str, Registry[Any]]]:
     """Every name that is written, with its place; a robot file is no name."""
-    for key, registry in REGISTRIES.items():
-        value = keys
-        for part in key:
-            value = value.get(part) if isinstance(value, dict) else None
-        if isinstance(value, str) and not (key == ("robot",) and is_file(value)):
-            yield key, value, registry
-        for index, name in enumerate(value if isinstance(value, list) else ()):
-            if isinstance(name, str):
-                yield (*key, index), name, registry
+    for path, registry in REGISTRIES.items():
+        for key, value in _written(keys, path):
+            if isinstance(value, str) and not (key == ("robot",) and is_file(value)):
+                yield key, value, registry
+            for index, name in enumerate(value if isinstance(value, list) else ()):
+                if isinstance(name, str):
+                    yield (*key, index), name, registry
+
+
+def _written(values: Any, path: Key, at: Key = ()) -> Iterator[tuple[Key, Any]]:
+    """What is written at a path of keys into plain values, with its place, of which a list on the way has several."""
+    if not path:
+        yield at, values
+    elif isinstance(values, list):
+        for index, element in enumerate(values):
+            yield from _written(element, path, (*at, index))
+    elif isinstance(values, dict):
+        yield from _written(values.get(path[0]), path[1:], (*at, path[0]))

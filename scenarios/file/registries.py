@@ -3,46 +3,77 @@
 from typing import Any
 
 from surefoot.models.names import ROBOTS
-from surefoot.parts.plugins import Declared, Registry
+from surefoot.parts.plugins import At, Declared, Registry
 from surefoot.planner.laws.names import PROFILES
 from surefoot.scenarios.errors import Key
 from surefoot.wbc.tasks.registry import TASKS
 
+_TERRAIN = "surefoot.scenarios.setup.terrain"
+
 TERRAIN_KINDS: Declared[Any] = Declared(
     "surefoot.terrains",
+    f"{_TERRAIN}.ground:TerrainKind",
     {
-        "flat": "The bare ground plane",
-        "stairs": "A staircase, from the middle of the start feet along the start heading",
-        "blocks": "A field of blocks; left and right ones stand side by side with a gap between them",
-        "slope": "A slope along the start heading; by default its edge is half a step ahead of the start",
+        "flat": At("The bare ground plane", f"{_TERRAIN}.level:FLAT"),
+        "stairs": At(
+            "A staircase, from the middle of the start feet along the start heading", f"{_TERRAIN}.stairs:STAIRS"
+        ),
+        "blocks": At(
+            "A field of blocks; left and right ones stand side by side with a gap between them",
+            f"{_TERRAIN}.faces:BLOCKS",
+        ),
+        "slope": At(
+            "A slope along the start heading; by default its edge is half a step ahead of the start",
+            f"{_TERRAIN}.faces:SLOPE",
+        ),
     },
 )
-"""Names of ``terrain.kind``; `surefoot.scenarios.setup.terrain` brings the builders of the ground."""
+"""Kinds of ground by the value of ``terrain.kind``: builders of the ground."""
 
 SOURCES: Declared[Any] = Declared(
     "surefoot.estimators",
+    None,
     {
-        "truth": "No estimation: the true state. The default",
-        "ekf": "An invariant Kalman filter of IMU, encoders and feet",
+        "truth": At("No estimation: the true state. The default", "surefoot.scenarios.run.sensing:TrueState"),
+        "ekf": At("An invariant Kalman filter of IMU, encoders and feet", "surefoot.scenarios.run.sensing:ekf"),
     },
 )
-"""Names of ``sensing.source``; `surefoot.scenarios.run.sensing` brings the estimators of the state."""
+"""Makers of an estimator of the state by the value of ``sensing.source``."""
 
 PLANT_NAMES: Declared[Any] = Declared(
     "surefoot.plants",
+    None,
     {
-        "mujoco": "The simulated world of MuJoCo, with the true robot on the true ground",
-        "log": "What a log holds up to a time, then the simulated world from the state of the log on",
+        "mujoco": At(
+            "The simulated world of MuJoCo, with the true robot on the true ground",
+            "surefoot.scenarios.run.full:simulated",
+        ),
+        "log": At(
+            "What a log holds up to a time, then the simulated world from the state of the log on",
+            "surefoot.scenarios.run.full:going_on",
+        ),
     },
 )
-"""Names of ``plant.name``; `surefoot.scenarios.run.plant` brings the plants, which move the robot."""
+"""Makers of a plant, which moves the robot, by the value of ``plant.name``."""
 
 CONTROLLERS: Declared[Any] = Declared(
     "surefoot.controllers",
-    {"policy": "A network that a contract tells what it observes and what its outputs mean"},
-    "surefoot.scenarios.policy.controller",
+    None,
+    {
+        "policy": At(
+            "A network that a contract tells what it observes and what its outputs mean",
+            "surefoot.scenarios.policy.controller:Policy",
+        )
+    },
 )
-"""Names of ``controller.name``, which takes the seat of planner and whole-body controller."""
+"""Makers of what takes the seat of planner and whole-body controller, by the value of ``controller.name``."""
+
+INSTRUMENTS: Declared[Any] = Declared(
+    "surefoot.instruments",
+    "surefoot.scenarios.run.instruments:Instrument",
+    {"altimeter": At("The height of the base over the world's zero", "surefoot.scenarios.run.altimeter:ALTIMETER")},
+)
+"""Instruments, which read the true state into the log, by the value of ``instruments.name``."""
 
 DEFAULTS = {
     "terrain": "flat",
@@ -62,5 +93,6 @@ REGISTRIES: dict[Key, Registry[Any]] = {
     ("wbc", "tasks"): TASKS,
     ("plant", "name"): PLANT_NAMES,
     ("controller", "name"): CONTROLLERS,
+    ("instruments", "name"): INSTRUMENTS,
 }
-"""Registries by the key that names a part, or several."""
+"""Registries by the key that names a part, or several; it may be one of each element of a list."""

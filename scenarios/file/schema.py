@@ -4,17 +4,27 @@ One frozen model per group. Every key has a default, so a scenario file states o
 relates several keys (rates that divide, steps within reach) is checked in ``checks``.
 """
 
+from collections.abc import Callable, Iterator, Mapping
 from contextlib import suppress
 from typing import Annotated, Any, Literal
 
 from pydantic import BaseModel, BeforeValidator, Field, SerializeAsAny
 
-from surefoot.parts.plugins import PluginError
+from surefoot.parts.plugins import PluginError, Registry
 from surefoot.scenarios.file.control import ControlSettings, PlantSettings, SeatSettings
 from surefoot.scenarios.file.criteria import Bound, standing_walk
-from surefoot.scenarios.file.group import WHOLE, ControllerSettings, Group, Many, RecoverySettings, as_tuple, key
-from surefoot.scenarios.file.names import OneOf
-from surefoot.scenarios.file.registries import DEFAULTS, TERRAIN_KINDS
+from surefoot.scenarios.file.group import (
+    WHOLE,
+    ControllerSettings,
+    Group,
+    Many,
+    RecoverySettings,
+    Unfelt,
+    as_tuple,
+    key,
+)
+from surefoot.scenarios.file.names import OneOf, usable
+from surefoot.scenarios.file.registries import DEFAULTS, INSTRUMENTS, TERRAIN_KINDS
 from surefoot.scenarios.file.search import MOST_RUNS, Bisect
 from surefoot.scenarios.file.sensing import MotorSettings, Sensing
 from surefoot.scenarios.file.units import METRE, RADIAN, SECOND, Unit
@@ -80,20 +90,64 @@ class TerrainSettings(Group):
     friction: Annotated[float, Field(ge=0, le=10)] = key(0.8, "Coulomb coefficient of every surface [-]")
 
 
+class InstrumentFault(Group):
+    """A fault of an instrument's readings for a time."""
+
+    kind: Literal["freeze", "drop", "jump"] = Field(
+        description="it says what it said last; it says nothing; each of its numbers is more by size"
+    )
+    time: Instant = key(0.0, "begin")
+    duration: Span | None = key(None, "how long, null: to the end")
+    size: Annotated[float, Field(ge=-1e9, le=1e9)] | None = key(None, "of a jump, in the unit of what is read")
+
+
+class InstrumentSettings(Group):
+    """An instrument, which reads the true state into the log; noises and biases are standard deviations."""
+
+    name: Annotated[str, OneOf("instruments", "name")] = Field(description="which one")
+    label: Annotated[str, Field(max_length=100, pattern=NAME)] | None = key(
+        None, "name of its channel and of its random numbers, null: that of the instrument"
+    )
+    period: Span | None = key(None, "from one reading to the next, each at the first control tick then, null: a tick")
+    faults: Many[InstrumentFault] = key((), "faults of its readings, in time")
+
+
+_KINDS: Mapping[type[BaseModel], tuple[str, Registry[Any]]] = {
+    TerrainSettings: ("kind", TERRAIN_KINDS),
+    InstrumentSettings: ("name", INSTRUMENTS),
+}
+"""Groups whose kinds have keys of their own: the key that names the kind, and the kinds."""
+
+
 def model_of(model: type[BaseModel], values: Any) -> type[BaseModel]:
-    """The model of a group with plain values, also wrong ones: of the ground that of its kind, if it has own keys."""
-    kind = values.get("kind") if model is TerrainSettings and isinstance(values, dict) else None
-    if not isinstance(kind, str) or kind == DEFAULTS["terrain"]:
+    """The model of a group with plain values, also wrong ones: where there are kinds of it, that of the kind."""
+    name, registry = _KINDS.get(model, ("", None))
+    kind = values.get(name) if registry is not None and isinstance(values, dict) else None
+    if registry is None or not isinstance(kind, str) or (model, kind) == (TerrainSettings, DEFAULTS["terrain"]):
         return model
     with suppress(LookupError, PluginError):
-        own = TERRAIN_KINDS[kind].settings
-        return own if isinstance(own, type) and issubclass(own, TerrainSettings) else model
+        own = registry[kind].settings
+        return own if isinstance(own, type) and issubclass(own, model) else model
     return model
 
 
-def _by_its_kind(values: Any) -> Any:
-    own = model_of(TerrainSettings, values)
-    return values if own is TerrainSettings else own.model_validate(values)
+def own_models(model: type[BaseModel]) -> Iterator[tuple[str, type[BaseModel]]]:
+    """The kinds of a group that have keys of their own, each with its model; none of a group without kinds."""
+    name, registry = _KINDS.get(model, ("", None))
+    for kind in () if registry is None else usable(registry):
+        own = model_of(model, {name: kind})
+        if own is not model:
+            yield kind, own
+
+
+def _by_its_kind(model: type[BaseModel]) -> Callable[[Any], Any]:
+    """Validator of a group by the model of its kind."""
+
+    def validated(values: Any) -> Any:
+        own = model_of(model, values)
+        return values if own is model else own.model_validate(values)
+
+    return validated
 
 
 class VelocitySettings(Group):
@@ -319,6 +373,9 @@ class LogSettings(Group):
     )
 
 
+_OF_A_BODY, _OF_ITS_CONTROLLER = Unfelt("pendulum"), Unfelt("pendulum", "seat")
+
+
 class Scenario(Group):
     """A walk to simulate and the criteria it must meet."""
 
@@ -335,18 +392,28 @@ class Scenario(Group):
     seed: Annotated[int, Field(ge=0, lt=2**32), WHOLE] = key(0, "seed of everything random [-]")
     duration: Span | None = key(None, "simulated time, null: until the gait has ended")
     robot_options: RobotSettings = key(RobotSettings.model_construct(), "changes to the robot")
-    terrain: Annotated[SerializeAsAny[TerrainSettings], BeforeValidator(_by_its_kind)] = key(
+    terrain: Annotated[SerializeAsAny[TerrainSettings], BeforeValidator(_by_its_kind(TerrainSettings))] = key(
         TerrainSettings.model_construct(), "the ground"
     )
     gait: Gait = key(Gait.model_construct(), "the walk")
     planner: PlannerSettings = key(PlannerSettings.model_construct(), "the planner")
     sensing: Sensing = key(Sensing.model_construct(), "the sensors")
+    instruments: Annotated[
+        Many[Annotated[SerializeAsAny[InstrumentSettings], BeforeValidator(_by_its_kind(InstrumentSettings))]],
+        _OF_A_BODY,
+    ] = key((), "what reads the true state into the log beside all else")
     start: Start = key(Start.model_construct(), "the start pose")
     errors: BeliefErrors = key(BeliefErrors.model_construct(), "the planner's belief minus the truth")
-    motors: MotorSettings | None = key(None, "what motors do beside what is commanded, null: nothing")
-    plant: PlantSettings | None = key(None, "what moves the robot, null: the simulated world")
-    control: ControlSettings | None = key(None, "what the joints are given, null: torques, each control tick")
-    wbc: ControllerSettings | None = key(None, "the whole-body controller, null: as it is")
+    motors: Annotated[MotorSettings | None, _OF_A_BODY] = key(
+        None, "what motors do beside what is commanded, null: nothing"
+    )
+    plant: Annotated[PlantSettings | None, _OF_A_BODY] = key(None, "what moves the robot, null: the simulated world")
+    control: Annotated[ControlSettings | None, _OF_ITS_CONTROLLER] = key(
+        None, "what the joints are given, null: torques, each control tick"
+    )
+    wbc: Annotated[ControllerSettings | None, _OF_ITS_CONTROLLER] = key(
+        None, "the whole-body controller, null: as it is"
+    )
     controller: SeatSettings | None = key(
         None, "what has the seat of planner and whole-body controller, null: they have it"
     )

@@ -2,6 +2,7 @@
 
 import copy
 import itertools
+from contextlib import suppress
 from functools import partial
 from typing import Any, cast, get_origin
 
@@ -104,24 +105,32 @@ def _existing(location: tuple[str | int, ...], data: Any) -> Key:
 def _group(root: type[BaseModel], key: Key, data: Any) -> type[BaseModel]:
     """The group at a path into data; below a field of groups by name stands a name."""
     model: Any = root
+    group: Any = root
     parts = iter(key)
     for part in parts:
-        if isinstance(part, int):
-            continue
         if part == "criteria":
             return Bound
-        annotation = model.model_fields[part].annotation
-        if get_origin(annotation) is dict:
-            next(parts, None)
-        data = data.get(part) if isinstance(data, dict) else None
-        model = model_of(next(groups_in(annotation)), data)
+        if not isinstance(part, int):
+            annotation = model.model_fields[part].annotation
+            group = next(groups_in(annotation))
+            if get_origin(annotation) is dict:
+                next(parts, None)
+        data = _inside(data, part)
+        model = model_of(group, data)
     return cast("type[BaseModel]", model)
+
+
+def _inside(data: Any, part: str | int) -> Any:
+    """The value at a key or a number in data; None where there is none."""
+    with suppress(LookupError, TypeError):
+        return data[part]
+    return None
 
 
 def _unit(root: type[BaseModel], key: Key, data: Any) -> str:
     """SI unit of a key; empty when it has none."""
-    *group, last = (part for part in key if isinstance(part, str))
-    field = _group(root, tuple(group), data).model_fields.get(last)
+    place, last = [(place, part) for place, part in enumerate(key) if isinstance(part, str)][-1]
+    field = _group(root, key[:place], data).model_fields.get(last)
     return unit_of(field.annotation, field.metadata) if field is not None else ""
 
 

@@ -11,7 +11,7 @@ import numpy as np
 
 from surefoot.errors import PartError
 from surefoot.parts.guard import Guard, MisfitError, shown
-from surefoot.parts.plugins import Declared, PluginError
+from surefoot.parts.plugins import PluginError
 from surefoot.scenarios.columns import Reads
 from surefoot.scenarios.errors import LogError, Problem, nearest
 from surefoot.scenarios.judge import (
@@ -23,13 +23,13 @@ from surefoot.scenarios.judge import (
     following,
     health,
     linked,
-    names,
     pushed,
     sensed,
     walking,
 )
 from surefoot.scenarios.judge.digest import CONTROL_TOPICS, GAIT, HELD, SENSED, Digest, RunView, Source
 from surefoot.scenarios.judge.metric import Metric, Reduction
+from surefoot.scenarios.judge.names import METRICS
 from surefoot.scenarios.judge.placed import PLACED
 
 if TYPE_CHECKING:
@@ -52,9 +52,6 @@ def gathered(*modules: ModuleType) -> dict[str, Metric[Any]]:
 
 OWN: Mapping[str, Metric[Any]] = gathered(walking, following, balance, feet, effort, computing, sensed, linked)
 """Ours, in the order in which they are shown."""
-
-METRICS: Declared[Metric[Any]] = names.METRICS.filled(Metric, OWN, lambda metric: metric.meaning)
-"""All by name: ours, then those of other packages."""
 
 
 def register(made: Metric[Any]) -> Metric[Any]:

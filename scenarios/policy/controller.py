@@ -3,6 +3,7 @@
 import math
 from collections.abc import Mapping
 from pathlib import Path
+from typing import Any
 
 import numpy as np
 from numpy.typing import NDArray
@@ -13,7 +14,6 @@ from surefoot.planner.steps.commands import Command
 from surefoot.planner.types import Twist
 from surefoot.readings import Readings
 from surefoot.scenarios.errors import nearest
-from surefoot.scenarios.file.registries import CONTROLLERS
 from surefoot.scenarios.policy.connection import Connection
 from surefoot.scenarios.policy.contract import KEY
 from surefoot.scenarios.policy.files import Files, read
@@ -52,7 +52,12 @@ class Policy:
         ParameterError: contract, network, robot and rates do not fit together, or onnxruntime is not installed.
     """
 
-    def __init__(self, walk: Walk, file: str, digest: str | None = None, known_as: str | None = None) -> None:
+    def __init__(
+        self, walk: Walk, file: str, digest: str | None = None, known_as: str | None = None, **others: Any
+    ) -> None:
+        if others:
+            what = f"controller.options of a policy, which takes none but known_as: {', '.join(others)}"
+            raise ParameterError(("controller", "options"), what, "leave them out")
         files: Files = read(Path(file), walk.robot.joint_names)
         self.walk, self.contract = walk, files.contract
         self.network = Network(files.network)
@@ -170,6 +175,3 @@ class Policy:
         """Give an estimator what was decided; of a policy no acceleration is known."""
         torque = self._command.torque_at(state.q[7:], state.v[6:])
         self._senses.decided(Planned(np.zeros_like(state.v), torque, contact or (True, True), -1))
-
-
-CONTROLLERS.filled(None, {"policy": Policy})

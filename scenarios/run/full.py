@@ -23,7 +23,7 @@ from surefoot.scenarios.record.walk import WalkRecorder
 from surefoot.scenarios.run.assembly import Parts
 from surefoot.scenarios.run.controller import Controller
 from surefoot.scenarios.run.driven import Somebody
-from surefoot.scenarios.run.moved import Moved, coupling_of, sensors_of
+from surefoot.scenarios.run.moved import Moved, coupling_of, instruments_of, sensors_of
 from surefoot.scenarios.run.planning import Planned, Planning
 from surefoot.scenarios.run.plant import Plant, PlantMaker, Sensors, completed, made, push_plant
 from surefoot.scenarios.run.skeleton import ClosedLoop
@@ -81,7 +81,7 @@ def full_loop(walk: Walk, writer: LogWriter, parts: Parts | None = None) -> Clos
     controller.planning.recorder = recorder
     coupled = coupling_of(writer, sizes, plant)
     walker = WholeBody(controller, plant, sensors, body_recorder, view, sensed, coupled)
-    return ClosedLoop.of(walk, walker, recorder)
+    return ClosedLoop.of(walk, walker, recorder, instruments_of(walk, writer, walker))
 
 
 def simulated(walk: Walk) -> World:
@@ -99,7 +99,7 @@ def _world(walk: Walk, pushes: tuple[Push, ...], drives: Drives | None) -> World
     return World(walk.true_robot, walk.ground.true_terrain, walk.rates.physics, pushes, walk.size, drives)
 
 
-def _going_on(walk: Walk, **options: object) -> Plant:
+def going_on(walk: Walk, **options: object) -> Plant:
     """What a log holds, and then the simulated world from its state on."""
     from surefoot.scenarios.run.logged import log_plant
 
@@ -107,7 +107,7 @@ def _going_on(walk: Walk, **options: object) -> Plant:
     return log_plant(walk, _world(walk, (), drives), drives, options)
 
 
-PLANTS: Registry[PlantMaker] = PLANT_NAMES.filled(None, {"mujoco": simulated, "log": _going_on})
+PLANTS: Registry[PlantMaker] = PLANT_NAMES
 """Makers of a plant from a walk and ``plant.options``, by the value of ``plant.name``."""
 
 

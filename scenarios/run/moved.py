@@ -21,6 +21,7 @@ from surefoot.wbc.body.model import RobotTerms
 
 if TYPE_CHECKING:
     from surefoot.scenarios.record.coupling import CouplingRecorder
+    from surefoot.scenarios.run.instruments import Instruments
     from surefoot.sim.readings import SensorSuite
 
 
@@ -54,6 +55,15 @@ def coupling_of(writer: LogWriter, sizes: Sizes, plant: Plant) -> "CouplingRecor
     from surefoot.scenarios.record.coupling import CouplingRecorder
 
     return CouplingRecorder(writer, sizes, plant)
+
+
+def instruments_of(walk: Walk, writer: LogWriter, moved: "Moved") -> "Instruments | None":
+    """The instruments of a run of a robot; None where it has none, which imports none."""
+    if not walk.instruments:
+        return None
+    from surefoot.scenarios.run.instruments import Instruments
+
+    return Instruments(walk, writer, moved)
 
 
 class Moved:

@@ -19,9 +19,9 @@ from surefoot.planner.types import CentroidalState, FeetState, Foot, Footstep, P
 from surefoot.scenarios.file.schema import Fault, Rates
 from surefoot.scenarios.record.walk import WalkRecorder
 from surefoot.scenarios.run.sensing import PlannerSensing
-from surefoot.scenarios.setup.events import FaultWindow
 from surefoot.scenarios.setup.parts import plan as taken_plan
 from surefoot.scenarios.setup.walk import Walk
+from surefoot.scenarios.setup.windows import FaultWindow
 
 ROUNDING = 1e-6
 """Times of commands are compared with those of ticks with this tolerance [ticks]."""

@@ -29,7 +29,7 @@ from surefoot.scenarios.record.seat import SeatRecorder
 from surefoot.scenarios.run.assembly import Parts
 from surefoot.scenarios.run.felt import FeltGait
 from surefoot.scenarios.run.full import plant_of, simulated
-from surefoot.scenarios.run.moved import Moved, coupling_of, sensors_of
+from surefoot.scenarios.run.moved import Moved, coupling_of, instruments_of, sensors_of
 from surefoot.scenarios.run.planning import ROUNDING, RunFault
 from surefoot.scenarios.run.plant import Plant, Sensors, completed, push_plant
 from surefoot.scenarios.run.skeleton import ClosedLoop
@@ -118,7 +118,7 @@ def seat_loop(walk: Walk, writer: LogWriter, parts: Parts | None = None) -> Clos
     sensors = sensors_of(walk, plant, senses)
     read = None if sensors is None else (sensors, ReadingsRecorder(writer, sizes))
     walker = Seated(walk, controller, plant, read, recorder, view, coupling_of(writer, sizes, plant))
-    return ClosedLoop.of(walk, walker, recorder)
+    return ClosedLoop.of(walk, walker, recorder, instruments_of(walk, writer, walker))
 
 
 def name_of(walk: Walk) -> str:

@@ -7,6 +7,7 @@ from typing import TYPE_CHECKING, Any, Protocol
 import numpy as np
 from numpy.typing import NDArray
 
+from surefoot.errors import ParameterError
 from surefoot.parts.plugins import Registry
 from surefoot.planner.model.filter import ZMP_ONLY, CentroidalFilter, FilterNoise
 from surefoot.planner.plan.plan import WalkPlan
@@ -49,12 +50,19 @@ class TrueState:
 
     Args:
         walk: what is run.
+        options: of a scenario, of which it takes none.
+
+    Raises:
+        ParameterError: there are options.
     """
 
     is_truth = True
 
-    def __init__(self, walk: Walk) -> None:
+    def __init__(self, walk: Walk, **options: Any) -> None:
         """Nothing is needed of the walk."""
+        if options:
+            what = f"sensing.options of the true state, which takes none: {', '.join(options)}"
+            raise ParameterError(("sensing", "options"), what, "leave them out, or let sensing.source name another")
         self._state: RobotState | None = None
 
     def estimate(self, measurement: Measurement) -> RobotState:
@@ -94,7 +102,7 @@ def ekf(walk: Walk, **options: Any) -> "SensedState":
     return sensed_state(walk, **options)
 
 
-ESTIMATORS: Registry[EstimatorMaker] = SOURCES.filled(None, {"truth": TrueState, "ekf": ekf})
+ESTIMATORS: Registry[EstimatorMaker] = SOURCES
 """Makers of an estimator from a walk and ``sensing.options``, by the value of ``sensing.source``."""
 
 

@@ -4,7 +4,7 @@ cdef class ClosedLoop:
     cdef readonly object sample, end
     cdef readonly bint fell, done
     cdef readonly object fault
-    cdef object _recorder
+    cdef object _recorder, _instruments
     cdef list _pushes, _begun
     cdef long long _ticks, _last, _ahead
 

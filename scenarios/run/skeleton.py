@@ -5,7 +5,7 @@ from collections.abc import Callable, Iterator, Sequence
 from contextlib import contextmanager, suppress
 from dataclasses import dataclass, replace
 from traceback import format_exception
-from typing import Any, Literal, Protocol, TypeVar
+from typing import TYPE_CHECKING, Any, Literal, Protocol, TypeVar
 
 from surefoot.errors import PartError
 from surefoot.forces import Push
@@ -20,6 +20,9 @@ from surefoot.scenarios.setup.groups.gait import PushPoint
 from surefoot.scenarios.setup.keys import scenario_problem
 from surefoot.scenarios.setup.walk import Walk
 from surefoot.wbc.controller import WholeBodyController
+
+if TYPE_CHECKING:
+    from surefoot.scenarios.run.instruments import Instruments
 
 _PHASE_NAMES = {PhaseKind.STAND: "standing", PhaseKind.DOUBLE: "double support", PhaseKind.SINGLE: "single support"}
 
@@ -185,6 +188,7 @@ class ClosedLoop:
         rate: of the control ticks [Hz].
         duration: simulated time [s].
         pushes: that begin at points of the gait; see `surefoot.scenarios.setup.walk.Walk`.
+        instruments: that read the true state into the log; None for none.
 
     Attributes:
         walker: what walks.
@@ -205,6 +209,7 @@ class ClosedLoop:
         rate: int,
         duration: float,
         pushes: Sequence[tuple[PushPoint, Push]] = (),
+        instruments: "Instruments | None" = None,
     ) -> None:
         self.walker, self.planning = walker, walker.planning
         self._recorder, self.rate = recorder, rate
@@ -214,15 +219,18 @@ class ClosedLoop:
         self._pushes = list(pushes)
         self._begun: list[tuple[PushPoint, Push]] = []
         self.end = End("completed", self._ticks / rate)
+        self._instruments = instruments
         self._ahead = -1
         self.fell = False
         self.done = self._last == 0
         self.fault: RunFault | PartError | None = None
 
     @classmethod
-    def of(cls, walk: Walk, walker: Walker[Any], recorder: RunRecorder) -> "ClosedLoop":
+    def of(
+        cls, walk: Walk, walker: Walker[Any], recorder: RunRecorder, instruments: "Instruments | None" = None
+    ) -> "ClosedLoop":
         """The loop of a walk around what walks it, at its start."""
-        return cls(walker, recorder, walk.rates.control, walk.duration, walk.gait_pushes)
+        return cls(walker, recorder, walk.rates.control, walk.duration, walk.gait_pushes, instruments)
 
     @property
     def time(self) -> float:
@@ -293,6 +301,8 @@ class ClosedLoop:
             since, phase = walker.gait
             self._push(now, since, phase)
         walker.record(now_ns, sample)
+        if self._instruments is not None:
+            self._instruments.tick(tick, now_ns)
         planning = self.planning
         plan = None if planning is None else planning.plan
         if planning is not None and planning.recorder is not None:

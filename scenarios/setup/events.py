@@ -15,7 +15,7 @@ from surefoot.planner.steps.commands import velocity_bouts
 from surefoot.planner.steps.source import AWAY
 from surefoot.planner.types import Twist
 from surefoot.scenarios.errors import Key, Problem
-from surefoot.scenarios.file.schema import CommandSettings, Fault, PushSettings, Rates, VelocitySettings
+from surefoot.scenarios.file.schema import CommandSettings, PushSettings, VelocitySettings
 from surefoot.scenarios.file.sensing import MOTOR_SIZES, SENSOR_SIZES
 from surefoot.scenarios.file.units import meant
 from surefoot.scenarios.record.provenance import Event
@@ -29,51 +29,14 @@ from surefoot.scenarios.setup.groups.gait import (
     velocities_of,
 )
 from surefoot.scenarios.setup.walk import Walk
+from surefoot.scenarios.setup.windows import LEAST, FaultWindow
 from surefoot.sim.pushes import physics_window
 from surefoot.sim.sensor_errors import SOON
 
 Array = NDArray[np.float64]
 
-LEAST = 1e-9
-"""Least impulse per kilogram that pushes, with which a robot moves by a nanometre in a second, and the least of other
-sizes that act: a nanometre, a nanoradian, the mass of a grain of dust [SI]."""
-
 MOST_IDLE = 20
 """Commands that never act that are reported of a scenario."""
-
-
-@dataclass(frozen=True, slots=True)
-class FaultWindow:
-    """A fault on the control clock.
-
-    Attributes:
-        kind: of the fault.
-        start: first control tick at which it holds.
-        end: first control tick at which it does not any more; infinite when it lasts.
-    """
-
-    kind: str
-    start: int
-    end: float
-
-    @classmethod
-    def of(cls, fault: Fault, control_rate: int) -> "FaultWindow":
-        """The window of a fault on a clock of ``control_rate`` [Hz]."""
-        end = math.inf if fault.duration is None else round((fault.time + fault.duration) * control_rate)
-        return cls(fault.kind, round(fault.time * control_rate), end)
-
-    def holds(self, tick: int) -> bool:
-        """Return true if it holds at a control tick."""
-        return self.start <= tick < self.end
-
-    def first_act(self, rates: Rates) -> float:
-        """Time of the first tick at which it does something, infinite when there is none [s].
-
-        A frozen planner is noticed when the next plan is due, but for the first plan, which is made whatever happens.
-        """
-        every = rates.control // rates.planner if self.kind == "planner_freeze" else 1
-        first = max(math.ceil(self.start / every), 1 if every > 1 else 0) * every
-        return first / rates.control if first < self.end else math.inf
 
 
 @dataclass(frozen=True, slots=True)

@@ -16,7 +16,7 @@ from numpy.typing import NDArray
 from surefoot.errors import ParameterError
 from surefoot.models.types import same_robot
 from surefoot.parts.plugins import OWN_PACKAGE
-from surefoot.planner.laws.profiles import PROFILES
+from surefoot.planner.laws.names import PROFILES
 from surefoot.scenarios.errors import Key, ScenarioError
 from surefoot.scenarios.file.criteria import Bound
 from surefoot.scenarios.file.schema import Scenario

@@ -21,7 +21,6 @@ _NAMES: dict[Key, Key] = {
     ("stride", "width"): ("gait", "step_width"),
     ("velocity",): ("gait", "velocity"),
     ("footsteps",): ("gait", "footsteps"),
-    ("terrain", "depth"): ("terrain", "tread"),
     ("parameters", "moves"): ("planner", "control_horizon"),
     ("parameters",): ("planner",),
     ("foot_length",): ("robot_options", "foot_length"),

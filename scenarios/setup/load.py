@@ -29,6 +29,7 @@ from surefoot.scenarios.log.encoding import MAGIC
 from surefoot.scenarios.record import provenance
 from surefoot.scenarios.setup.checks.checks import check
 from surefoot.scenarios.setup.checks.criteria import criteria_problems
+from surefoot.scenarios.setup.keys import scenario_problem
 from surefoot.scenarios.setup.robot.robots import Robots
 from surefoot.scenarios.setup.sized import say_for, sized_walk
 from surefoot.scenarios.setup.terrain import kind_of
@@ -301,6 +302,8 @@ def _checked(scenario: Scenario, robots: Robots) -> tuple[Scenario, list[Problem
         return walk.keys, check(walk, robots)
     except PartError as fault:  # of the ground: what is wrong with a robot is among the checks
         return scenario, [Problem(("terrain", "kind"), fault.what, fault.right)]
+    except ParameterError as refusal:  # of the ground, too
+        return scenario, [scenario_problem(refusal)]
 
 
 def _described(source: Source, alone: list[Problem], together: list[Problem]) -> list[str]:

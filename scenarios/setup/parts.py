@@ -9,7 +9,8 @@ import numpy as np
 
 from surefoot.parts.guard import Guard, Guarded, MisfitError, taken_for
 from surefoot.planner.laws.law import Motion, MotionPlanner, MotionProblem
-from surefoot.planner.laws.profiles import PROFILES, Profile
+from surefoot.planner.laws.names import PROFILES
+from surefoot.planner.laws.profiles import Profile
 from surefoot.planner.plan.plan import WalkPlan
 from surefoot.planner.types import Array
 from surefoot.wbc.estimation.estimate import Estimate

@@ -22,7 +22,16 @@ from surefoot.planner.types import FeetState, Twist
 from surefoot.scenarios.file.control import ControlSettings, SeatSettings
 from surefoot.scenarios.file.dumped import scenario_yaml
 from surefoot.scenarios.file.group import controller_parameters
-from surefoot.scenarios.file.schema import Fault, LogSettings, PendulumSettings, PushSettings, Rates, Scenario, Start
+from surefoot.scenarios.file.schema import (
+    Fault,
+    InstrumentSettings,
+    LogSettings,
+    PendulumSettings,
+    PushSettings,
+    Rates,
+    Scenario,
+    Start,
+)
 from surefoot.scenarios.file.sensing import Sensing
 from surefoot.scenarios.setup.groups.formulation import Formulation, cop_room, leg_reach, lowered, region_of
 from surefoot.scenarios.setup.groups.gait import (
@@ -105,6 +114,11 @@ class Walk:
     def sensing(self) -> Sensing:
         """The knowledge of the robot for planner and controller."""
         return self.keys.sensing
+
+    @property
+    def instruments(self) -> tuple[InstrumentSettings, ...]:
+        """Instruments that read into the log."""
+        return self.keys.instruments
 
     @property
     def faults(self) -> tuple[Fault, ...]:

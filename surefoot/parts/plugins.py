@@ -10,11 +10,12 @@ Nothing is imported before the name is asked for. Whatever such an object does, 
 
 import os
 import sys
-from collections.abc import Callable, Collection, Iterator, Mapping
+from collections.abc import Collection, Iterator, Mapping
 from contextlib import redirect_stdout
+from dataclasses import dataclass
 from functools import lru_cache
 from importlib import import_module
-from typing import TYPE_CHECKING, Any, TypeVar, cast
+from typing import TYPE_CHECKING, Any, Protocol, TypeVar, cast
 
 from surefoot.errors import PluginError
 from surefoot.parts.guard import OWN_GUARD, OWN_PACKAGE, Guard, said
@@ -22,13 +23,12 @@ from surefoot.parts.guard import OWN_GUARD, OWN_PACKAGE, Guard, said
 if TYPE_CHECKING:
     from importlib.metadata import EntryPoint, EntryPoints
 
-__all__ = ["OWN_PACKAGE", "Declared", "PluginError", "Registry", "entry_points", "package_of"]
+__all__ = ["OWN_PACKAGE", "At", "Declared", "Own", "PluginError", "Registry", "entry_points", "package_of"]
 
 AFRESH = "install its package again where entry points have changed"
 """Command that makes known what entry points have been added or renamed in a package which is installed already."""
 
 T = TypeVar("T")
-S = TypeVar("S")
 
 
 class Registry(Mapping[str, T]):
@@ -132,7 +132,7 @@ class Registry(Mapping[str, T]):
 
     def owns(self, thing: object) -> bool:
         """Return true if an object is one of this package's own."""
-        return any(thing is one for one in self._own.values())
+        return any(thing is self._find(name) for name in self._names)
 
     def clashes(self) -> dict[str, PluginError]:
         """Messages for each name of surefoot's own under which another package has something too.
@@ -179,60 +179,73 @@ class Registry(Mapping[str, T]):
         raise PluginError(f"{who} in {self.group} is of type {type(thing).__name__}", f"it must be {wanted}")
 
 
+class Own(Protocol):
+    """A part of this package, which need not be imported to be known."""
+
+    @property
+    def said(self) -> str:
+        """What it is, in one line without a full stop."""
+        ...
+
+    def load(self) -> Any:
+        """The part itself, imported now."""
+        ...
+
+
+@dataclass(frozen=True, slots=True)
+class At:
+    """A part at a place of the code, as an entry point has it.
+
+    Attributes:
+        said: what it is, in one line without a full stop.
+        place: ``module:object``.
+    """
+
+    said: str
+    place: str
+
+    def load(self) -> Any:
+        """The object there."""
+        return _at(self.place)
+
+
 class Declared(Registry[T]):
-    """A registry whose own objects are brought by a module that need not be imported to know of them.
+    """A registry whose own parts are a list of names, of a line each, and of places to import them from when asked for.
 
     Args:
         group: group of entry points.
-        said: what is said of each of its own, by name, in one line; None where its home alone knows its names.
-        home: module that brings the objects by `filled`, imported when one is asked for; empty where a room above has
-            it, which must have been imported before.
+        kind: place of the class of all objects, as ``module:class``; None for what is called, a function or a class.
+        own: the parts of this package by name.
     """
 
-    def __init__(self, group: str, said: Mapping[str, str] | None, home: str = "") -> None:
+    def __init__(self, group: str, kind: str | None, own: Mapping[str, Own]) -> None:
         super().__init__(group, None, {})
-        self._said, self._home = said, home
+        self._kind_at, self._declared = kind, own
 
     @property
     def said(self) -> Mapping[str, str]:
-        """Texts on each of its own, by name."""
-        if self._said is None:
-            self._come_home()
-        return self._said or {}
+        """Texts on each of its own, by name; read when they are asked for."""
+        return {name: own.said for name, own in self._declared.items()}
 
     @property
     def _names(self) -> Collection[str]:
-        return self.said
+        return self._declared.keys()
 
     def _find(self, name: str) -> T | None:
-        if name in self.said and not self._own:
-            self._come_home()
+        if name not in self._own and name in self._declared:
+            self._own[name] = self._checked(self._declared[name].load(), f"'{name}'")
         return self._own.get(name)
 
-    def _come_home(self) -> None:
-        if self._home:
-            import_module(self._home)
+    def _checked(self, thing: object, who: str) -> T:
+        if self._kind is None and self._kind_at is not None:
+            self._kind = _at(self._kind_at)
+        return super()._checked(thing, who)
 
-    def filled(
-        self, kind: type[S] | None, own: Mapping[str, S], said: Callable[[S], str] | None = None
-    ) -> "Declared[S]":
-        """The same registry with the objects of its own names.
 
-        Args:
-            kind: class of all objects, as of a registry.
-            own: the objects of this package.
-            said: what is said of one, where that was not declared.
-
-        Raises:
-            ValueError: these are not its own names.
-        """
-        if said is not None:
-            self._said = {name: said(one) for name, one in own.items()}
-        elif list(own) != list(self._said or ()):
-            raise ValueError(f"{self.group} has of its own {', '.join(self._said or ())}, not {', '.join(own)}")
-        made = cast("Declared[S]", self)
-        made._kind, made._own = kind, dict(own)
-        return made
+def _at(place: str) -> Any:
+    """The object at ``module:object``."""
+    module, _, name = place.partition(":")
+    return getattr(import_module(module), name)
 
 
 def entry_points(group: str) -> "EntryPoints":

@@ -5,11 +5,12 @@ from collections.abc import Iterator
 from pathlib import Path
 from typing import Any, get_args
 
+from every_key import SENSORS
 from pydantic import BaseModel
 
 import surefoot
 from surefoot.scenarios.errors import ScenarioError, SetupError
-from surefoot.scenarios.file.schema import Scenario
+from surefoot.scenarios.file.schema import Scenario, own_models
 from surefoot.scenarios.log import Log, read
 from surefoot.scenarios.setup.load import read_scenario
 from surefoot.scenarios.show.differences import WALL_CLOCK
@@ -71,6 +72,11 @@ BODIES = {
     "body-ground": BODY
     + f"gait: {{steps: 2, step_length: 0.2, {PACE}}}\nduration: 2.0\n"
     + "errors: {ground: [{x: 0.35, length: 0.3, height: 0.005}]}\n",
+    "body-instrument": BODY
+    + STAND
+    + "duration: 0.5\n"
+    + "instruments: [{name: altimeter, noise: 0.001, period: 0.02, faults: [{kind: jump, time: 0.3, size: 0.1}]}]\n",
+    "body-sensed": BODY + STAND + "duration: 0.5\nsensing: {source: ekf}\n",
     "body-fault": BODY + STAND + "duration: 0.5\nfaults: [{kind: qp_failure, time: 0.2, duration: 0.01}]\n",
 }
 """Bases in full physics."""
@@ -108,6 +114,12 @@ VALUES: dict[str, tuple[Any, ...]] = {
     "sensing.zmp_noise": (0.005, 1e-300),
     "sensing.com_noise": (0.001, 1e-300),
     "sensing.force_estimate": (False,),
+    "sensing.source": ("ekf",),
+    "sensing.options": ({"covariance_rate": 20.0}, {"force": 1.0}),
+    **{f"sensing.{name}": (value,) for name, value in SENSORS.items()},
+    "sensing.wrench": ("none",),
+    "sensing.encoder_velocity": (False,),
+    **dict.fromkeys((f"sensing.{name}" for name in SENSORS if name.endswith("dropout")), (0.2,)),
     "start.position_noise": (0.002, 1e-300),
     "start.angle_noise": (0.002, 1e-300),
     "start.x": (0.5, 1e-300),
@@ -131,7 +143,38 @@ VALUES: dict[str, tuple[Any, ...]] = {
     "motors.noise": (1.0,),
     "motors.torque_speed": (0.05,),
     "errors.payload": ({"mass": 2.0}, {"mass": 0.0}, {"mass": 1e-300}),
+    "errors.payload.mass": (2.0,),
     "errors.payload.body": ("pelvis",),
+    "instruments": ([{"name": "altimeter"}], [{"name": "altimeter", "period": 0.001}]),
+    "instruments.0.name": ("altimeter",),
+    "instruments.0.label": ("other",),
+    "instruments.0.period": (0.05, 1e-9),
+    "instruments.0.noise": (0.01, 1e-300),
+    "instruments.0.bias": (0.01, 1e-300),
+    "instruments.0.faults": ([{"kind": "freeze", "time": 0.2}], [{"kind": "drop", "time": 50.0}]),
+    "instruments.0.faults.0.kind": ("freeze", "drop"),
+    "instruments.0.faults.0.duration": (0.1, 1e-9, 50.0),
+    "instruments.0.faults.0.size": (0.2, 1e-300, 0.0),
+    "plant.name": ("mujoco",),
+    "plant.options": ({"refined": 2},),
+    "control.output": ("position",),
+    "control.output_rate": (250,),
+    "control.stiffness": (1.5,),
+    "control.damping": (0.02,),
+    "control.gains": ({".*": [100.0, 1.0]},),
+    "control.feed_forward": (False,),
+    "control.driven_joints": ({".*elbow.*": [10.0, 1.0]},),
+    "control.driven_motion": (0.1,),
+    "control.driven_told": (False,),
+    "control.give_way": (False,),
+    "controller.name": ("policy",),
+    "controller.options": ({"stiffness": 2},),
+    "controller.policy": ("nowhere.yaml",),
+    "controller.digest": ("0" * 64,),
+    "controller.left_out": (["fell"],),
+    "log.keep": (1.0,),
+    "log.rate": (50,),
+    "planner.without": (["goes_again"],),
     "wbc.tasks": ([],),
     "wbc.friction": (0.5, 0.8),
     "wbc.solver": ("proxqp",),
@@ -150,11 +193,13 @@ VALUES: dict[str, tuple[Any, ...]] = {
     "pushes.0.elevation": (0.4,),
     "commands": ([{"time": 0.5, "swing_height": 0.07}], [{"time": 0.5, "v_x": 1e-300}]),
     "commands.0.v_y": (0.05,),
+    "commands.0.march": (True,),
     "commands.0.yaw_rate": (0.05,),
     "commands.0.double_support": (0.2,),
     "commands.0.swing_height": (0.07,),
     "faults": ([{"kind": "planner_freeze", "time": 0.5}], [{"kind": "qp_failure", "time": 0.4, "duration": 0.02}]),
     "faults.0.duration": (0.2,),
+    "faults.0.kind": ("state_nan",),
     "rates.physics": (2000,),
     "rates.control": (250,),
     "rates.planner": (100,),
@@ -170,7 +215,9 @@ def keys(group: type[BaseModel] = Scenario, *path: str) -> Iterator[str]:
         if inner is None or listed or name == "payload":
             yield key
         if inner is not None:
-            yield from keys(inner, *path, f"{name}.0" if listed else name)
+            place = f"{name}.0" if listed else name
+            models = [inner, *(own for _, own in own_models(inner))]
+            yield from dict.fromkeys(found for model in models for found in keys(model, *path, place))
 
 
 def _group_in(annotation: Any) -> type[BaseModel] | None:
@@ -180,14 +227,14 @@ def _group_in(annotation: Any) -> type[BaseModel] | None:
 
 
 def value_of(scenario: Scenario, key: str) -> Any:
-    """The value of a dotted key.
+    """The value of a dotted key; None in a group that is null, whose keys may be set all the same.
 
     Raises:
         LookupError: the scenario has no such place.
     """
     value: Any = scenario
     for part in key.split("."):
-        if value is None and key.startswith(("wbc.", "motors.")):
+        if value is None and not part.isdigit():
             return None
         if value is None:
             raise LookupError(key)
@@ -199,13 +246,16 @@ def values_of(key: str, present: Any) -> tuple[Any, ...]:
     """Values to set in the place of the present one; none where none is known."""
     if key in VALUES:
         return tuple(value for value in VALUES[key] if value != present)
+    if isinstance(present, tuple) and present and all(isinstance(one, float) for one in present):
+        return ([1.1 * one for one in present],)
     if isinstance(present, bool) or not isinstance(present, int | float):
         return ()
     return (present + 1,) if isinstance(present, int) else (1.1 * present if present else 0.01,)
 
 
-def controller_values() -> dict[str, Any]:
-    """The controller's own values of the keys wbc.*."""
+def usual_values() -> dict[str, Any]:
+    """The values of the keys wbc.* and planner.recovery.* that null stands for."""
+    from surefoot.planner.parameters import RecoveryParameters
     from surefoot.wbc.parameters import WbcParameters
 
     found: dict[str, Any] = {}
@@ -216,9 +266,10 @@ def controller_values() -> dict[str, Any]:
             if hasattr(value, "__dataclass_fields__"):
                 walk(value, *path, name)
             else:
-                found[".".join(("wbc", *path, name))] = value
+                found[".".join((*path, name))] = value
 
-    walk(WbcParameters())
+    walk(WbcParameters(), "wbc")
+    walk(RecoveryParameters(), "planner", "recovery")
     return found
 
 
@@ -228,6 +279,18 @@ def content(log: Log) -> str:
     for topic in sorted(log.numeric):
         digest.update(topic.encode() + (b"" if topic in WALL_CLOCK else log[topic].content()))
     return digest.hexdigest()
+
+
+def trials(scenario: Scenario) -> Iterator[tuple[str, Any]]:
+    """Every key of the schema that has a place in a scenario, with each value to set there."""
+    usual = usual_values()
+    for key in keys():
+        try:
+            present = value_of(scenario, key)
+        except (LookupError, AttributeError, TypeError):
+            continue
+        for value in values_of(key, usual.get(key) if present is None else present):
+            yield key, value
 
 
 class Experiment:
@@ -260,11 +323,4 @@ class Experiment:
 
     def trials(self) -> Iterator[tuple[str, Any]]:
         """Every key of the schema that has a place in the base, with each of its values."""
-        controller = controller_values()
-        for key in keys():
-            try:
-                present = value_of(self.scenario, key)
-            except (LookupError, AttributeError, TypeError):
-                continue
-            for value in values_of(key, controller.get(key) if present is None else present):
-                yield key, value
+        return trials(self.scenario)

@@ -1,9 +1,10 @@
 """A key that is set acts, is refused, fails, or is told in a note; none leaves the run as it was without a word."""
 
 import pytest
-from experiment import BASES, BODIES, Experiment, keys, values_of
+from experiment import BASES, BODIES, Experiment, keys, trials, values_of
 
 from surefoot.scenarios.errors import ScenarioError
+from surefoot.scenarios.file.schema import Scenario
 from surefoot.scenarios.run.simulation import Simulation
 from surefoot.scenarios.setup.load import load, read_scenario
 
@@ -20,9 +21,15 @@ WITHOUT_OCCASION = {
     "terrain.friction": "a bound of the contact forces, which they may stay within",
     "wbc.friction": "a bound of the contact forces as it is believed",
     "errors.friction": "a bound of the contact forces, which they may stay within",
+    "sensing.gyro_range": "a bound of what is read, which it may stay within",
+    "sensing.accelerometer_range": "a bound of what is read, which it may stay within",
     "motors.torque_speed": "a bound of the torques, which they may stay within",
     "planner.without": "leaves out what acts when a push asks for it",
+    **dict.fromkeys((key for key in keys() if key.startswith("planner.recovery.")), "acts when a push asks for it"),
     "wbc.second_solver": "acts when the first one fails",
+    "control.give_way": "acts when the robot falls",
+    "log.keep": "a run that is no longer is held whole",
+    "log.rate": "bounds what no metric reads, none of which is in a digest of what is measured",
     "wbc.weights.swing": "acts on a foot that swings",
     **dict.fromkeys((key for key in keys() if key.endswith("_catching")), "acts while a step catches the body"),
     **dict.fromkeys(
@@ -40,6 +47,17 @@ WITHOUT_OCCASION = {
 }
 """Keys that may do nothing without a word, and why: what they ask for is true of the run as it is."""
 
+UNFELT = {
+    key: group
+    for group, field in Scenario.model_fields.items()
+    for key in keys()
+    if key.startswith(f"{group}.") and any("pendulum" in getattr(mark, "by", ()) for mark in field.metadata)
+}
+"""Keys of groups that have no effect on a pendulum, which one note says of all keys of a group."""
+
+FIRST = {next(key for key, of in UNFELT.items() if of == group) for group in UNFELT.values()}
+"""One key of each of these groups."""
+
 NOTHING = {
     **dict.fromkeys(("gait.lateral_step", "gait.turn", "start.x", "start.y", "start.yaw"), 1e-300),
     **dict.fromkeys(
@@ -48,8 +66,9 @@ NOTHING = {
     "errors.torso_mass": 1.0,
     "errors.torso_com": [0, 0, 0],
     "wbc.tasks": [],
+    "plant.name": "mujoco",
 }
-"""Keys of which this value asks for nothing: a place that is where 0 is, no error, no task."""
+"""Keys of which this value asks for nothing: a place that is where 0 is, no error, no task, the plant there is."""
 
 
 @pytest.fixture(scope="module")
@@ -86,6 +105,26 @@ def test_a_key_that_is_set_is_never_silent(experiments, base, key, value, outcom
     assert experiments(base).outcome(key, value) == outcome
 
 
+UNTRIED = {
+    "name": "of the log",
+    "instruments.0.name": "there is one instrument",
+    "pushes.0.live": "says of whom a push came",
+    "commands.0.live": "says of whom a command came",
+    **dict.fromkeys(("criteria.min", "criteria.max", "criteria.equals"), "of a metric, by its name"),
+}
+"""Keys that no base can be given anew, and why."""
+
+
+@pytest.mark.unit
+def test_every_key_is_tried_in_some_base():
+    """Also one of a group that is null by default, and one that is null itself."""
+    scenarios = [read_scenario(text, "f.yaml", "f") for text in {**BASES, **BODIES}.values()]
+    tried = {key for scenario in scenarios for key, _ in trials(scenario)}
+    assert set(keys()) - tried == set(UNTRIED)
+    in_a_null_group = {key for key, _ in trials(scenarios[0])}
+    assert {"motors.delay", "control.output", "errors.payload.mass", "planner.recovery.clear"} <= in_a_null_group
+
+
 @pytest.mark.unit
 def test_what_is_excused_is_a_key():
     assert {*WITHOUT_OCCASION, *NOTHING} <= set(keys())
@@ -105,8 +144,7 @@ def test_no_key_of_the_schema_is_silent(experiments, base):
     experiment, point = experiments(base), base in BASES
     silent, seen = [], 0
     for key, value in experiment.trials():
-        # A pendulum has no controller, which one note says of all of its keys.
-        elsewhere = point and key.startswith("wbc.") and key != "wbc.arm_swing"
+        elsewhere = point and key in UNFELT and key not in FIRST
         if key in WITHOUT_OCCASION or NOTHING.get(key) == value or elsewhere:
             continue
         seen += 1

@@ -11,6 +11,7 @@ from surefoot.scenarios.errors import ScenarioError
 from surefoot.scenarios.file.schema import RobotSettings
 from surefoot.scenarios.log import read
 from surefoot.scenarios.setup.checks.criteria import published
+from surefoot.scenarios.setup.keys import scenario_key
 from surefoot.scenarios.setup.load import Written, for_robot
 from surefoot.scenarios.setup.robot.robots import Robots
 from surefoot.scenarios.setup.terrain import KINDS
@@ -66,6 +67,45 @@ def test_keys_that_do_not_shape_it_are_said_to_be_idle(ditch, tmp_path):
     keys = {**WALK, "fidelity": "pendulum", "duration": 0.1, "terrain.angle": 0.1, "criteria": {}}
     notes = surefoot.run(surefoot.load("diagonal-walk", keys), out=tmp_path).verdict.notes
     assert [note for note in notes if "terrain" in note] == ["terrain.angle has no effect on terrain.kind ditch"]
+
+
+@pytest.mark.unit
+def test_a_common_key_acts_where_the_kind_names_it_and_nowhere_else(ditch, monkeypatch, tmp_path):
+    """Heights are uncertain on a kind that says so; on another a note says that they are not, and they are not."""
+    keys = {**WALK, "fidelity": "pendulum", "duration": 0.1, "terrain.height_noise": 0.01, "criteria": {}}
+    scenario = surefoot.load("diagonal-walk", keys)
+
+    def ground():
+        return Walk(scenario).ground
+
+    assert _same(ground())
+    assert ground().unforeseen == {}
+    notes = surefoot.run(scenario, out=tmp_path).verdict.notes
+    assert "terrain.height_noise has no effect on terrain.kind ditch" in notes
+    monkeypatch.setattr(type(ditch), "keys", (*ditch.keys, "height_noise"))
+    assert not _same(ground())
+    assert ground().unforeseen == {"terrain.height_noise": (1,)}  # the bank of the start is known
+    notes = surefoot.run(scenario, out=tmp_path).verdict.notes
+    assert not any("height_noise has no effect on terrain" in note for note in notes)
+
+
+def _same(ground):
+    pairs = zip(ground.true_terrain.boxes, ground.terrain.boxes, strict=True)
+    return all(np.array_equal(one.center, other.center) for one, other in pairs)
+
+
+@pytest.mark.unit
+def test_a_key_of_its_own_that_is_refused_is_named_as_it_is(ditch, monkeypatch):
+    """Also where a parameter of the planner has the same name."""
+
+    def build(self, ground):
+        raise surefoot.ParameterError(("terrain", "depth"), "a ditch without a floor", "give it one")
+
+    monkeypatch.setattr(type(ditch), "build", build)
+    with pytest.raises(ScenarioError) as refused:
+        surefoot.load("diagonal-walk", {**WALK, "terrain.bank": 1.0})
+    assert scenario_key(("terrain", "depth")) == ("terrain", "depth")
+    assert "a ditch without a floor; give it one" in "\n".join(refused.value.problems)
 
 
 @pytest.mark.physics

@@ -8,9 +8,10 @@ import pytest
 
 from surefoot.models.registry import ROBOTS
 from surefoot.parts import plugins
-from surefoot.parts.plugins import AFRESH, OWN_PACKAGE, Declared, PluginError, Registry
+from surefoot.parts.plugins import AFRESH, OWN_PACKAGE, At, Declared, PluginError, Registry
 from surefoot.planner.laws.profiles import PROFILES
 from surefoot.scenarios.catalogue import SCENARIOS
+from surefoot.scenarios.file.registries import REGISTRIES
 from surefoot.scenarios.judge.metrics import METRICS
 from surefoot.scenarios.run.full import PLANTS
 from surefoot.scenarios.run.sensing import ESTIMATORS
@@ -152,23 +153,35 @@ def test_every_registry_of_surefoot_has_a_row_in_the_documentation():
         assert f'[project.entry-points."{group}"]' in page
 
 
-def test_a_room_below_knows_the_names_whose_objects_a_room_above_brings():
-    names: Declared = Declared("surefoot.nothing", {"one": "the first", "two": "the second"})
+def test_what_is_declared_is_known_before_it_is_imported_and_imported_when_it_is_asked_for(others):
+    """The fixture's modules count how often they are imported."""
+    own = {"one": At("the first", "counted:LONG"), "two": At("the second", "counted:LONG")}
+    names: Declared = Declared("surefoot.nothing", "counted:Length", own)
     assert list(names) == ["one", "two"] and names.said["two"] == "the second"
-    with pytest.raises(KeyError):
-        names["one"]  # the room above was not imported
     assert "one" in names and names.package("one") == OWN_PACKAGE
     assert names.refusal("one") is None and names.refusal("three") is None
     with pytest.raises(PluginError, match="surefoot's own"):
         names.add("one", 1)
-    with pytest.raises(ValueError, match="one, two, not one"):
-        names.filled(int, {"one": 1})
-    filled = names.filled(int, {"one": 1, "two": 2})
-    assert dict(filled) == dict(names) == {"one": 1, "two": 2}
-    with pytest.raises(PluginError, match="it must be a int"):
-        filled.add("three", "3")
-    filled.add("three", 3)
-    assert names["three"] == 3
+    assert LOADS == [] and "counted" not in sys.modules
+    long = names["one"]
+    assert names["one"] is long and names.owns(long) and not names.owns(object())
+    with pytest.raises(PluginError, match="it must be a Length"):
+        names.add("three", "3")
+    assert names.add("three", long) is names["three"]
+
+
+def test_a_declared_part_of_another_kind_is_refused(others):
+    names: Declared = Declared("surefoot.nothing", "counted:Length", {"word": At("no length", "counted:WORD")})
+    with pytest.raises(PluginError, match=r"'word' in surefoot\.nothing is of type str; it must be a Length"):
+        names["word"]
+
+
+@pytest.mark.parametrize("group", sorted(registry.group for registry in (*REGISTRIES.values(), METRICS)))
+def test_every_declared_part_is_where_it_is_said_to_be_and_has_its_name(group):
+    (registry,) = (one for one in (*REGISTRIES.values(), METRICS) if one.group == group)
+    for name in registry.said if isinstance(registry, Declared) else ():
+        assert getattr(registry[name], "name", name) == name
+        assert registry.package(name) == OWN_PACKAGE
 
 
 def test_what_is_said_of_a_part_before_it_is_imported_is_what_it_says_itself():

@@ -24,6 +24,7 @@ from surefoot.scenarios.setup.events import command_problems, cut_off, idle_comm
 from surefoot.scenarios.setup.groups.formulation import LONGEST_REACH
 from surefoot.scenarios.setup.groups.gait import commanded, step_region, twist_of, uncommanded
 from surefoot.scenarios.setup.groups.hardware import hardware_problems
+from surefoot.scenarios.setup.groups.instruments import instrument_problems
 from surefoot.scenarios.setup.keys import scenario_problem
 from surefoot.scenarios.setup.robot.robots import Robots, is_known
 from surefoot.scenarios.setup.terrain.ground import uneven_problems
@@ -58,8 +59,15 @@ def check(walk: Walk, robots: Robots) -> list[Problem]:
         *_seat(walk),
         *_robot(walk, robots),
         *hardware_problems(walk.sensing, walk.keys.motors, walk.rates.physics),
+        *_instruments(walk),
         *(() if walk.walker.has_body else _without_body(walk)),
     ]
+
+
+def _instruments(walk: Walk) -> Iterator[Problem]:
+    """List what of the instruments cannot act on a robot; a pendulum has none, as a note says."""
+    if walk.instruments and walk.walker.has_body:
+        yield from instrument_problems(walk.instruments, walk.rates.control, walk.duration)
 
 
 def _seat(walk: Walk) -> Iterator[Problem]:

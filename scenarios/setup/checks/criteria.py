@@ -9,13 +9,12 @@ from typing import Any
 
 from surefoot.scenarios.errors import Problem, nearest
 from surefoot.scenarios.file.criteria import Bound
-from surefoot.scenarios.file.names import usable
-from surefoot.scenarios.file.schema import Scenario, TerrainSettings, model_of
+from surefoot.scenarios.file.schema import InstrumentSettings, Scenario, TerrainSettings, own_models
 from surefoot.scenarios.judge.metric import TRUTH, Metric
-from surefoot.scenarios.judge.metrics import METRICS, known
+from surefoot.scenarios.judge.metrics import known
+from surefoot.scenarios.judge.names import METRICS
 from surefoot.scenarios.judge.verdict import applies
 from surefoot.scenarios.setup.robot.robots import Robots
-from surefoot.scenarios.setup.terrain import KINDS
 
 
 def criteria_problems(criteria: Mapping[str, Bound], walker: str) -> list[Problem]:
@@ -142,18 +141,25 @@ def published() -> dict[str, Any]:
     files = {"type": "string", "pattern": r"\.ya?ml$"}
     keys["robot"] = {**keys["robot"], "anyOf": [{"enum": list(Robots().names())}, files]}
     keys["robot"].pop("type")
-    ground = schema["$defs"]["TerrainSettings"]
-    for kind in usable(KINDS):
-        model = model_of(TerrainSettings, {"kind": kind})
-        if model is TerrainSettings:
-            continue
-        own = model.model_json_schema()
-        ground["properties"] = own["properties"] | ground["properties"]
-        schema["$defs"] = own.get("$defs", {}) | schema["$defs"]
+    for group in (TerrainSettings, InstrumentSettings):
+        properties = schema["$defs"][group.__name__]["properties"]
+        for _, model in own_models(group):
+            own = model.model_json_schema()
+            for name, described in own["properties"].items():
+                properties[name] = _either(properties.get(name, described), described)
+            schema["$defs"] = own.get("$defs", {}) | schema["$defs"]
     bounds = {name: _criterion(name, metric) for metric in filter(None, map(known, METRICS)) for name in metric.bounded}
     keys["criteria"] |= {"properties": bounds, "additionalProperties": False}
     schema["$defs"].pop("Bound")
     return schema
+
+
+def _either(known: Any, other: Any) -> Any:
+    """The schema of what either of two allows, of kinds that have a key of one name; neither says of which it is."""
+    if known == other:
+        return known
+    allowed = known["anyOf"] if known.keys() == {"anyOf"} else [known]
+    return {"anyOf": allowed if other in allowed else [*allowed, other]}
 
 
 def _criterion(name: str, metric: Metric[Any]) -> dict[str, Any]:

@@ -5,6 +5,7 @@ from collections.abc import Iterable, Iterator
 from pydantic import BaseModel
 
 from surefoot.parts.plugins import PluginError
+from surefoot.scenarios.file.group import Unfelt
 from surefoot.scenarios.file.registries import DEFAULTS
 from surefoot.scenarios.file.schema import PendulumSettings, Rates, Scenario, TerrainSettings
 from surefoot.scenarios.file.units import meant
@@ -69,15 +70,21 @@ def _without_effect(walk: Walk) -> Iterator[str]:
     yield from () if walker.has_body else _not_felt(walk)
     for group, name in walker.unfelt:
         yield from (f"{key} has no effect on a {walker.thing}" for key in _given(walk, group, (name,)))
-    if walk.seat is not None:
-        yield from (f"{group} has no effect beside controller" for group in ("control", "wbc") if getattr(keys, group))
+    yield from _unfelt(walk)
     if walker.has_body:
         return
-    for group in ("control", "motors", "plant", "wbc"):
-        if getattr(keys, group) is not None:
-            yield f"{group} has no effect on a pendulum"
     if keys.rates.physics not in (Rates().physics, clock(Rates(), walk.size.time).physics):
         yield "rates.physics has no effect on a pendulum"
+
+
+def _unfelt(walk: Walk) -> Iterator[str]:
+    """Note groups that are there and that what walks makes nothing of."""
+    kind = walk.keys.walker
+    beside = "beside controller" if kind == "seat" else f"on a {walk.walker.thing}"
+    for name, field in Scenario.model_fields.items():
+        marks = (mark for mark in field.metadata if isinstance(mark, Unfelt))
+        if any(kind in mark.by for mark in marks) and getattr(walk.keys, name) not in (None, ()):
+            yield f"{name} has no effect {beside}"
 
 
 def _given(walk: Walk, group: str, names: Iterable[str]) -> Iterator[str]:

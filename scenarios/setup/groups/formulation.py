@@ -8,7 +8,8 @@ from typing import Any
 
 from surefoot.models.facts import RobotFacts
 from surefoot.parts.guard import Guard
-from surefoot.planner.laws.profiles import PROFILES, Profile
+from surefoot.planner.laws.names import PROFILES
+from surefoot.planner.laws.profiles import Profile
 from surefoot.planner.parameters import GroundSearch, LegInertia, PlannerParameters, StepAdaptation
 from surefoot.planner.references.com_height import (
     BENT_KNEES,

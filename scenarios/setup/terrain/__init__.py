@@ -4,29 +4,15 @@ from collections.abc import Callable, Iterable
 from typing import Any, cast
 
 from surefoot.parts.guard import Guarded, taken_for
-from surefoot.planner.ground.terrain import Terrain, flat
+from surefoot.parts.plugins import Registry
+from surefoot.planner.ground.terrain import Terrain
 from surefoot.scenarios.errors import Problem
 from surefoot.scenarios.file.registries import TERRAIN_KINDS
 from surefoot.scenarios.file.schema import Gait
-from surefoot.scenarios.setup.terrain.faces import BlocksKind, SlopeKind
 from surefoot.scenarios.setup.terrain.ground import Ground, TerrainKind
-from surefoot.scenarios.setup.terrain.stairs import StairsKind
 
-
-class FlatKind(TerrainKind):
-    """The bare ground plane."""
-
-    name = "flat"
-
-    def build(self, ground: Ground) -> Terrain:
-        """See `TerrainKind`."""
-        return flat(ground.keys.friction)
-
-
-_OWN: tuple[TerrainKind, ...] = (FlatKind(), StairsKind(), BlocksKind(), SlopeKind())
-
-KINDS = TERRAIN_KINDS.filled(TerrainKind, {kind.name: kind for kind in _OWN})
-"""Every kind of terrain by its name: these, and those of other packages (see `surefoot.parts.plugins`)."""
+KINDS: Registry[TerrainKind] = TERRAIN_KINDS
+"""Every kind of terrain by its name: ours, and those of other packages (see `surefoot.parts.plugins`)."""
 
 __all__ = ["KINDS", "Ground", "TerrainKind", "kind_of"]
 

@@ -141,3 +141,6 @@ def _extent(ground: Ground, facts: RobotFacts) -> Iterator[Problem]:
         yield Problem(("gait", "step_width"), what, f"use more than {gap:g} m")
     else:
         yield from climb_problems(ground, facts, risers=2)
+
+
+SLOPE, BLOCKS = SlopeKind(), BlocksKind()

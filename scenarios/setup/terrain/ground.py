@@ -161,13 +161,18 @@ class Ground:
         """Least distance of each of these soles from the edge of its face, negative beyond, shape (n + 2,) [m]."""
         return self.terrain.edge_margins(self.places[:, :2], self.soles(facts))
 
+    @property
+    def height_noise(self) -> float:
+        """Half range by which boxes are truly higher or lower than believed [m]; 0 of a kind that the key is not of."""
+        return self.keys.height_noise if "height_noise" in self.kind.keys else 0.0
+
     @cached_property
     def true_terrain(self) -> Terrain:
         """The ground as it is: higher or lower than believed, by the seed, and with what the planner knows not of.
 
         Where the robot starts is known.
         """
-        terrain, noise = self.terrain, self.keys.height_noise
+        terrain, noise = self.terrain, self.height_noise
         other = self.tiles or self.tilt
         if other is not None:
             terrain = other.build(self.site)
@@ -197,7 +202,7 @@ class Ground:
         if self.tilt is not None:
             given = {"errors.ground_pitch": self.tilt.pitch, "errors.ground_roll": self.tilt.roll}
             return {name: (1, 2) for name, angle in given.items() if angle}
-        if not self.keys.height_noise:
+        if not self.height_noise:
             return found
         pairs = enumerate(zip(true[:first], self.terrain.boxes, strict=True))
         return {"terrain.height_noise": tuple(number for number, (box, known) in pairs if box is not known), **found}
@@ -224,12 +229,15 @@ def _raised(box: Box, height: float) -> Box:
 class TerrainKind:
     """A kind of terrain: how it is built of a scenario's keys, and what makes it impossible.
 
-    To add one is a subclass in a file of its own, and its line in `KINDS`; another package registers an instance under
-    an entry point of the group ``surefoot.terrains``.
+    To add one is a subclass with an instance in a file of its own, and a line in
+    `surefoot.scenarios.file.registries.TERRAIN_KINDS` that leads to the instance; another package has an entry point
+    of the group ``surefoot.terrains`` that leads to it.
 
     Attributes:
         name: value of ``terrain.kind``.
-        keys: keys of ``terrain`` that shape it; friction is of all.
+        keys: keys of ``terrain`` that shape it; friction is of all. Others have no effect, which a note says. With
+            ``height_noise`` among them, each box of the true ground is higher or lower than `build` has it, but for
+            those under the start.
         settings: model of the group ``terrain``, with the keys that only this kind has, which need no mention above.
     """
 
@@ -242,7 +250,11 @@ class TerrainKind:
         return gait
 
     def build(self, ground: Ground) -> Terrain:
-        """The ground as the planner believes it to be."""
+        """The ground as the planner believes it to be: boxes on a plane, which need not lie as high as the start.
+
+        Gaps between raised boxes have a floor at ``Terrain.plane``: a negative one lies below the world's zero, so that
+        boxes may have their tops there. `start_height` follows from both.
+        """
         raise NotImplementedError
 
     def start_height(self, ground: Ground) -> float:

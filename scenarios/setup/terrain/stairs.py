@@ -140,3 +140,6 @@ def _leaps(ground: Ground) -> Iterator[Problem]:
         what = f"footstep {rows[0]} would take {risers[rows[0]]:g} risers of {riser:g} m at once"
         right = f"give gait.step_length the depth of terrain.tread, {ground.keys.tread:g} m"
         yield Problem(("gait", "footsteps" if ground.commanded else "step_length"), what, right)
+
+
+STAIRS = StairsKind()

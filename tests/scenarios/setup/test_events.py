@@ -5,8 +5,8 @@ import pytest
 from surefoot.scenarios.errors import ScenarioError
 from surefoot.scenarios.run.run import run_scenario
 from surefoot.scenarios.setup import events
-from surefoot.scenarios.setup.events import FaultWindow
 from surefoot.scenarios.setup.load import load
+from surefoot.scenarios.setup.windows import FaultWindow
 
 pytestmark = pytest.mark.unit
 

@@ -139,7 +139,7 @@ class EstimationRows:
         """Errors of heading and tilt; `_back` is then the rotation about the vertical to the true heading."""
         R, true = self._base[n], self._true_base[n]
         yaw = _within_half_turn(math.atan2(R[1, 0], R[0, 0]) - math.atan2(true[1, 0], true[0, 0]))
-        c, s = math.cos(-yaw), math.sin(-yaw)
+        c, s = math.cos(yaw), -math.sin(yaw)
         algebra.put_row(self._back, 0, (c, -s, 0.0))
         algebra.put_row(self._back, 1, (s, c, 0.0))
         algebra.put_row(self._back, 2, (0.0, 0.0, 1.0))

@@ -3,7 +3,7 @@
 import copy
 import itertools
 from functools import partial
-from typing import Any, cast, get_origin
+from typing import Any, cast, get_args, get_origin
 
 from pydantic import BaseModel, ValidationError
 from pydantic_core import ErrorDetails
@@ -111,7 +111,7 @@ def _group(root: type[BaseModel], key: Key, data: Any) -> type[BaseModel]:
         if part == "criteria":
             return Bound
         annotation = model.model_fields[part].annotation
-        if get_origin(annotation) is dict:
+        if any(get_origin(one) is dict for one in (annotation, *get_args(annotation))):
             next(parts, None)
         data = data.get(part) if isinstance(data, dict) else None
         model = model_of(next(groups_in(annotation)), data)

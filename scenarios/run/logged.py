@@ -110,7 +110,8 @@ class LogPlant:
         if self._last < 0 or until > end + 0.5 / run.rate:
             what = f"plant.options.until {until:g} s, where the log has {run.ticks[0] / run.rate:g} to {end:g} s"
             raise ParameterError(("plant", "options"), what, "give a time that the log has")
-        self._walk, self._world, self._run, self._drives = walk, world, run, drives
+        self._walk, self._run = walk, run
+        self._world, self._drives = world, drives
         self._pushes: list[Push] = []
         self._row = self._heard = self.control_tick = -1
         self._sensors: Any = None
@@ -141,7 +142,7 @@ class LogPlant:
         """Put the world into a state at its instant, with the pushes that act then or later."""
         world, rate = self._world, self._world.physics_rate
         world.reset(found.q, found.v, found.joint_torque, self.control_tick * rate // self._run.rate)
-        self._tell_drives()
+        self._command_drives()
         now = world.time
         for push in self._pushes:
             end, begin = push.time + push.duration, max(push.time, now)
@@ -149,12 +150,12 @@ class LogPlant:
                 world.push(Push(begin, end - begin, push.force, push.body))
         self._pushes = []
 
-    def _tell_drives(self) -> None:
+    def _command_drives(self) -> None:
         """Tell motors that err the torques that were commanded before, some of which they have not given yet."""
-        drives, told, run = self._drives, self._run.fields.get("/torque"), self._run
-        if drives is None or told is None or self._walk.control.output == "position":
+        drives, commanded, run = self._drives, self._run.fields.get("/torque"), self._run
+        if drives is None or commanded is None or self._walk.control.output == "position":
             return
-        for row, command in enumerate(told["command"][: self._last]):
+        for row, command in enumerate(commanded["command"][: self._last]):
             drives.tell(run.ticks[row] * self._world.physics_rate // run.rate, command)
 
     def read(self, measurement: Measurement, tick: int) -> Readings:

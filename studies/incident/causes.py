@@ -196,6 +196,6 @@ def _default(key: Key) -> Any:
 
 
 def suspected(causes: Iterable[Cause], named: Iterable[str]) -> tuple[Cause, ...]:
-    """Those of the causes that lie where the checks of a log say that its causes are."""
+    """The causes that lie where the checks of a log say that its causes are."""
     groups = {group for check in named for group in _NAMED.get(check, ())}
     return tuple(cause for cause in causes if cause.group in groups)

@@ -1,4 +1,4 @@
-"""What came to a robot in a run: a fall, or a criterion that it missed; and how alike two runs of it are."""
+"""The incident of a run: a fall, or a criterion that it missed; and the likeness of two runs."""
 
 from collections.abc import Mapping
 from dataclasses import dataclass
@@ -100,7 +100,7 @@ def harm_of(log: Log, criteria: Mapping[str, Bound]) -> Harm | None:
 
 @dataclass(frozen=True, slots=True)
 class Likeness:
-    """How alike the motion of a run is to that of a log, up to the incident of either.
+    """The likeness of the motion of a run to that of a log, up to the incident of either.
 
     Attributes:
         parts: first time at which the CoM or its velocity is another by a bit [s]; None where it never is.
@@ -122,7 +122,7 @@ class Likeness:
 
 
 def likeness(log: Log, then: Harm, other: Log, now: Harm) -> Likeness:
-    """How alike the motion in another log is to that in a log, at the times that both have."""
+    """The likeness of the motion in another log to that in a log, at the times that both have."""
     end = round(1e9 * min(then.time, now.time))
     one, two = log["/truth"], other["/truth"]
     common, rows, others = np.intersect1d(one.time_ns, two.time_ns, assume_unique=True, return_indices=True)

@@ -63,7 +63,7 @@ class Trial:
 
     @property
     def text(self) -> str:
-        """What became of it, in words."""
+        """The outcome in words."""
         if self.refused:
             return f"cannot be run: {self.refused}"
         if self.harm is None:

@@ -1,4 +1,4 @@
-"""What is told of a regression: for a person, as JSON, and as the comment of its scenario."""
+"""The report on a regression: for a person, as JSON, and as the comment of its scenario."""
 
 from collections.abc import Iterator, Mapping
 from pathlib import Path
@@ -17,11 +17,11 @@ def starts(found: Regression) -> Iterator[str]:
     """The beginnings that were tried, a line each."""
     for begin, trial in found.starts:
         where = "run from its beginning" if begin == 0.0 else f"begun in the state of the log at {begin:.3f} s"
-        yield f"{where}: {told(trial)}"
+        yield f"{where}: {outcome(trial)}"
 
 
-def told(trial: Trial) -> str:
-    """What became of a trial, with its likeness where it came to the incident."""
+def outcome(trial: Trial) -> str:
+    """The outcome of a trial, with its likeness where it came to the incident."""
     alike = f"; {trial.likeness.text}" if trial.same and trial.likeness is not None else ""
     return f"{trial.text}{alike}"
 
@@ -43,7 +43,7 @@ def comment(found: Regression, path: Path) -> tuple[str, ...]:
 
 
 def _heading(found: Regression) -> str:
-    """What the list of causes is, in a sentence."""
+    """The heading of the list of causes."""
     if not found.needed:
         return "It takes nothing but the walk itself: the cause is in the robot, the gait or the code."
     if found.without(found.needed[0]) is None:
@@ -52,7 +52,7 @@ def _heading(found: Regression) -> str:
 
 
 def _then(found: Regression, cause: Cause, mark: str) -> str:
-    """What becomes of the run without a cause, after a mark; empty where that was not tried."""
+    """The outcome of the run without a cause, after a mark; empty where that was not tried."""
     trial = found.without(cause)
     return "" if trial is None else f"{mark}without it {trial.text}"
 
@@ -98,7 +98,7 @@ def lines(found: Regression, path: Path, last: Trial | None) -> Iterator[str]:
             yield f"  needed      {_short(cause.text)}{setting}{_then(found, cause, ': ')}"
         else:
             yield f"  not needed  {_short(cause.text)}"
-    yield f"{path}: {told(last)}"
+    yield f"{path}: {outcome(last)}"
     yield from _too_late(found)
     yield f"red until it is mended: surefoot check {quote(str(path))}"
     for cause in found.needed:
@@ -114,7 +114,7 @@ def _too_late(found: Regression) -> Iterator[str]:
 
 
 def rule(harm: Harm) -> str:
-    """When another run counts as the same incident, in words."""
+    """The rule by which another run counts as the same incident, in words."""
     if not harm.fell:
         return "the same is to miss the same criterion"
     return f"the same is a fall within {harm.within:.2g} s and {SAME_WAY:g} degrees"

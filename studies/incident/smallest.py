@@ -45,6 +45,6 @@ def smallest(all_of: Sequence[T], holds: Callable[[tuple[T, ...]], bool], first:
 
 
 def _complements(of: tuple[T, ...], pieces: int) -> list[tuple[T, ...]]:
-    """What is left of a set without each of so many pieces of it."""
+    """The rest of a set without each of so many pieces of it."""
     bounds = [len(of) * number // pieces for number in range(pieces + 1)]
     return [of[:begin] + of[end:] for begin, end in pairwise(bounds) if end > begin]

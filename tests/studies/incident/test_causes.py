@@ -1,4 +1,4 @@
-"""What acts in a scenario is listed once, can be taken out, and the setting that is told takes it out as well."""
+"""Each key that acts in a scenario is listed once and can be taken out; the setting that is named takes it out, too."""
 
 import itertools
 

@@ -19,8 +19,8 @@ from surefoot.scenarios.record.provenance import PACKAGES
 RunOf = Callable[[Line], Baseline | None]
 """From a line to what was measured; None where there was no run, or nothing is left of it."""
 
-_TOLD = (*PACKAGES, "python")
-"""Versions that are told where they differ."""
+_NAMED = (*PACKAGES, "python")
+"""Versions that are named where they differ."""
 
 
 @dataclass(frozen=True, slots=True)
@@ -76,10 +76,10 @@ def changes(lines: Sequence[Line], run_of: RunOf) -> Iterator[Change]:
 
 
 def _change(before: Line, reference: Baseline | None, line: Line, run: Baseline | None) -> Change:
-    """What of a run is not as the one that it is held against."""
+    """The differences of a run from the one that it is held against."""
     versions = tuple(
         f"{name} {line.versions[name]}, {before.versions[name]} before"
-        for name in _TOLD
+        for name in _NAMED
         if name in line.versions and name in before.versions and line.versions[name] != before.versions[name]
     )
     if run is None or not before.run:
@@ -87,8 +87,8 @@ def _change(before: Line, reference: Baseline | None, line: Line, run: Baseline 
         return Change(before, line, reasons=reasons, versions=versions)
     if reference is None:
         return Change(before, line)
-    told = (*reference.others(line.scenario, run.settings), *reference.other_world(run))
-    reasons = tuple(sentence.replace(" in the baseline", " before") for sentence in told)
+    sentences = (*reference.others(line.scenario, run.settings), *reference.other_world(run))
+    reasons = tuple(sentence.replace(" in the baseline", " before") for sentence in sentences)
     partings = tuple(reference.trace.partings(run.trace))
     if reference.sample is None or run.sample is None:
         return Change(before, line, partings, tuple(reference.moves(run.metrics, line.criteria)), reasons, versions)

@@ -250,10 +250,10 @@ class Keeping(Protocol):
     """Keeps what a check finds, as a history does."""
 
     def hold(self, checked: Checked) -> None:
-        """Take what is needed of the log of a run, which may go afterwards."""
+        """Copy the log of a run, which may be removed afterwards."""
 
     def keep(self, checked: Checked) -> Checked:
-        """Keep what came of a scenario; gives what is told of it."""
+        """Keep the result of a scenario; gives it with what is known of the runs before."""
 
 
 def check(

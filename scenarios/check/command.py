@@ -81,11 +81,11 @@ def check(options: CheckOptions) -> None:
             refuse_existing(report_file, options.force)
     chosen = checking.cases(options.scenarios or (), options.baselines, overrides(options.set_, policy=options.policy))
     keeper = None if options.history is None else Keeper(options.history)
-    told: Callable[[checking.Checked], None] = (lambda _: None) if options.as_json else report.print_checked
+    show: Callable[[checking.Checked], None] = (lambda _: None) if options.as_json else report.print_checked
     how = (options.jobs or cores(), options.seeds, options.cluster, options.update, keeper)
     running = seeds.Running(options.out, *how)
     try:
-        found = seeds.check(chosen, running, told)
+        found = seeds.check(chosen, running, show)
     except InterruptedRunsError:
         kept = options.out / seeds.FOLDER
         typer.echo(f"interrupted; finished runs are kept in {kept}, the same command goes on from there", err=True)

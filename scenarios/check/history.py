@@ -51,7 +51,7 @@ class History:
         self._runs: dict[str, Baseline | None] = {}
 
     def run_of(self, line: Line) -> Baseline | None:
-        """What the run of a line measured; None where it is not there."""
+        """The measured values of the run of a line; None where they are not there."""
         name = f"{line.scenario}-{line.run}.yaml"
         if name not in self._runs:
             self._runs[name] = None

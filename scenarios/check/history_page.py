@@ -182,7 +182,7 @@ _LEGEND = (
 )
 _CLOCK = (
     "Grey is the median of each level. A shift of level may be the program's or the machine's, so no commit is marked "
-    "for it. It is told from noise by at least four checks."
+    "for it. It takes at least four checks."
 )
 
 
@@ -238,7 +238,7 @@ def summary(found: Sequence[Walk]) -> Iterator[str]:
 
 
 def to_json(history: History) -> dict[str, object]:
-    """What a history tells, as JSON: the commits that changed something, with the scenarios and metrics in which."""
+    """The findings of a history as JSON: the commits that changed something, with the scenarios and metrics in which."""
     found = walks(history)
     checks = {(line.time, line.commit.name) for line in history.lines}
     return {

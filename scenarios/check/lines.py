@@ -1,4 +1,4 @@
-"""The lines of a history: what a check has found of a scenario at a commit."""
+"""The lines of a history: the findings of checks, scenario by scenario and commit by commit."""
 
 import json
 import os
@@ -59,10 +59,10 @@ class Commit:
     @classmethod
     def here(cls, folder: Path) -> "Commit":
         """The commit that is checked out in a folder."""
-        told = git(folder, "log", "-1", "--format=%H%n%ct%n%s")
-        if not told:
+        answer = git(folder, "log", "-1", "--format=%H%n%ct%n%s")
+        if not answer:
             return cls()
-        name, seconds, subject, *_ = (*told.split("\n"), "", "")
+        name, seconds, subject, *_ = (*answer.split("\n"), "", "")
         changed = git(folder, "status", "--porcelain", "--untracked-files=no")
         return cls(f"{name}-dirty" if changed else name, iso(datetime.fromtimestamp(int(seconds), UTC)), subject)
 
@@ -82,7 +82,7 @@ class Seeds:
 
 @dataclass(frozen=True, slots=True)
 class Line:
-    """What a check has found of a scenario.
+    """The findings of a check about a scenario.
 
     Attributes:
         time: at which the check began, ISO 8601 in UTC.
@@ -127,7 +127,7 @@ class Line:
 
     @property
     def order(self) -> tuple[str, str]:
-        """By the time of the commit, then of the check; one outside of a repository by that of the check alone."""
+        """Time of the commit, then of the check; outside of a repository that of the check alone."""
         return self.commit.time or self.time, self.time
 
     @classmethod
@@ -143,9 +143,9 @@ class Line:
         own = {"format": FORMAT, "time": self.time, "commit": asdict(self.commit), "versions": dict(self.versions)}
         criteria = {name: bound.model_dump(exclude_none=True) for name, bound in self.criteria.items()}
         margins = {name: bisect.model_dump(mode="json", exclude_none=True) for name, bisect in self.margins.items()}
-        told = {**own, "run": self.run, "copy": self.copy, "criteria": criteria, "margins": margins}
-        told |= scenario_json(checked)
-        return json.dumps(told, allow_nan=False)
+        line = {**own, "run": self.run, "copy": self.copy, "criteria": criteria, "margins": margins}
+        line |= scenario_json(checked)
+        return json.dumps(line, allow_nan=False)
 
 
 @cache

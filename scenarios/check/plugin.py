@@ -59,9 +59,10 @@ def pytest_terminal_summary(terminalreporter: Any, config: pytest.Config) -> Non
     ran = [one for one in reports if one.when == "call" and is_scenario(Path(one.fspath))]
     shown = []
     for one in ran:
-        told = dict(one.user_properties)
+        properties = dict(one.user_properties)
         names = [value for name, value in one.user_properties if name == PROPERTY]
-        shown.append(Shown.of(told.get(NAMED, one.location[2]), names, told.get(STATUS, one.outcome), one.passed))
+        name, status = properties.get(NAMED, one.location[2]), properties.get(STATUS, one.outcome)
+        shown.append(Shown.of(name, names, status, one.passed))
     files = [Path(config.rootpath, one.fspath) for one in ran]
     found = Requirements.held(shown, files, map(Path, sorted(collected)))
     if found.table:

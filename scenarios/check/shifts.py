@@ -18,7 +18,7 @@ LEAST = 4
 PENALTY = 24.0
 """Sum of squares, over the noise's variance, that a shift must save [-].
 
-Of series of 60 or 200 values without a shift fewer than 0.5 % are told to have one, and fewer than 2 % where the noise
+Of series of 60 or 200 values without a shift fewer than 0.5 % are given one, and fewer than 2 % where the noise
 is Student's t of 3 degrees of freedom. Of noise that lasts, with a correlation of 0.5 from check to check, a third are.
 """
 

@@ -176,7 +176,7 @@ class Origin:
         return done.returncode
 
     def called(self) -> list[str]:
-        """What the programs of the server's machine were called with."""
+        """Calls of the programs of the server's machine, in order."""
         return self.calls.read_text().splitlines() if self.calls.exists() else []
 
     def files(self, branch: str) -> set[str]:

@@ -4,7 +4,7 @@ PYTHON ?= $(shell for p in python3.14 python3.13 python3.12 python3.11 python3; 
 VENV := .venv
 BIN := $(VENV)/bin
 
-.PHONY: walk test tests quick map unit interpreted physics check long gate format coverage mutants signs bench results docs dist dist-test scenario changelog clean
+.PHONY: walk test tests quick map unit interpreted physics check long gate format coverage mutants signs bench results texts docs dist dist-test scenario changelog clean
 
 walk: $(VENV)/.installed
 	$(BIN)/surefoot run diagonal-walk
@@ -80,6 +80,11 @@ bench: $(VENV)/.installed-dev
 # `python docs/results.py` lists all with what is known of them.
 results: $(VENV)/.installed-dev
 	nice $(BIN)/python docs/results.py --run --background $(NAMES)
+
+# What follows from the sources: texts of commands in the package, tables and numbers of pages.
+texts: $(VENV)/.installed-dev
+	$(BIN)/python docs/texts.py
+	$(BIN)/python docs/reference.py
 
 # The documentation site in build/site, strictly; its index.html opens without a server.
 docs: $(VENV)/.installed-docs

@@ -25,15 +25,19 @@ from surefoot.planner.laws.profiles import PROFILES, Profile
 from surefoot.planner.rules import RULES, rule_name
 from surefoot.scenarios import catalogue
 from surefoot.scenarios.check.signs import SIGNS
+from surefoot.scenarios.file.registries import INSTRUMENTS
 from surefoot.scenarios.file.schema import (
     CommandSettings,
     Fault,
     FootstepSettings,
     GroundError,
+    InstrumentFault,
+    InstrumentSettings,
     PlaceSettings,
     PushSettings,
     Scenario,
     VelocitySettings,
+    own_keys,
 )
 from surefoot.scenarios.file.sensing import SENSOR_KEYS, Sensing
 from surefoot.scenarios.file.units import unit_of
@@ -46,6 +50,8 @@ from surefoot.scenarios.policy.terms import OWN as TERMS
 from surefoot.scenarios.policy.terms import meaning
 from surefoot.scenarios.record import channels
 from surefoot.scenarios.record.channels import Sizes
+from surefoot.scenarios.run.instruments import channel
+from surefoot.scenarios.setup.walk import Walk
 from surefoot.sim.sensor_errors import PRESETS, SensorErrors
 from surefoot.studies.tour.page import markdown
 
@@ -95,6 +101,8 @@ _LISTS: dict[str, type[BaseModel]] = {
     "gait.footsteps": FootstepSettings,
     "gait.waypoints": PlaceSettings,
     "commands": CommandSettings,
+    "instruments": InstrumentSettings,
+    "instruments[].faults": InstrumentFault,
     "errors.ground": GroundError,
     "observations": Term,
     "recurrent": Recurrent,
@@ -113,7 +121,9 @@ def robot_keys_table() -> str:
 
 def channels_table() -> str:
     """Every channel with its fields, shapes, units and frames."""
-    return "\n\n".join(_channel(make(SIZES)) for make in CHANNELS)
+    walk = Walk(Scenario())
+    instruments = (channel(INSTRUMENTS[name], walk, name) for name in INSTRUMENTS.said)
+    return "\n\n".join(_channel(spec) for spec in (*(make(SIZES) for make in CHANNELS), *instruments))
 
 
 def metrics_table() -> str:
@@ -336,7 +346,7 @@ def _key_rows(prefix: str, group: type[BaseModel]) -> list[list[str]]:
 
 def every_key(group: type[BaseModel], prefix: str = "") -> Iterator[tuple[str, FieldInfo]]:
     """Keys by name; a group inside is followed key by key, and a list of groups by those of an element."""
-    for name, field in group.model_fields.items():
+    for name, field in (*group.model_fields.items(), *own_keys(group)):
         element = _LISTS.get(prefix + name)
         inner = element or _group_of(field.annotation)
         if isinstance(inner, type) and issubclass(inner, BaseModel):

@@ -75,7 +75,7 @@ def _named(keys: Any) -> Iterator[tuple[Key, str, Registry[Any]]]:
 
 
 def _written(values: Any, path: Key, at: Key = ()) -> Iterator[tuple[Key, Any]]:
-    """What is written at a path of keys into plain values, with its place, of which a list on the way has several."""
+    """The values at a path of keys into plain values, with their places, of which a list on the way has several."""
     if not path:
         yield at, values
     elif isinstance(values, list):

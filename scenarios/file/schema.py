@@ -6,9 +6,11 @@ relates several keys (rates that divide, steps within reach) is checked in ``che
 
 from collections.abc import Callable, Iterator, Mapping
 from contextlib import suppress
+from copy import copy
 from typing import Annotated, Any, Literal
 
 from pydantic import BaseModel, BeforeValidator, Field, SerializeAsAny
+from pydantic.fields import FieldInfo
 
 from surefoot.parts.plugins import PluginError, Registry
 from surefoot.scenarios.file.control import ControlSettings, PlantSettings, SeatSettings
@@ -138,6 +140,19 @@ def own_models(model: type[BaseModel]) -> Iterator[tuple[str, type[BaseModel]]]:
         own = model_of(model, {name: kind})
         if own is not model:
             yield kind, own
+
+
+def own_keys(model: type[BaseModel]) -> Iterator[tuple[str, FieldInfo]]:
+    """The keys that kinds of a group have beside those of all, by name; each is described by its kind or kinds."""
+    found: dict[str, list[tuple[str, FieldInfo]]] = {}
+    for kind, own in own_models(model):
+        for name, field in own.model_fields.items():
+            if name not in model.model_fields:
+                found.setdefault(name, []).append((f"{kind}: {field.description}", field))
+    for name, several in found.items():
+        field = copy(several[0][1])
+        field.description = "; ".join(text for text, _ in several)
+        yield name, field
 
 
 def _by_its_kind(model: type[BaseModel]) -> Callable[[Any], Any]:

@@ -18,7 +18,7 @@ class _Decorated:
 
     @property
     def said(self) -> str:
-        """What it is."""
+        """Its meaning, in one line."""
         return self.metric.meaning
 
     def load(self) -> "Metric[Any]":

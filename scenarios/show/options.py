@@ -4,7 +4,7 @@ import inspect
 import json
 from collections.abc import Callable, Iterator
 from pathlib import Path
-from typing import TYPE_CHECKING, Annotated, Any, TypeVar, get_args
+from typing import TYPE_CHECKING, Annotated, Any, TypeVar
 
 import typer
 
@@ -42,13 +42,13 @@ def keys_from(incomplete: str) -> list[str]:
 
 def keys(group: "type[BaseModel]", prefix: str = "") -> Iterator[tuple[str, str]]:
     """Every key of a group by its dotted name with its meaning, groups before what is in them."""
-    from pydantic import BaseModel
+    from surefoot.scenarios.file.group import groups_in
+    from surefoot.scenarios.file.schema import own_keys
 
-    for name, field in group.model_fields.items():
+    for name, field in (*group.model_fields.items(), *own_keys(group)):
         yield prefix + name, field.description or ""
-        for inner in (field.annotation, *get_args(field.annotation)):
-            if isinstance(inner, type) and issubclass(inner, BaseModel):
-                yield from keys(inner, f"{prefix}{name}.")
+        for inner in groups_in(field.annotation):
+            yield from keys(inner, f"{prefix}{name}.")
 
 
 def _settings_from(incomplete: str) -> list[str]:

@@ -11,7 +11,7 @@ from pydantic import BaseModel, Field, model_validator
 
 from surefoot.scenarios.errors import nearest
 from surefoot.scenarios.file.group import WHOLE, Group, groups_in
-from surefoot.scenarios.file.schema import Scenario
+from surefoot.scenarios.file.schema import Scenario, own_keys
 from surefoot.scenarios.file.search import MOST, MOST_RUNS, Bisect, BoundedNumber
 from surefoot.scenarios.file.units import is_number, unit_of
 
@@ -167,7 +167,7 @@ def described(key: str) -> tuple[str, str]:
         if part.isdecimal():
             unit = unit_of(field.annotation, field.metadata) if field is not None else ""
             continue
-        field = model.model_fields.get(part) if model is not None else None
+        field = (model.model_fields | dict(own_keys(model))).get(part) if model is not None else None
         unit = unit_of(field.annotation, field.metadata, elements=False) if field is not None else unit
         description = (field and field.description) or description
         model = next(groups_in(field.annotation), None) if field is not None else None

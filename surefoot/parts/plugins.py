@@ -184,7 +184,7 @@ class Own(Protocol):
 
     @property
     def said(self) -> str:
-        """What it is, in one line without a full stop."""
+        """Its text, in one line without a full stop."""
         ...
 
     def load(self) -> Any:

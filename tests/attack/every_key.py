@@ -9,7 +9,7 @@ from pydantic import BaseModel
 
 from surefoot.planner.parameters import RecoveryParameters
 from surefoot.scenarios.file.group import Group, controller_parameters
-from surefoot.scenarios.file.schema import PlannerSettings, Scenario
+from surefoot.scenarios.file.schema import PlannerSettings, Scenario, own_keys
 from surefoot.scenarios.file.sensing import SENSOR_KEYS
 
 NOT_YET = {
@@ -76,6 +76,8 @@ TEXTS = {
                  ground: [{x: 0.6, y: 0.05, length: 0.2, width: 1, height: 0.01, friction: 0.5}]}
         motors: {damping: 0.5, friction_loss: 0.2, delay: 0.002, noise: 0.1, torque_speed: 0.6}
         plant: {name: mujoco}
+        instruments: [{name: altimeter, label: high, period: 0.004, noise: 0.01, bias: 0.01,
+                       faults: [{kind: jump, time: 0.02, duration: 0.02, size: 0.1}]}]
         control: {output: position, output_rate: 100, stiffness: 1.2, damping: 0.012, feed_forward: false,
                   give_way: false}
         pushes: [{time: 0.02, duration: 0.02, force: [10, 0, 0], body: pelvis, live: true}]
@@ -133,7 +135,7 @@ def _groups(annotation: Any) -> Iterator[type[Group]]:
 
 def keys(model: type[BaseModel], place: str = "") -> Iterator[str]:
     """Dotted keys of a group that lead to values; those of the groups of a list like any, groups by name are one."""
-    for name, field in model.model_fields.items():
+    for name, field in (*model.model_fields.items(), *own_keys(model)):
         inner = next(_groups(field.annotation), None)
         if inner is None or any(get_origin(one) is dict for one in (field.annotation, *get_args(field.annotation))):
             yield f"{place}{name}"

@@ -14,6 +14,9 @@ from surefoot.scenarios.file.schema import Scenario
 pytestmark = pytest.mark.unit
 
 TEXT = (Path(__file__).parents[2] / "docs" / "extending.md").read_text(encoding="utf-8")
+ROOT = Path(__file__).parents[2]
+_TABLE = TEXT.split("<!-- inside -->")[1].split("<!-- end -->")[0]
+INSIDE = [line.strip("| ").split(" | ") for line in _TABLE.splitlines()[3:]]
 ROWS = [line.strip("| ").split(" | ") for line in TEXT.splitlines() if line.startswith("| ") and line.count("|") == 6][
     1:
 ]
@@ -38,3 +41,19 @@ def test_what_a_row_names_is_there(row):
     title = re.search(r"\]\(#([a-z-]+)\)", row[0])
     titles = {head.lower().replace("'", "").replace(" ", "-") for head in re.findall(r"(?m)^## (.*)$", TEXT)}
     assert title is None or title[1] in titles
+
+
+@pytest.mark.parametrize("row", INSIDE, ids=lambda row: row[0])
+def test_what_is_to_be_touched_inside_the_package_is_there(row):
+    _, change, then = row
+    places = re.findall(r"`([\w/.]+)`", change)
+    assert [place for place in places if "/" in place and not (ROOT / place).exists()] == []
+    assert "`make texts`" in then and re.search(r"(?m)^texts:", (ROOT / "Makefile").read_text(encoding="utf-8"))
+
+
+def test_the_registries_with_parts_of_this_package_have_a_row_for_these():
+    """A list of parts stands in a file that a row names."""
+    named = {place for _, change, _ in INSIDE for place in re.findall(r"`([\w/]+\.py)`", change)}
+    for registry in (*REGISTRIES.values(),):
+        sources = [path for path in named if f'"{registry.group}"' in (ROOT / path).read_text(encoding="utf-8")]
+        assert len(sources) == 1 or registry.group == "surefoot.robots", registry.group

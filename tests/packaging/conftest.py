@@ -19,6 +19,7 @@ from surefoot.planner.laws.profiles import PROFILES
 from surefoot.scenarios.catalogue import SCENARIOS
 from surefoot.scenarios.cli import program as cli
 from surefoot.scenarios.cli.files import FILES
+from surefoot.scenarios.file.registries import INSTRUMENTS
 from surefoot.scenarios.judge.metrics import METRICS
 from surefoot.scenarios.run.full import PLANTS
 from surefoot.scenarios.run.sensing import ESTIMATORS
@@ -136,7 +137,7 @@ def importing() -> Iterator[None]:
     for name in set(sys.modules) - before:
         if name.startswith(("my_package", "broken")):
             del sys.modules[name]
-    for registry in (KINDS, PROFILES, ESTIMATORS, PLANTS, TASKS, ROBOTS, METRICS, SCENARIOS, FILES):
+    for registry in (KINDS, INSTRUMENTS, PROFILES, ESTIMATORS, PLANTS, TASKS, ROBOTS, METRICS, SCENARIOS, FILES):
         registry._loaded.clear()
 
 

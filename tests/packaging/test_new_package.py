@@ -17,7 +17,17 @@ from surefoot.scenarios.errors import ScenarioError
 ROOT = Path(__file__).parents[2]
 PAGE = (ROOT / "docs" / "extending.md").read_text(encoding="utf-8")
 
-LEFT_OUT = ("planners", "ground", "plants", "rules", "commands", "terrains", "controllers", "observations")
+LEFT_OUT = (
+    "planners",
+    "ground",
+    "plants",
+    "rules",
+    "commands",
+    "terrains",
+    "controllers",
+    "observations",
+    "instruments",
+)
 """Modules of the page that a first package does not need."""
 
 

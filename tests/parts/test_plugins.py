@@ -11,7 +11,7 @@ from surefoot.parts import plugins
 from surefoot.parts.plugins import AFRESH, OWN_PACKAGE, At, Declared, PluginError, Registry
 from surefoot.planner.laws.profiles import PROFILES
 from surefoot.scenarios.catalogue import SCENARIOS
-from surefoot.scenarios.file.registries import REGISTRIES
+from surefoot.scenarios.file.registries import INSTRUMENTS, REGISTRIES
 from surefoot.scenarios.judge.metrics import METRICS
 from surefoot.scenarios.run.full import PLANTS
 from surefoot.scenarios.run.sensing import ESTIMATORS
@@ -145,7 +145,7 @@ def test_a_name_of_two_packages_is_refused(lengths, others):
 
 def test_every_registry_of_surefoot_has_a_row_in_the_documentation():
     page = (Path(__file__).parents[2] / "docs" / "extending.md").read_text(encoding="utf-8")
-    registries = (METRICS, PROFILES, TASKS, ESTIMATORS, PLANTS, ROBOTS, SCENARIOS, KINDS)
+    registries = (METRICS, PROFILES, TASKS, ESTIMATORS, PLANTS, INSTRUMENTS, ROBOTS, SCENARIOS, KINDS)
     groups = {registry.group for registry in registries}
     assert len(groups) == len(registries)
     for group in groups:
@@ -189,6 +189,7 @@ def test_what_is_said_of_a_part_before_it_is_imported_is_what_it_says_itself():
         return thing.__doc__.strip().split("\n", 1)[0].rstrip(".")
 
     assert dict(KINDS.said) == {name: first_line(type(kind)) for name, kind in KINDS.items()}
+    assert dict(INSTRUMENTS.said) == {name: first_line(type(one)) for name, one in INSTRUMENTS.items()}
     assert dict(ESTIMATORS.said) == {name: first_line(ESTIMATORS[name]) for name in ESTIMATORS}
     assert dict(PROFILES.said) == {name: profile.doc for name, profile in PROFILES.items()}
     assert dict(METRICS.said) == {name: metric.meaning for name, metric in METRICS.items()}

@@ -2,7 +2,7 @@
 
 from typing import TYPE_CHECKING
 
-from surefoot.parts.plugins import Registry
+from surefoot.parts.plugins import Declared
 
 if TYPE_CHECKING:
     from surefoot.wbc.tasks.task import TaskFactory
@@ -13,5 +13,5 @@ TaskLayout = tuple[tuple[str, int], ...]
 DEFAULT_LAYOUT: TaskLayout = (("CoM", 3), ("angular momentum", 3), ("pelvis", 3), ("torso", 3), ("swing foot", 6))
 """Names and sizes of the default tasks, in the order of their rows."""
 
-TASKS: "Registry[TaskFactory]" = Registry("surefoot.tasks", None, {})
-"""Tasks of other packages by name: a ``TaskFactory`` each."""
+TASKS: "Declared[TaskFactory]" = Declared("surefoot.tasks", None, {})
+"""Tasks by name that a scenario may add to the default ones, a ``TaskFactory`` each: so far those of other packages."""

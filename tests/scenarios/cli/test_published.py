@@ -21,7 +21,7 @@ def cache(tmp_path, monkeypatch):
 
 
 def test_the_schema_is_the_published_one_made_or_kept():
-    assert [json.loads(printed.schema_text()) for _ in range(2)] == [published()] * 2
+    assert [json.loads(printed.schema_text()) for _ in range(2)] == [published()] * 2, "run python docs/texts.py"
 
 
 def test_what_another_package_brings_is_in_it_though_one_was_kept(monkeypatch):

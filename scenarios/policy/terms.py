@@ -144,12 +144,14 @@ def phase(
     times = {"always": seen.time, "walking": seen.walked, "anew": seen.since}
     if clock not in times:
         raise ParameterError(_KEY, f"term phase has no clock '{clock}'", "give always, walking or anew")
-    if seen.stands and rest == "zeros":
-        return np.zeros(len(offsets) * len(waves))
     if isinstance(rest, str) and rest != "zeros":
         raise ParameterError(_KEY, f"term phase has rest '{rest}'", "give a share, or zeros")
     turn = begin + times[clock] / period
-    shares = [rest if seen.stands and rest is not None else (turn + one) % 1.0 for one in offsets]
+    shares = [(turn + one) % 1.0 for one in offsets]
+    if seen.stands and rest is not None:
+        if rest == "zeros":
+            return np.zeros(len(offsets) * len(waves))
+        shares = [rest] * len(offsets)
     turns = [
         math.pi * (share / stance if share < stance else 1.0 + (share - stance) / (1.0 - stance)) for share in shares
     ]

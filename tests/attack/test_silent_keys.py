@@ -97,6 +97,14 @@ def experiments(tmp_path_factory):
         ("walk", "pushes", [{"time": 0.5, "force": [1e-300, 0, 0]}], "refused"),
         ("walk", "commands", [{"time": 2.4, "swing_height": 0.07}], "failed"),
         ("stand", "gait.swing_height", 0.06, "noted"),
+        ("stand", "motors.delay", 0.002, "noted"),
+        ("stand", "control.give_way", False, "noted"),
+        ("stand", "plant.options", {"refined": 2}, "noted"),
+        ("stand", "wbc.weights.swing", 3.0, "noted"),
+        ("stand", "instruments", [{"name": "altimeter"}], "noted"),
+        ("stand", "errors.payload.mass", 2.0, "felt"),
+        ("body-stand", "sensing.options", {"covariance_rate": 20.0}, "refused"),
+        ("body-stand", "instruments", [{"name": "altimeter"}], "felt"),
         ("stand", "gait.single_support", 0.5, "noted"),
         ("stand", "commands", [{"time": 0.3, "single_support": 0.5}], "failed"),
     ],
@@ -111,6 +119,9 @@ UNTRIED = {
     "pushes.0.live": "says of whom a push came",
     "commands.0.live": "says of whom a command came",
     **dict.fromkeys(("criteria.min", "criteria.max", "criteria.equals"), "of a metric, by its name"),
+    **dict.fromkeys(
+        (key for key in keys() if key.startswith(("seeds", "margins."))), "of other runs in `surefoot check`"
+    ),
 }
 """Keys that no base can be given anew, and why."""
 

@@ -34,7 +34,7 @@ def test_all_that_a_package_brings_is_listed_with_its_name_and_not_imported(docu
     brought = [line.split() for line in out.splitlines() if line.endswith("[my-package]")]
     assert {(kind, name) for kind, name, *_ in brought} == {
         *(("scenario", "two-slow-steps"), ("robot", "heavy"), ("terrain", "ditch"), ("estimator", "low-base")),
-        *(("plant", "finer"), ("controller", "held")),
+        *(("plant", "finer"), ("controller", "held"), ("instrument", "speedometer")),
         *(("profile", name) for name in ("spring", "calm", "patient", "bang")),
         ("task", "look-aside"),
         *(("metric", "com_sway"), ("metric", "torque_norm_rms")),

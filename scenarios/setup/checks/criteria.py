@@ -158,8 +158,9 @@ def _either(known: Any, other: Any) -> Any:
     """The schema of what either of two allows, of kinds that have a key of one name; neither says of which it is."""
     if known == other:
         return known
-    allowed = known["anyOf"] if known.keys() == {"anyOf"} else [known]
-    return {"anyOf": allowed if other in allowed else [*allowed, other]}
+    allowed = known["anyOf"] if known.keys() == {"anyOf", "description"} else [known]
+    allowed = allowed if other in allowed else [*allowed, other]
+    return {"anyOf": allowed, "description": "; ".join(dict.fromkeys(one["description"] for one in allowed))}
 
 
 def _criterion(name: str, metric: Metric[Any]) -> dict[str, Any]:

@@ -246,3 +246,42 @@ def test_one_may_read_vectors_and_whole_numbers_and_say_that_it_knows_nothing(ba
     np.testing.assert_array_equal(found.field("pair")[51:100], truth[51:100])
     assert {tuple(pair) for pair in found.field("pair")[100:]} == {tuple(truth[99])}
     assert found.field("count").tolist() == [3] * 150
+
+
+class Listed(Instrument):
+    """One that keeps what it says, with random numbers."""
+
+    name = "listed"
+
+    def __init__(self):
+        self.said = []
+
+    def fields(self, walk):
+        return (FieldSpec("number"),)
+
+    def begin(self, walk, keys, rng):
+        def read(measurement):
+            self.said.append((measurement.time, rng.random()))
+            return (self.said[-1][1],)
+
+        return read
+
+
+def test_a_saved_simulation_goes_on_with_the_same_readings():
+    listed = INSTRUMENTS.add("listed", Listed())
+    try:
+        instruments = [{"name": "listed", "period": "14 ms"}]
+        with surefoot.Simulation(surefoot.load("walk", {**BRIEF, "instruments": instruments})) as sim:
+            for _ in range(20):
+                sim.step()
+            state = sim.save()
+            for _ in range(30):
+                sim.step()
+            once = list(listed.said)
+            sim.restore(state)
+            for _ in range(30):
+                sim.step()
+            assert len(listed.said) == 8 and len({number for _, number in once}) == 8
+            assert listed.said == once
+    finally:
+        INSTRUMENTS.discard("listed")

@@ -43,7 +43,7 @@ def test_code_is_there(name):
     assert named(name) is not None
 
 
-STATIONS = {"RULES": "rule", "the law": "plan"}
+STATIONS = {"RULES": "gone_through", "the law": "plan"}
 """Stations that a tick calls by another name."""
 
 

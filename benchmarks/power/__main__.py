@@ -37,7 +37,7 @@ HEADS = (
     "alarms",
     "share [%]",
     "runs in the mean",
-    "minutes of two cores",
+    "minutes of two cores, at most",
     "named most",
 )
 

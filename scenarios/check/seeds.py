@@ -98,6 +98,8 @@ def check(
     done = checking.check(single, running.out, running.jobs, on_done, running.update, keeping) if single else ()
     for case in several:
         SeedRuns.of(case, ())  # what is wrong with a search is told before any run
+    if running.cluster is not None and not several:
+        raise ScenarioError(["--cluster is for runs of several seeds; give it with --seeds 6 or more"])
     if several:
         own = checking.check(several, running.out, running.jobs, keeping=None if keeping is None else Held(keeping))
         done += _over_seeds([Seeded.of(one, counts[one.case.scenario.name]) for one in own], running, on_done)

@@ -4,7 +4,7 @@ import copy
 import itertools
 from contextlib import suppress
 from functools import partial
-from typing import Any, cast, get_origin
+from typing import Any, cast, get_args, get_origin
 
 from pydantic import BaseModel, ValidationError
 from pydantic_core import ErrorDetails
@@ -113,7 +113,7 @@ def _group(root: type[BaseModel], key: Key, data: Any) -> type[BaseModel]:
         if not isinstance(part, int):
             annotation = model.model_fields[part].annotation
             group = next(groups_in(annotation))
-            if get_origin(annotation) is dict:
+            if any(get_origin(one) is dict for one in (annotation, *get_args(annotation))):
                 next(parts, None)
         data = _inside(data, part)
         model = model_of(group, data)

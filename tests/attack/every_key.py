@@ -85,6 +85,8 @@ TEXTS = {
         duration: 0.06
         errors: {ground_pitch: 0.01, ground_roll: 0.01}
         pushes: [{time: 0.02, duration: 0.02, impulse: 0.01, elevation: 0.2}]
+        seeds: 2
+        margins: {push: {key: pushes.0.impulse, low: 0.01, high: 0.5, tolerance: 0.3}}
         """,
     "commands": """
         duration: 0.3
@@ -130,18 +132,18 @@ def _groups(annotation: Any) -> Iterator[type[Group]]:
 
 
 def keys(model: type[BaseModel], place: str = "") -> Iterator[str]:
-    """Dotted keys of a group that lead to values; those of the groups of a list like any, criteria are one."""
+    """Dotted keys of a group that lead to values; those of the groups of a list like any, groups by name are one."""
     for name, field in model.model_fields.items():
         inner = next(_groups(field.annotation), None)
-        if inner is None or get_origin(field.annotation) is dict:
+        if inner is None or any(get_origin(one) is dict for one in (field.annotation, *get_args(field.annotation))):
             yield f"{place}{name}"
         else:
             yield from keys(inner, f"{place}{name}.")
 
 
 def given(value: Any, place: str = "") -> Iterator[str]:
-    """Dotted keys that plain values give; criteria are one."""
-    if isinstance(value, dict) and place != "criteria.":
+    """Dotted keys that plain values give; groups by name are one."""
+    if isinstance(value, dict) and place not in ("criteria.", "margins."):
         for name, inside in value.items():
             yield from given(inside, f"{place}{name}.")
     elif isinstance(value, list) and any(isinstance(inside, dict) for inside in value):

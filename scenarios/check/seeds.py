@@ -95,11 +95,11 @@ def check(
     single = [case for case in chosen if counts[case.scenario.name] == 1]
     several = [case for case in chosen if counts[case.scenario.name] > 1]
     keeping = running.keeping
-    done = checking.check(single, running.out, running.jobs, on_done, running.update, keeping) if single else ()
     for case in several:
         SeedRuns.of(case, ())  # what is wrong with a search is told before any run
     if running.cluster is not None and not several:
         raise ScenarioError(["--cluster is for runs of several seeds; give it with --seeds 6 or more"])
+    done = checking.check(single, running.out, running.jobs, on_done, running.update, keeping) if single else ()
     if several:
         own = checking.check(several, running.out, running.jobs, keeping=None if keeping is None else Held(keeping))
         done += _over_seeds([Seeded.of(one, counts[one.case.scenario.name]) for one in own], running, on_done)

@@ -244,7 +244,7 @@ class MotionOptions:
 @app.command()
 @with_options(MotionOptions)
 def motion(options: MotionOptions) -> None:
-    """Write the motion of a log as those read it who train by imitation."""
+    """Write the motion of a log for those who train by imitation."""
     from surefoot.scenarios.log import read
     from surefoot.scenarios.record.provenance import RunConstants
     from surefoot.scenarios.show.motion import write_motion

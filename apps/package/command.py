@@ -22,7 +22,7 @@ def new(
         Server | None, typer.Option(help="Write a workflow for this CI server, which checks the folder walks.")
     ] = None,
 ) -> None:
-    """Write a package of your own, or a workflow for CI."""
+    """Write a package with parts of one's own, or a workflow of CI."""
     if name is None and ci is None:
         raise typer.BadParameter("give the name of a package, or --ci with github or gitlab")
     from surefoot.apps.package.ci import add_ci

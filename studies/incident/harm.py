@@ -60,8 +60,8 @@ class Harm:
         """The direction of a fall in the world, in words; empty where it goes straight down."""
         if self.way is None or float(np.hypot(*self.way)) < _UPRIGHT:
             return ""
-        angle = float(np.degrees(np.arctan2(self.way[1], self.way[0])))
-        return f"at {angle:.0f} deg from the world's x axis"
+        angle = round(float(np.degrees(np.arctan2(self.way[1], self.way[0]))))
+        return f"at {angle} deg from the world's x axis"
 
     def same(self, other: "Harm | None") -> bool:
         """Return true if another run came to the same: at about the time, and the same way."""

@@ -1,5 +1,6 @@
 """From the log of an incident to a scenario that shows it again, with no more causes than it takes."""
 
+import math
 import os
 import re
 import shutil
@@ -40,7 +41,7 @@ BEFORE = 2.0
 _LONGEST_NAME = 100
 
 STARTS = (4.0, 2.0, 1.0, 0.5)
-"""Times before the incident at which a scenario begins whose log does not come back from its beginning [s]."""
+"""Times before the loss of balance at which a scenario may begin whose run is not the same to the bit [s]."""
 
 
 @dataclass(frozen=True, slots=True)
@@ -116,11 +117,6 @@ class Incident:
         """The name of the scenario in a file: its own, as far as a name may have its letters."""
         name = re.sub(r"[^A-Za-z0-9._-]+", "-", path.stem).strip("-._")
         return name[:_LONGEST_NAME] or "incident"
-
-    @property
-    def repeatable(self) -> bool:
-        """False of a run that a program with parts of its own has made, or that followed the wall's clock."""
-        return PARTS_RECORD not in self.log.metadata and "/link" not in self.log
 
     @property
     def has_state(self) -> bool:
@@ -224,7 +220,7 @@ class Regression:
     @property
     def again(self) -> Trial:
         """The run with all that acted then."""
-        return self.starts[-1][1]
+        return dict(self.starts)[self.begin]
 
     @property
     def comes_back(self) -> bool:
@@ -258,15 +254,12 @@ def regression(
     if around is not None and seconds is None:
         seconds = BEFORE * incident.length
     whole = shortened(incident)
-    starts: list[tuple[float, Trial]] = []
-    values, begin = whole, 0.0
-    for begin in _begins(incident, moment, seconds):
-        values = whole if begin == 0.0 else begun(whole, incident, begin)
-        starts.append((begin, trials(values, causes_of(values))))
-        if starts[-1][1].same:
-            break
+    begins = _begins(incident, moment, seconds)
+    starts = tuple(_starts(incident, trials, whole, begins, wanted=seconds is not None))
+    begin = min(starts, key=_distance)[0]
+    values = begun(whole, incident, begin)
     causes = needed = causes_of(values)
-    if starts[-1][1].same and small:
+    if dict(starts)[begin].same and small:
         likely = suspected(causes, incident.named)
 
         def holds(part: tuple[Cause, ...]) -> bool:
@@ -274,7 +267,7 @@ def regression(
 
         needed = smallest(causes, holds, likely)
     values = without(values, [one for one in causes if one not in needed])
-    return Regression(incident, begin, tuple(starts), values, causes, needed, tuple(trials.made))
+    return Regression(incident, begin, starts, values, causes, needed, tuple(trials.made))
 
 
 def _begins(incident: Incident, moment: float, seconds: float | None) -> Sequence[float]:
@@ -284,9 +277,28 @@ def _begins(incident: Incident, moment: float, seconds: float | None) -> Sequenc
     if seconds is not None:
         wanted = [moment - seconds, moment - 0.5 * seconds, moment - 0.25 * seconds, 0.0]
     else:
-        starts = [incident.harm.time - one * incident.length for one in STARTS]
-        wanted = [0.0, *starts] if incident.repeatable else [*starts, 0.0]
+        before = incident.harm.time if incident.lost is None else incident.lost
+        wanted = [0.0, *(before - one * incident.length for one in STARTS)]
     return tuple(dict.fromkeys(max(round(one, 6), 0.0) for one in wanted))
+
+
+def _starts(
+    incident: Incident, trials: Trials, whole: Values, begins: Sequence[float], wanted: bool
+) -> Iterator[tuple[float, Trial]]:
+    """Trials of beginnings, until one is the same to the bit, or a wanted one comes back [s]."""
+    for begin in begins:
+        values = begun(whole, incident, begin)
+        trial = trials(values, causes_of(values))
+        yield begin, trial
+        alike = trial.likeness
+        if trial.same and (wanted or (alike is not None and alike.parts is None)):
+            return
+
+
+def _distance(start: tuple[float, Trial]) -> float:
+    """Distance of the CoM from that of the log in a trial of a beginning, infinite where it does not come back [m]."""
+    trial = start[1]
+    return trial.likeness.distance if trial.same and trial.likeness is not None else math.inf
 
 
 def shortened(incident: Incident) -> Values:
@@ -321,7 +333,12 @@ def _before(time: float, end: float, values: Values, walk: Walk) -> Mapping[str,
 
 
 def begun(values: Values, incident: Incident, begin: float) -> Values:
-    """The scenario that begins in the state of the log at a time; what was over by then is in the log [s]."""
+    """The scenario that begins in the state of the log at a time; what was over by then is in the log [s].
+
+    At 0 it is the run from its beginning.
+    """
+    if begin == 0.0:
+        return values
     path = str(incident.log.path.resolve())
     left = [one for one in values.get("pushes", ()) if not _is_over(one, begin)]
     plant = {"plant": {"name": "log", "options": {"log": path, "until": begin}}}

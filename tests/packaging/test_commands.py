@@ -9,7 +9,8 @@ import pytest
 
 pytestmark = pytest.mark.unit
 
-OF_THE_FLOORS = ("bench", "drive", "new", "paper", "policy", "robot", "serve", "sweep", "walk")
+OF_THE_FLOORS = ("bench", "drive", "new", "paper", "policy", "robot", "scenario", "serve", "sweep", "walk")
+LAST_OF_THE_CORE = "history"
 
 MODULE = '''
 import sys
@@ -59,7 +60,7 @@ def listed(text):
 
 def test_commands_of_the_floors_are_found_behind_those_of_the_core(at_hand):
     names = listed(at_hand("-h").out)
-    assert names[names.index("check") + 1 :] == list(OF_THE_FLOORS)
+    assert names[names.index(LAST_OF_THE_CORE) + 1 :] == list(OF_THE_FLOORS)
 
 
 def test_a_command_of_the_core_imports_no_other(at_hand, tools):
@@ -75,7 +76,7 @@ def test_a_command_of_the_core_imports_no_other(at_hand, tools):
 
 def test_a_command_of_a_package_is_listed_given_and_completed(at_hand, tools, monkeypatch):
     names = listed(at_hand("-h", sites=[tools]).out)
-    assert names[names.index("check") + 1 :] == sorted((*OF_THE_FLOORS, "ends", "pair"))
+    assert names[names.index(LAST_OF_THE_CORE) + 1 :] == sorted((*OF_THE_FLOORS, "ends", "pair"))
     assert at_hand("ends", "well") == (0, "done: well\n", "")
     assert at_hand("pair", "one").out == "first\n"
     assert "Usage: surefoot pair two" in at_hand("pair", "two", "-h").out
@@ -139,7 +140,7 @@ def test_a_program_without_its_entry_points_says_so(at_hand, monkeypatch):
     answer = at_hand("sweep", "soak")
     assert (answer.code, answer.out) == (2, "")
     assert "no such command 'sweep', and surefoot is installed without all of its commands" in answer.err
-    assert listed(at_hand("-h").out)[-1] == "check"
+    assert listed(at_hand("-h").out)[-1] == LAST_OF_THE_CORE
 
 
 def test_files_of_a_package_are_listed_and_shown(at_hand, site):

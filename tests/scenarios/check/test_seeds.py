@@ -14,6 +14,7 @@ from surefoot.scenarios.check.baseline import read_baseline, write_baseline
 from surefoot.scenarios.check.check import cases
 from surefoot.scenarios.check.findings import RATE
 from surefoot.scenarios.check.record import to_json
+from surefoot.scenarios.check.requirements import Requirements
 from surefoot.scenarios.check.seeds import Running, seeds_of
 from surefoot.scenarios.cli.program import app
 from surefoot.scenarios.errors import ScenarioError
@@ -243,7 +244,7 @@ def test_a_threshold_beyond_its_range_counts_as_the_end_of_it_and_is_told():
 
 def test_the_object_of_a_check_has_the_sample_and_the_findings(kept):
     found, _ = checked(overrides=("sensing.com_noise=0.006",))
-    (one,) = json.loads(json.dumps(to_json([found]), allow_nan=False))["scenarios"]
+    (one,) = json.loads(json.dumps(to_json([found], Requirements(())), allow_nan=False))["scenarios"]
     assert one["seeds"]["seeds"] == [0, 1, 2, 3, 4, 5]
     assert one["seeds"]["rate"]["rate"] == 1.0
     assert len(one["seeds"]["values"]["speed_mean"]) == 6

@@ -238,7 +238,7 @@ def summary(found: Sequence[Walk]) -> Iterator[str]:
 
 
 def to_json(history: History) -> dict[str, object]:
-    """Findings of a history as JSON: the commits that changed something, with the scenarios and metrics in which."""
+    """The findings of a history as JSON: the commits that changed something, with scenarios and metrics."""
     found = walks(history)
     checks = {(line.time, line.commit.name) for line in history.lines}
     return {

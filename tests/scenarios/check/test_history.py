@@ -250,6 +250,29 @@ def test_the_commands(tmp_path, monkeypatch):
     assert {"mujoco", "machine"} <= line.versions.keys()
 
 
+def test_runs_of_several_seeds_are_the_same_until_the_program_is_another(tmp_path, monkeypatch):
+    monkeypatch.chdir(tmp_path)
+    (tmp_path / "walks").mkdir()
+    walk = tmp_path / "walks" / "stroll.yaml"
+    noisy = WALK.format(name="stroll", length=0.2) + "sensing: {com_noise: 0.002}\nseeds: 4\n"
+    walk.write_text(noisy)
+
+    def check(*words):
+        return CliRunner().invoke(app, ["check", "walks", "--jobs", "1", "--history", "past", *words])
+
+    assert check("--update").exit_code == 0
+    assert check().exit_code == 0
+    history = History(tmp_path / "past")
+    assert changed_commits(walks(history)) == []
+    assert len(history.lines[-1].seeds.passed) > 1
+    (rate,) = (one for one in trends(history.lines) if one.name == "pass rate")
+    assert rate.spread and all(low <= value <= high for value, (low, high) in zip(rate.values, rate.spans, strict=True))
+    walk.write_text(noisy.replace("step_length: 0.2", "step_length: 0.25"))
+    check()
+    ((_, changes),) = changed_commits(walks(History(tmp_path / "past")))
+    assert any(reason.startswith("path_length over seeds: ") for reason in changes[0][1].reasons)
+
+
 def test_no_history_and_no_place_for_one_is_refused(tmp_path):
     with pytest.raises(ScenarioError, match="holds no history; give a folder that `surefoot check --history`"):
         History(tmp_path)

@@ -22,7 +22,8 @@ _CLEARANCE_TICKS = 5
 def landed(run: RunView) -> Array:
     """True place of each footstep's sole when it was booked, x y z yaw, shape (k, 4) [m, rad].
 
-    Not ``/footstep.actual``, which is where the controller believed it. Of a leaning sole, the line on which it stands.
+    Not ``/footstep.actual``, which is where the controller believed it. Of a leaning sole, the line on which it stands;
+    of one that rolls, its centre if it lay flat about its edge.
     """
     steps = run.log["/footstep"]
     ticks, left = (
@@ -34,14 +35,29 @@ def landed(run: RunView) -> Array:
     if feet_lean(run.constants.roles):
         turned = zip(np.where(left, 0, 1), places, rotations(poses[:, 3:]), strict=True)
         places = np.array([line_centre(int(foot), place, R, half_width) for foot, place, R in turned])
+    if run.has("/reference"):
+        pitch = run.field("/reference", "roll")[ticks, np.where(left, 0, 1)]
+        places = places + 0.5 * run.constants.foot_length * _turned_back(rotations(poses[:, 3:]), pitch)
     return np.column_stack((places, headings(poses[:, 3:])))
+
+
+def _turned_back(rotation: Array, pitch: Array) -> Array:
+    """Way of a sole's centre, in half lengths, as it turns back by a pitch about its edge, shape (k, 3) [-].
+
+    Args:
+        rotation: of soles in the world, shape (k, 3, 3).
+        pitch: of each, heel up about its toe edge, negative about its heel edge, shape (k,) [rad].
+    """
+    ahead, up = rotation[:, :, 0], rotation[:, :, 2]
+    level = np.cos(pitch)[:, None] * ahead + np.sin(pitch)[:, None] * up
+    return np.asarray(np.sign(pitch)[:, None] * (ahead - level))
 
 
 @metric(
     unit="m",
     shown=MM,
     needs=("/truth", "/footstep", "/reference"),
-    reads={"/truth": (), "/footstep": ("planned", "foot")},
+    reads={"/truth": (), "/footstep": ("planned", "foot"), "/reference": ("roll",)},
     body=True,
     least=0.0,
 )
@@ -55,7 +71,13 @@ def footstep_error_max(run: RunView) -> float | None:
     return float(np.linalg.norm(landed(run)[:, :3] - planned, axis=1).max())
 
 
-@metric(unit="m", shown=MM, reads={"/truth": (), "/footstep": ("foot",)}, tolerance=(0.001, 0.0))
+@metric(
+    unit="m",
+    shown=MM,
+    needs=("/truth", "/footstep"),
+    reads={"/truth": (), "/footstep": ("foot",), "/reference": ("roll",)},
+    tolerance=(0.001, 0.0),
+)
 def stair_edge_margin_min(run: RunView) -> float | None:
     """Least distance of a landed sole's corner from the edge of its tread, negative beyond it [m]."""
     terrain = terrain_of(run)

@@ -72,7 +72,8 @@ def phases_of(steps: Sequence[Step], stands: bool) -> tuple[Phase, ...]:
         leaving = None if following is None else following.toe_off
         if step.number >= 1:
             stance = step.place.foot.other
-            single, double, number, point = step.single_support, step.double_support, step.number, step.support
+            single, double = step.single_support, step.double_support
+            number, point = step.number, step.support
             swung = _rolls(step.toe_off, step.heel_strike)
             swing = Phase(PhaseKind.SINGLE, step.lift_off, single, number, stance, point, rolls=swung)
             stood = _rolls(step.heel_strike, leaving if stop is None else None)
@@ -91,7 +92,7 @@ def phases_of(steps: Sequence[Step], stands: bool) -> tuple[Phase, ...]:
 
 
 def _rolls(*spans: RollSpan | None) -> tuple[RollSpan, ...]:
-    """Those that there are."""
+    """Rolls of a phase, of steps each of which may have none."""
     return tuple([span for span in spans if span is not None])
 
 

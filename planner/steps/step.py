@@ -228,16 +228,17 @@ def make_step(
     path, xy = last.path.advanced(stride, foot)
     position, normal = np.append(xy, terrain.heights(xy[None])), terrain.normals(xy[None])[0]
     place = Footstep(foot, position, path.yaw, normal)
-    course = swing_course(number, start, place, single, gait.swing_height, ground)
     to, off, other = (float(one.position[2]) for one in (place, start, stance))
     climb, lift = round(to - off, _MEASURED), round(min(to, other) - min(other, off), _MEASURED)
+    half_length, edged = float(ground.half_size[0]), terrain.footholds.edged(climb)
+    leaves = gait.heel_off != 0.0 and rolling.strides(start, stance, half_length)
+    strikes = gait.heel_strike != 0.0 and not edged and rolling.strides(stance, place, half_length)
+    course = swing_course(number, start, place, single, gait.swing_height, ground)
+    course = replace(course, braking=rolling.BRAKING, lead=rolling.LEAD, sinking=rolling.SINKING) if strikes else course
     alike = [one.swing for one in before if (one.single_support, one.climb, one.course) == (single, climb, course)]
     swing = alike[0] if alike else unit_swing(single, climb, course, parameters)
     way = math.dist(xy, start.position[:2])
-    lift_off, half_length = lift_off_after(last, stop), float(ground.half_size[0])
-    edged = terrain.footholds.edged(climb)
-    leaves = gait.heel_off != 0.0 and rolling.strides(start, stance, half_length)
-    strikes = gait.heel_strike != 0.0 and not edged and rolling.strides(stance, place, half_length)
+    lift_off = lift_off_after(last, stop)
     step = Step(
         number=number,
         ordinal=last.ordinal + (not inserted),

@@ -31,8 +31,18 @@ is left."""
 LEVEL_AGAIN = 0.9
 """The same at most, of a swing that is shortened when its foot has begun to roll [-]."""
 
+BRAKING, LEAD, SINKING = 6.0, 0.25, 0.1
+"""The arrival of a foot that lands on its heel, see `SwingCourse` [-, -, m/s].
+
+A foot that comes to rest smoothly and early waits for the ground while the hip comes nearer: at 0.8 m/s the knee bends
+by 10 degrees more until the foot carries, and the walk costs a seventh more. One that sinks no faster than others then
+grazes the ground on its way, and slips by a centimetre."""
+
 _FLAT = 0.8
-"""Share of double support after which the sole is flat on the ground after heel strike [-]."""
+"""Share of double support after which the sole is flat on the ground after heel strike [-].
+
+By then the ZMP goes on from the heel edge. A sole that comes down as long as the double support lasts holds it back: it
+lands with 1.4 body weights in place of one."""
 
 _LOOKED_AT = 9
 """Instants at which the acceleration of a roll is looked at, of a double support [-]."""

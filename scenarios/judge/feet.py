@@ -221,16 +221,17 @@ def stance_slips(run: RunView, until: int | None = None) -> list[Slip]:
     return slips
 
 
-_STANCE_READS: Reads = {"/truth": (), "/contact": ("planned", "active", "normal_force")}
+STANCE_READS: Reads = {"/truth": (), "/contact": ("planned", "active", "normal_force")}
+"""Fields that tell the stances."""
 
 
-@metric(unit="m", shown=MM, reads=_STANCE_READS, body=True, least=0.0)
+@metric(unit="m", shown=MM, reads=STANCE_READS, body=True, least=0.0)
 def foot_slip_max(run: RunView) -> float | None:
     """Largest horizontal way of a corner of a sole on the ground from where it came to it, over all stances [m]."""
     return max((slip.distance for slip in stance_slips(run)), default=None)
 
 
-@metric(unit="rad", shown=DEG, reads=_STANCE_READS, body=True, least=0.0)
+@metric(unit="rad", shown=DEG, reads=STANCE_READS, body=True, least=0.0)
 def stance_twist_max(run: RunView) -> float | None:
     """Largest yaw of a loaded stance foot away from its yaw at first load, over all stances [rad]."""
     yaw = run.sole_yaw
@@ -241,8 +242,8 @@ def stance_twist_max(run: RunView) -> float | None:
 @metric(
     unit="rad",
     shown=DEG,
-    needs=tuple(_STANCE_READS),
-    reads={**_STANCE_READS, "/reference": ("roll",)},
+    needs=tuple(STANCE_READS),
+    reads={**STANCE_READS, "/reference": ("roll",)},
     body=True,
     least=0.0,
 )
@@ -274,7 +275,7 @@ def contact_force_peak(run: RunView) -> float:
     return float(run.field("/contact", "normal_force").sum(axis=1).max() / (run.constants.mass * GRAVITY))
 
 
-@metric(unit="s", needs=(*_STANCE_READS, "/reference"), reads=_STANCE_READS, body=True, least=0.0)
+@metric(unit="s", needs=(*STANCE_READS, "/reference"), reads=STANCE_READS, body=True, least=0.0)
 def unplanned_flight_time(run: RunView) -> float:
     """Time, after the first load, in which no foot carried load though one was planned in contact [s]."""
     standing, planned = loaded(run).any(axis=1), (run.field("/contact", "planned") != 0).any(axis=1)

@@ -73,24 +73,27 @@ class RobotFacts:
         return 0.0 if math.isnan(span) else span
 
 
-def longest_step(leg_length: float, hip_height: float, hip_width: float, step_width: float) -> float:
-    """Longest step with flat soles, the CoM halfway between the feet at touchdown.
+def longest_step(
+    leg_length: float, hip_height: float, hip_width: float, step_width: float, raised: float = 0.0
+) -> float:
+    """Longest step with the CoM, at touchdown, where both legs are straight; halfway between feet with flat soles.
 
-    Each straight leg then spans half the step forward, half the difference of foot and hip spacing sideways and the hip
-    height upward.
+    Each leg then spans its part of the step forward, half the difference of foot and hip spacing sideways and the hip
+    height upward. A foot that lands on its heel is higher.
 
     Args:
         leg_length: hip centre to sole with the knee straight [m].
         hip_height: hip centre above the soles at touchdown [m].
         hip_width: distance between the hip centres [m].
         step_width: lateral distance between the soles' centres [m].
+        raised: height of the centre of the sole that lands [m].
 
     Returns:
         forward distance between the soles' centres [m]; NaN when the hips are out of reach of feet side by side.
     """
     sideways = (step_width - hip_width) / 2
-    square = leg_length**2 - hip_height**2 - sideways**2
-    return 2 * math.sqrt(square) if square >= 0 else math.nan
+    behind, ahead = (leg_length**2 - height**2 - sideways**2 for height in (hip_height, hip_height - raised))
+    return math.sqrt(behind) + math.sqrt(ahead) if behind >= 0 else math.nan
 
 
 def facts_of(robot: RobotDescription, payload: float = 0.0) -> RobotFacts:

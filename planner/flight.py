@@ -8,7 +8,9 @@ import numpy as np
 from surefoot.planner.geometry.plane import greatest, sole_pose, wrap_angle
 from surefoot.planner.measured import Measured
 from surefoot.planner.state import Swing, WalkState
+from surefoot.planner.steps.adaptation import with_foot_flat
 from surefoot.planner.swing.leg_reach import around_stance_leg
+from surefoot.planner.swing.rolling import strides
 from surefoot.planner.swing.trajectory import LEAST_GLIDE, SwingTrajectory, start_swing
 from surefoot.planner.types import Array, FeetState, Footstep
 
@@ -81,7 +83,15 @@ def swinging_to(state: WalkState, landing: Footstep, measured: Measured, held: b
         lowering = model.legs.lowering(math.dist(landing.position, stance.position)) if state.catching else 0.0
         swing = around_stance_leg(swing, stance, model.legs, time, state.clock.sample_time)
     flown = Swing(state.swing.stage, swing, state.swing.waited, state.swing.again)
-    return replace(state, swing=flown, astray=astray, lowering=lowering)
+    return replace(_landing_flat(state, landing, stance), swing=flown, astray=astray, lowering=lowering)
+
+
+def _landing_flat(state: WalkState, landing: Footstep, stance: Footstep) -> WalkState:
+    """The state whose swing foot lands flat where it does not land ahead, unless its toes are on their way up."""
+    span = state.schedule.step(state.phase.step).heel_strike
+    if span is None or state.clock.now >= span.start or strides(stance, landing, float(state.model.half_size[0])):
+        return state
+    return state.on(with_foot_flat(state.schedule, span))
 
 
 def _begun(state: WalkState, landing: Footstep, time: float, feet: FeetState, astray: float) -> SwingTrajectory:

@@ -220,7 +220,7 @@ def _world_plan(
         footholds=support.footholds,
         footsteps=footsteps,
         swing=state.swing.trajectory,
-        roll=state.roll(time),
+        rolls=state.rolls(time),
         status=status,
         balance=balance,
     )

@@ -116,7 +116,7 @@ def may_go_again(state: WalkState) -> bool:
     phase, now = state.phase, state.clock.now
     if not state.model.times or state.decided or not state.info.leads_to:
         return False
-    rolls = phase.roll is not None and now > phase.roll.start
+    rolls = any(span.angle > 0.0 and now > span.start for span in phase.rolls)
     # A plan in which it stands lies between its steps, so that it is seen to land.
     stood = phase.kind is PhaseKind.SINGLE or now > phase.start + CLOCK_ROUNDING
     flies = state.swing.trajectory is not None

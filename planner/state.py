@@ -16,7 +16,7 @@ from surefoot.planner.steps.gait import GaitParameters
 from surefoot.planner.steps.phases import Phase, PhaseSamples
 from surefoot.planner.steps.schedule import Schedule
 from surefoot.planner.steps.source import CommandSource
-from surefoot.planner.swing.heel_off import FootRoll
+from surefoot.planner.swing.rolling import FootRoll, pivot_of
 from surefoot.planner.swing.trajectory import SwingTrajectory
 from surefoot.planner.types import Array, FeetState, PhaseInfo
 from surefoot.planner.walk_model import WalkModel
@@ -213,14 +213,15 @@ class WalkState:
         clock, rate, bend = self.clock.at(ahead)
         return self.schedule.samples(clock, (rate, bend / self.clock.sample_time))
 
-    def roll(self, time: float) -> FootRoll | None:
-        """Pitch of the foot that leaves the ground next or has just left it; None for one that stays level."""
-        span, clock = self.phase.roll, self.clock
-        if span is None or clock.now >= span.end:
-            return None
-        start, end = (time + (at - clock.now) * clock.sample_time for at in span[:2])
-        foot, toe = self.schedule.gait.step_foot(self.phase.leaves), float(self.model.half_size[0])
-        return FootRoll(foot, start, end, span.angle, toe, None if clock.steady else clock, time)
+    def rolls(self, time: float) -> tuple[FootRoll, ...]:
+        """Rolls of the present phase that are not over, at a time [s]."""
+        clock = self.clock
+        scaling, half_length, found = None if clock.steady else clock, float(self.model.half_size[0]), []
+        for foot, begin, over, angle in self.phase.rolls:
+            if clock.now < over:
+                start, end = (time + (at - clock.now) * clock.sample_time for at in (begin, over))
+                found.append(FootRoll(foot, start, end, angle, pivot_of(angle, half_length), scaling, time))
+        return tuple(found)
 
     # From a state to the next.
 
@@ -272,10 +273,11 @@ class WalkState:
             return self
         clock = self.clock.scaled(self.phase.end - self.clock.now, left / t)
         state, schedule = replace(self, clock=clock), self.schedule
-        # A heel that would be lifted harder than hips swing a foot stays down.
-        roll = state.roll(time)
-        if roll is not None and roll.lifts_harder(self.model.hardest, time, time + state.time_left):
-            schedule = adaptation.with_foot_flat(schedule, self.landed + 1)
+        # A heel that would be lifted harder than hips swing a foot stays down, and so do toes.
+        spans = [span for span in self.phase.rolls if clock.now < span.end]
+        for span, roll in zip(spans, state.rolls(time), strict=True):
+            if roll.lifts_harder(self.model.hardest, time, time + state.time_left):
+                schedule = adaptation.with_foot_flat(schedule, span)
         return state.on(schedule).swing_put_off(time, before)
 
     def swing_put_off(self, time: float, left: float) -> "WalkState":

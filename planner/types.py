@@ -31,6 +31,14 @@ class Foot(IntEnum):
         return 1.0 - 2.0 * self
 
 
+class Edge(IntEnum):
+    """The part of a sole that is in contact: all of it, or a line; the value tells which way ahead of the centre."""
+
+    HEEL = -1
+    SOLE = 0
+    TOE = 1
+
+
 class PhaseKind(IntEnum):
     """Support phase."""
 

@@ -21,7 +21,7 @@ cdef class WholeBodyController:
     cdef ContactState _contacts
     cdef AnswerReader _reader
     cdef object _gap_rows, _gap_lower, _region_contacts, _observer
-    cdef double _toe
+    cdef double _half_length
     cdef list _seen
     cdef public tuple solvers
 

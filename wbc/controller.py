@@ -125,7 +125,7 @@ class WholeBodyController:
         ankles, cones = AnkleStops(model, frames, limits), sole.cones(TOE_DEPTH * size.length)
         self._hard = HardConstraints(self.qp, self.layout, cones, limits, parameters.contact, ankles, leaning)
         self.region = SupportRegion(sole.half_length, sole.half_width, parameters.balance.polygon_share)
-        self._region_contacts: tuple[tuple[bool, bool], int] | None = None
+        self._region_contacts: tuple[tuple[bool, bool], tuple[int, int]] | None = None
         self._contacts: ContactState | None = None
         edges, hips = (sole.half_length, sole.half_width), HipStops(model, frames, limits)
         default = default_tasks(parameters, self.region, edges, ankles, hips, self.terms.waist, leaning)
@@ -140,7 +140,7 @@ class WholeBodyController:
         self._observer = LoadObserver(self.terms.mass, control_period, size)
         self.driven = None if driven is None or not driven.any() else DrivenRows(self.layout, driven, control_period)
         fixed = None if self.driven is None else self.driven.fixed
-        self._toe = sole.half_length
+        self._half_length = sole.half_length
         self._seen: list[tuple[int, Array]] = []
         self._reader = AnswerReader(self.qp, self.layout, self.tasks, limits.torque, control_period, size)
         self.solvers: tuple[QpSolver, ...] = in_turn(
@@ -187,10 +187,11 @@ class WholeBodyController:
     def build(self, terms: RobotTerms, reference: WbcReference, contacts: ContactState) -> QpData:
         """The QP of a state, a reference and contacts, written over the last one.
 
-        The terms of a rolling foot are seen from its toe edge from here on, those of a leaning one from its line (see
+        The terms of a rolling foot are seen from its edge from here on, those of a leaning one from its line (see
         ``RobotTerms.shift_foot``).
         """
-        if reference.rolling_foot >= 0 or self._seen or terms.is_shifted or terms.leaning is not None:
+        rolls = reference.edge[0] != 0 or reference.edge[1] != 0
+        if rolls or self._seen or terms.is_shifted or terms.leaning is not None:
             self._shift(terms, reference, contacts)
         if contacts is not self._contacts or terms.leaning is not None:
             self._hold(terms, contacts)
@@ -203,12 +204,12 @@ class WholeBodyController:
 
     def _hold(self, terms: RobotTerms, contacts: ContactState) -> None:
         """Stand on other contacts than those of the tick before."""
-        holding = (contacts.active, contacts.rolling)
+        holding = (contacts.active, contacts.edge)
         # The line on which a leaning foot stands moves over its sole.
         if terms.leaning is not None or holding != self._region_contacts:
             if not np.isfinite(terms.sole_position).all():
                 return
-            self.region.rebuild(terms.contact_position, terms.contact_rotation, contacts.active, contacts.rolling)
+            self.region.rebuild(terms.contact_position, terms.contact_rotation, contacts.active, contacts.edge)
             self._region_contacts = holding
         self._contacts = contacts
 
@@ -244,11 +245,13 @@ class WholeBodyController:
         return reader.answer
 
     def _shift(self, terms: RobotTerms, reference: WbcReference, contacts: ContactState) -> None:
-        """See a rolling foot from its toe edge, a leaning one from its line, others from their soles."""
-        rolling, self._seen = reference.rolling_foot, []
+        """See a rolling foot from its edge, a leaning one from its line, others from their soles."""
+        self._seen = []
         for foot in (0, 1):
-            if foot == rolling and (rolling == contacts.rolling or not contacts.active[rolling]):
-                self._seen.append((foot, terms.shift_foot(foot, self._toe, reference.roll[0])))
+            edge = reference.edge[foot]
+            if edge and (edge == contacts.edge[foot] or not contacts.active[foot]):
+                ahead, pitch = edge * self._half_length, reference.roll[foot][0]
+                self._seen.append((foot, terms.shift_foot(foot, ahead, pitch)))
             elif terms.leaning is not None:
                 self._seen.append((foot, terms.shift_foot(foot, 0.0, 0.0)))
             else:

@@ -43,13 +43,14 @@ class HardConstraints:
         Args:
             qp: to write into.
             layout: of it.
-            cones: of the sole and of its toe edge, shape (rows, 6) each.
+            cones: of the sole and of an edge of it, shape (rows, 6) each.
             limits: of the joints.
             gains: of the contacts.
             stops: where the ankles end; of these, the joints that rest, and those that roll each foot.
             leaning: whether feet roll as their legs do (see `surefoot.wbc.body.leaning`).
         """
         self._damping, self._levelling = gains.damping, gains.levelling
+        self._striking, self._striking_damping = gains.striking, gains.striking_damping
         self._softening, self._sinking = gains.softening, gains.sinking
         self._free = FREE if leaning else -1
         self._joints, self._unbounded = AccelerationBounds(limits), UNBOUNDED
@@ -58,37 +59,37 @@ class HardConstraints:
         self._torque_span, self._rates = np.concatenate([np.zeros(6), limits.torque]), np.zeros(layout.nv)
         n, first = layout.variables, layout.torque_rows.stop
         rows = [slice(first + k * layout.cone_rows, first + (k + 1) * layout.cone_rows) for k in (0, 1)]
-        self._cones, self._rolling = cones, -1
+        self._cones, self._edge = cones, (0, 0)
         self._cone_rows = [qp.A[rows[k], layout.wrench(k)] for k in (0, 1)]
-        self._roll(-1)
+        self._stand((0, 0))
         for k in (0, 1):
             qp.bounds_upper[n + rows[k].start : n + rows[k].stop] = 0.0
         self._A, self._lower, self._upper = qp.A, qp.bounds_lower, qp.bounds_upper
         # Bounds of the rows come after those of the variables.
         self._row_lower, self._row_upper = qp.bounds_lower[n:], qp.bounds_upper[n:]
 
-    def _roll(self, foot: int) -> None:
-        """Hold a rolling foot, if any, to the cone of its toe edge."""
+    def _stand(self, edge: tuple[int, int]) -> None:
+        """Hold a foot that rolls to the cone of its edge, another one to that of its sole."""
         for k in (0, 1):
-            self._cone_rows[k][:] = self._cones[1 if k == foot else 0]
-        self._rolling = foot
+            self._cone_rows[k][:] = self._cones[1 if edge[k] else 0]
+        self._edge = edge
 
     def write(self, terms: RobotTerms, reference: WbcReference, contacts: ContactState) -> None:
         """Write the rows and bounds of this state.
 
-        A rolling foot is seen from its toe edge (see ``RobotTerms.shift_foot``), which neither slides nor lifts; its
-        pitch follows the planned roll, and its CoP lies on the edge.
+        A rolling foot is seen from its edge (see ``RobotTerms.shift_foot``), which neither slides nor lifts; its pitch
+        follows the planned roll, and its CoP lies on the edge.
         """
-        rolling = contacts.rolling
-        if rolling != self._rolling:
-            self._roll(rolling)
+        edge = contacts.edge
+        if edge[0] != self._edge[0] or edge[1] != self._edge[1]:
+            self._stand(edge)
         left, right = contacts.active[0], contacts.active[1]
         self._motion(terms)
         self._contact(terms, reference, 0, left, contacts.landing[0])
         self._contact(terms, reference, 1, right, contacts.landing[1])
         self._upper[terms.nv + 2] = contacts.force_cap[0] / terms.wrench_unit
         self._upper[terms.nv + 8] = contacts.force_cap[1] / terms.wrench_unit
-        self._bound_joints(terms, left and rolling != 0, right and rolling != 1)
+        self._bound_joints(terms, left and edge[0] == 0, right and edge[1] == 0)
 
     def _motion(self, terms: RobotTerms) -> None:
         """M q̈ - Jᵀ w between -h and -h, of joints less and more their largest torque."""
@@ -126,12 +127,18 @@ class HardConstraints:
 
     def _turn(self, terms: RobotTerms, reference: WbcReference, k: int) -> None:
         """Turn the sole's normal to the ground's, which is a rotation vector in its frame, and let it roll."""
-        target, first = self._row_lower, 6 * k
+        target, first, edge = self._row_lower, 6 * k, self._edge[1] if k else self._edge[0]
         normal = algebra.rotate_back(terms._R_contact[k], reference._n[1] if k else reference._n[0])
         target[first + 3] -= self._levelling * normal[1]
-        target[first + 4] += self._levelling * normal[0]
-        if k == self._rolling:
-            target[first + 4] += self._damping * reference.roll[1] + reference.roll[2]
+        roll = reference.roll[1] if k else reference.roll[0]
+        if edge < 0:
+            behind = roll[1] - terms._v_sole[k, 4]
+            bias = terms._bias_sole[k, 4]
+            target[first + 4] = self._striking * normal[0] + self._striking_damping * behind + roll[2] - bias
+        else:
+            target[first + 4] += self._levelling * normal[0]
+        if edge > 0:
+            target[first + 4] += self._damping * roll[1] + roll[2]
         if self._free >= 0:
             target[first + self._free] = 0.0
 

@@ -123,6 +123,10 @@ class ContactGains:
     levelling: float = number(
         100.0, "1/s^2", "stiffness that turns an active sole flat on the ground of its planned normal"
     )
+    striking: float = number(
+        900.0, "1/s^2", "stiffness that turns a foot on its heel edge to its planned pitch, lest the sole slaps down"
+    )
+    striking_damping: float = number(60.0, "1/s", "damping of the same")
 
     def __post_init__(self) -> None:
         check(self, "wbc", "contact")

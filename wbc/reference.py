@@ -10,6 +10,9 @@ from surefoot.maths.algebra import Vector
 
 Array = NDArray[np.float64]
 
+LEVEL: Vector = (0.0, 0.0, 0.0)
+"""Pitch of a foot that does not roll, and its derivatives [rad, rad/s, rad/s^2]."""
+
 
 class WbcReference:
     """The reference of the whole-body controller until its next tick; world frame.
@@ -41,9 +44,9 @@ class WbcReference:
         swing_angular_velocity: of its sole, shape (3,) [rad/s].
         swing_angular_acceleration: of its sole, shape (3,) [rad/s^2].
         ground_normal: unit normals of the ground on which the soles stand, or will land, shape (2, 3) [-].
-        rolling_foot: index of the foot that rolls about its toe edge, -1 for none; its `swing_position` is that of the
-            sole as if it lay flat.
-        roll: (pitch, rate, acceleration) of that foot, heel up positive [rad, rad/s, rad/s^2].
+        edge: of each foot (left, right) that on which it rolls: 1 the toe edge, -1 the heel edge, 0 none of them, its
+            sole lies flat. The `swing_position` of a foot that rolls is that of the sole as if it lay flat [-].
+        roll: (pitch, rate, acceleration) of each foot, heel up positive [rad, rad/s, rad/s^2].
         catching: whether the next footstep is being adapted to catch the body, but on stairs and blocks.
     """
 
@@ -51,7 +54,7 @@ class WbcReference:
         "com", "com_velocity", "com_acceleration", "zmp", "zmp_offset", "omega", "stiffness", "heading",
         "heading_rate", "planned_contact", "load_share", "time_to_switch", "lifting_foot", "swing_foot",
         "swing_progress", "swing_position", "swing_velocity", "swing_acceleration", "swing_rotation",
-        "swing_angular_velocity", "swing_angular_acceleration", "ground_normal", "rolling_foot", "roll", "catching",
+        "swing_angular_velocity", "swing_angular_acceleration", "ground_normal", "edge", "roll", "catching",
     )  # fmt: skip
     __dataclass_fields__: ClassVar[dict[str, Field[Any]]] = vars(
         make_dataclass("WbcReference", __match_args__, init=False, repr=False, eq=False)
@@ -81,8 +84,8 @@ class WbcReference:
         swing_angular_velocity: ArrayLike,
         swing_angular_acceleration: ArrayLike,
         ground_normal: ArrayLike,
-        rolling_foot: int = -1,
-        roll: tuple[float, float, float] = (0.0, 0.0, 0.0),
+        edge: tuple[int, int] = (0, 0),
+        roll: tuple[Vector, Vector] = (LEVEL, LEVEL),
         catching: bool = False,
     ) -> None:
         """Take the attributes.
@@ -105,7 +108,7 @@ class WbcReference:
         self._w, self._w_dot = _vector(swing_angular_velocity), _vector(swing_angular_acceleration)
         left, right = np.asarray(ground_normal, dtype=np.float64)
         self._n = _vector(left), _vector(right)
-        self.rolling_foot, self.roll, self.catching = rolling_foot, roll, catching
+        self.edge, self.roll, self.catching = edge, roll, catching
 
     @property
     def com(self) -> Array:

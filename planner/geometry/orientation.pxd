@@ -12,4 +12,4 @@ cpdef vector3 sole_spin(vector3 angles, vector3 rates) noexcept nogil
 @cython.locals(turn=double, tilt=double, lean=double, turn2=double, tilt2=double, lean2=double)
 cpdef vector3 sole_spin_rate(vector3 angles, vector3 rates, vector3 accelerations) noexcept nogil
 @cython.locals(R=double[:, ::1])
-cpdef void roll_sole(const double[:] level, const double[:] rates, double toe, double pitch, double rate, double[:] centre, double[:] velocity) noexcept
+cpdef void roll_sole(const double[:] level, const double[:] rates, double pivot, double pitch, double rate, double[:] centre, double[:] velocity) noexcept

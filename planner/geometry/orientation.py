@@ -72,14 +72,14 @@ def sole_spin_rate(angles: algebra.Vector, rates: algebra.Vector, accelerations:
 
 
 def roll_sole(
-    level: Array, rates: Array, toe: float, pitch: float, rate: float, centre: Array, velocity: Array
+    level: Array, rates: Array, pivot: float, pitch: float, rate: float, centre: Array, velocity: Array
 ) -> None:
-    """Write where the centre of a sole is, and how it moves, that is turned about its toe edge.
+    """Write where the centre of a sole is, and how it moves, that is turned about an edge of it.
 
     Args:
         level: pose of the sole as if it were level, x, y, z [m], yaw, pitch, roll [rad], shape (6,).
         rates: its rates, shape (6,) [m/s, rad/s].
-        toe: toe edge from the sole's centre [m].
+        pivot: the edge, ahead of the sole's centre [m].
         pitch: by which it is turned [rad].
         rate: of that [rad/s].
         centre: to be written, shape (3,) [m]; it may be part of `level`.
@@ -89,8 +89,8 @@ def roll_sole(
     sine, cosine = math.sin(pitch), math.cos(pitch)
     R = np.empty((3, 3))
     turn_sole(angles, R)
-    away = algebra.rotate(R, (toe * (1.0 - cosine), 0.0, toe * sine))
-    moving = algebra.rotate(R, (toe * rate * sine, 0.0, toe * rate * cosine))
+    away = algebra.rotate(R, (pivot * (1.0 - cosine), 0.0, pivot * sine))
+    moving = algebra.rotate(R, (pivot * rate * sine, 0.0, pivot * rate * cosine))
     turned = algebra.cross(sole_spin(angles, turning), away)
     algebra.put(centre, algebra.add(algebra.vector(level), away))
     algebra.put(velocity, algebra.add(algebra.add(algebra.vector(rates), moving), turned))

@@ -11,7 +11,7 @@ cdef class Body:
     cdef double _half_width, _outward, _lever_beside, _lever_above, _toe, _thigh, _shank, _least_reach
     cdef double _thigh_ahead, _thigh_outward, _shank_ahead, _shank_outward, _thigh_pull, _shank_pull
     cdef double _at_hip, _at_ankle, _trunk_mass, _at_knee, _carried
-    cdef vector3 _trunk, _to_ankle, _to_foot, _own
+    cdef vector3 _trunk, _ankle, _to_foot, _own
     cdef bint _rolls_first, _links_beside
     cdef Py_ssize_t _corrections
     cdef Py_ssize_t[:, ::1] _pairs
@@ -25,6 +25,7 @@ cdef class Body:
     @cython.locals(k=Py_ssize_t, leg=Py_ssize_t)
     cpdef void place(self, const double[:, :] com, const double[:, :, :] soles, Py_ssize_t count) noexcept nogil
     @cython.locals(way=vector3)
+    @cython.locals(edge=double, ankle=vector3)
     cdef void _place_foot(self, Py_ssize_t leg, Py_ssize_t k, const double[:, :] com, const double[:, :, :] soles) noexcept nogil
     cdef inline vector3 _pitched(self, vector3 way, double ahead, double outward, Py_ssize_t leg, Py_ssize_t k) noexcept nogil
     @cython.locals(k=Py_ssize_t, leg=Py_ssize_t)

@@ -108,9 +108,10 @@ class LegChain:
             soles: centres of the left and the right sole, shape (2, n, 3) [m].
             heading: of the left and the right knee and foot, shape (2, n); the trunk has their mean [rad].
             sample_time: between the samples [s].
-            pitch: of the soles about their toe edges, heel up positive, shape (2, n) [rad]; level by default. `soles`
+            pitch: of the soles, heel up about their toe edges, negative about their heel edges, shape (2, n)
+                [rad]; level by default. `soles`
                 are where they would be without it.
-            toe: toe edge from the sole's centre [m].
+            toe: toe edge from the sole's centre, which the heel edge is as far behind [m].
 
         Returns:
             At all samples but the first and the last, shape (n - 2, 3) [m^2/s^2].
@@ -133,8 +134,9 @@ class LegChain:
             com: CoM, shape (n, 3) [m].
             soles: centres of the left and the right sole, shape (2, n, 3) [m].
             heading: of the left and the right knee and foot, shape (2, n) [rad].
-            pitch: of the soles about their toe edges, heel up positive, shape (2, n) [rad]; level by default.
-            toe: toe edge from the sole's centre [m].
+            pitch: of the soles, heel up about their toe edges, negative about their heel edges, shape (2, n)
+                [rad]; level by default.
+            toe: toe edge from the sole's centre, which the heel edge is as far behind [m].
         """
         body = Body(self, toe, len(com))
         body.turn_legs(heading, np.zeros_like(heading) if pitch is None else pitch, len(com))
@@ -192,7 +194,7 @@ class Body:
 
     Args:
         chain: lengths and masses.
-        toe: toe edge from the sole's centre [m].
+        toe: toe edge from the sole's centre, which the heel edge is as far behind [m].
         count: samples for which there is room.
 
     Attributes:
@@ -208,7 +210,7 @@ class Body:
         self._half_width, self._trunk, self._outward = chain.hip_half_width, chain.trunk, chain.foot_outward
         self._lever_beside, self._lever_above = chain.hip_lever
         x, y, z = chain.ankle
-        self._toe, self._to_ankle, self._to_foot = toe, (x - toe, y, z), chain.foot_centre
+        self._toe, self._ankle, self._to_foot = toe, (x, y, z), chain.foot_centre
         self._thigh, self._shank = thigh.length, shank.length
         self._least_reach = abs(thigh.length - shank.length) + 1e-6
         self._rolls_first, self._links_beside = chain.rolls_first, chain.links_beside
@@ -264,8 +266,9 @@ class Body:
             self._settle(k)
 
     def _place_foot(self, leg: int, k: int, com: Array, soles: Array) -> None:
-        """Ankle and CoM of a foot that is pitched about its toe edge."""
-        way = self._pitched(self._to_ankle, self._toe, 0.0, leg, k)
+        """Ankle and CoM of a foot that is pitched about an edge of its sole."""
+        edge, ankle = (-self._toe if self._sp[leg, k] < 0.0 else self._toe), self._ankle
+        way = self._pitched((ankle[0] - edge, ankle[1], ankle[2]), edge, 0.0, leg, k)
         x = soles[leg, k, 0] - com[k, 0] + way[0]
         y = soles[leg, k, 1] - com[k, 1] + way[1]
         z = soles[leg, k, 2] - com[k, 2] + way[2]

@@ -7,6 +7,6 @@ cdef class WalkPlan:
     cdef readonly PhaseInfo phase
     cdef readonly object contacts, load_left, support_polygon, inner_polygon, footholds, footsteps
     cdef readonly SwingTrajectory swing
-    cdef readonly object roll
+    cdef readonly tuple rolls
     cdef readonly PlanStatus status
     cdef readonly Balance balance

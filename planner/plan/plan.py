@@ -7,7 +7,7 @@ from numpy import bool_
 from numpy.typing import NDArray
 
 from surefoot.planner.parameters import PlannerParameters
-from surefoot.planner.swing.heel_off import FootRoll
+from surefoot.planner.swing.rolling import FootRoll
 from surefoot.planner.swing.trajectory import SwingTrajectory
 from surefoot.planner.types import (
     Array,
@@ -44,8 +44,9 @@ class WalkPlan:
         footholds: where the left and the right foot stand now, or stood last.
         footsteps: the next footsteps with number and time, at most three.
         swing: trajectory of the swing foot in single support, otherwise None. It is that of the sole as if it were
-            level: a foot that rolls turns about its toe edge.
-        roll: pitch of the foot that leaves the ground next or has just left it, None for one that stays level.
+            level: a foot that rolls turns about an edge of it.
+        rolls: pitch of the foot that leaves the ground next or has just left it, and of that which lands; of one foot
+            at most one at an instant.
         status: how the plan was made.
         balance: what is left to the body, and what of it the plan makes use of.
     """
@@ -69,7 +70,7 @@ class WalkPlan:
     footholds: tuple[Footstep, Footstep]
     footsteps: tuple[Footstep, ...]
     swing: SwingTrajectory | None
-    roll: FootRoll | None
+    rolls: tuple[FootRoll, ...]
     status: PlanStatus
     balance: Balance = field(default_factory=Balance)
 

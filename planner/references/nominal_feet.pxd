@@ -2,7 +2,7 @@ cimport cython
 cimport libc.math as math
 from surefoot.maths cimport algebra
 from surefoot.planner.geometry cimport quintic
-from surefoot.planner.swing cimport heel_off
+from surefoot.planner.swing cimport rolling
 from surefoot.planner.geometry.quintic cimport quintic6
 
 @cython.final
@@ -37,4 +37,4 @@ cdef class NominalFeet:
     @cython.locals(last=Py_ssize_t)
     cdef (Py_ssize_t, Py_ssize_t) _around(self, Py_ssize_t row) noexcept nogil
     @cython.locals(k=Py_ssize_t)
-    cdef void _roll(self, double start, double over, double angle, Py_ssize_t first, Py_ssize_t end, Py_ssize_t swings) noexcept nogil
+    cdef void _roll(self, double start, double over, double angle, Py_ssize_t first, Py_ssize_t end, Py_ssize_t foot) noexcept nogil

@@ -10,7 +10,7 @@ from surefoot.planner.model.time_scaling import CLOCK_ROUNDING
 from surefoot.planner.steps.phases import Phase, PhaseSamples
 from surefoot.planner.steps.schedule import Schedule
 from surefoot.planner.steps.step import unit_swing
-from surefoot.planner.swing import heel_off
+from surefoot.planner.swing import rolling
 from surefoot.planner.swing.trajectory import TOUCHING, SwingTrajectory
 from surefoot.planner.types import Array, PhaseKind
 
@@ -30,7 +30,7 @@ class NominalFeet:
     Attributes:
         soles: their centres as if they were level, shape (2, count, 3) [m].
         heading: shape (2, count) [rad].
-        pitch: about their toe edges, heel up, shape (2, count) [rad].
+        pitch: heel up, about their toe edges, or negative about their heel edges, shape (2, count) [rad].
     """
 
     def __init__(self, count: int) -> None:
@@ -77,9 +77,8 @@ class NominalFeet:
                 self._swing(swing, late, first, end, row, swings)
             else:
                 self._rest(first, end, row, swings)
-            if phase.roll is not None:
-                start, over, angle = phase.roll
-                self._roll(start, over, angle, first, end, swings)
+            for foot, start, over, angle in phase.rolls:
+                self._roll(start, over, angle, first, end, foot)
             first = end
         if flown is not None:
             foot = flown[0].foot
@@ -132,10 +131,10 @@ class NominalFeet:
         last = self._places.shape[0] - 1
         return row - 1 if row > 0 else last, min(row + 1, last)
 
-    def _roll(self, start: float, over: float, angle: float, first: int, end: int, swings: int) -> None:
-        """Pitch of the foot that rolls between two instants of the clock, see `planner.swing.heel_off.FootRoll`."""
+    def _roll(self, start: float, over: float, angle: float, first: int, end: int, foot: int) -> None:
+        """Pitch of a foot that rolls between two instants of the clock, see `planner.swing.rolling.FootRoll`."""
         for k in range(first, end):
-            self._pitch[swings, k] = angle * heel_off.bump((self._clock[k] - start) / (over - start))[0]
+            self._pitch[foot, k] += angle * rolling.bump((self._clock[k] - start) / (over - start))[0]
 
 
 class UnitSwing:

@@ -7,9 +7,10 @@ import numpy as np
 
 from surefoot.planner.geometry.plane import frame_rotation
 from surefoot.planner.steps.schedule import Schedule
-from surefoot.planner.steps.step import Stop
-from surefoot.planner.swing.heel_off import roll_span, stretched
+from surefoot.planner.steps.step import Step, Stop
+from surefoot.planner.swing import rolling
 from surefoot.planner.swing.leg_reach import LegReach
+from surefoot.planner.swing.rolling import RollSpan
 from surefoot.planner.swing.trajectory import SwingTrajectory
 from surefoot.planner.types import FeetState, Foot, PhaseKind, Twist
 
@@ -74,7 +75,8 @@ def with_foot_again(schedule: Schedule, number: int) -> Schedule:
 def _with_feet_swapped(schedule: Schedule) -> Schedule:
     """The other foot is the one that landed last, so that this one makes the next step."""
     *before, one, other = schedule.steps
-    swapped = (replace(step, nominal=by.nominal, place=by.place) for step, by in ((one, other), (other, one)))
+    pairs = ((one, other), (other, one))
+    swapped = (replace(step, nominal=by.nominal, place=by.place, heel_strike=None) for step, by in pairs)
     gait = replace(schedule.gait, first_foot=Foot(schedule.gait.first_foot).other)
     return replace(schedule.with_steps((*before, *swapped)), gait=gait)
 
@@ -119,17 +121,24 @@ def with_heel_lifted(schedule: Schedule, number: int, radius: float) -> Schedule
         return schedule
     step, place = schedule.steps[at], stance.place
     ahead = float(((place.position - leaving.position)[:2] @ frame_rotation(place.yaw))[0])
-    angle = stretched(ahead, radius, schedule.ground.parameters.size.length)
-    if angle <= (step.roll.angle if step.roll else 0.0):
+    angle = rolling.stretched(ahead, radius, schedule.ground.parameters.size.length)
+    if angle <= (step.toe_off.angle if step.toe_off else 0.0):
         return schedule
-    step = replace(step, roll=roll_span(stance.double_support, step.lift_off, step.single_support, angle))
+    foot, double = step.place.foot, stance.double_support
+    step = replace(step, toe_off=rolling.toe_off(foot, double, step.lift_off, step.single_support, angle))
     return schedule.with_steps((*schedule.steps[:at], step, *schedule.steps[at + 1 :]))
 
 
-def with_foot_flat(schedule: Schedule, number: int) -> Schedule:
-    """The foot that makes the step of a number does not roll as it leaves the ground."""
-    at, steps = schedule.index(number), schedule.steps
-    return schedule.with_steps((*steps[:at], replace(steps[at], roll=None), *steps[at + 1 :]))
+def with_foot_flat(schedule: Schedule, span: RollSpan) -> Schedule:
+    """A roll of a step in sight is left out."""
+    return schedule.with_steps(tuple(_without(step, span) for step in schedule.steps))
+
+
+def _without(step: Step, span: RollSpan) -> Step:
+    """The step without a roll, the same one where it has not got it."""
+    if step.toe_off == span:
+        return replace(step, toe_off=None)
+    return replace(step, heel_strike=None) if step.heel_strike == span else step
 
 
 def lands_short(schedule: Schedule, number: int, feet: FeetState, dcm: Dcm | None, legs: LegReach | None) -> bool:

@@ -45,7 +45,7 @@ The ZMP rests for the first of them, so that the DCM is consistent when the weig
 """
 
 _POSITIVE = ("step_width", "single_support", "double_support", "com_height", "swing_height")
-_NOT_NEGATIVE = ("initial_stand", "apex_ss", "apex_ds", "heel_off")
+_NOT_NEGATIVE = ("initial_stand", "apex_ss", "apex_ds", "heel_off", "heel_strike")
 
 
 @dataclass(frozen=True, slots=True)
@@ -72,6 +72,7 @@ class GaitParameters:
         apex_ss: rise of the CoM in the middle of single support (A_ss) [m].
         apex_ds: rise of the CoM in the middle of double support (A_ds) [m].
         heel_off: greatest pitch of a foot about its toe edge after its stance, 0 keeps the feet level [rad].
+        heel_strike: greatest pitch of a foot about its heel edge as it lands, 0 lands it flat [rad].
         bouts: the walk stride by stride; empty for equal strides. Feet alternate throughout, across stops too.
 
     Raises:
@@ -92,6 +93,7 @@ class GaitParameters:
     apex_ss: float = 0.0135
     apex_ds: float = 0.00135
     heel_off: float = 0.0
+    heel_strike: float = 0.0
     bouts: tuple[Bout, ...] = ()
 
     def __post_init__(self) -> None:

@@ -11,7 +11,7 @@ cdef class Phase:
     cdef readonly object stance
     cdef readonly Py_ssize_t support
     cdef readonly double rest
-    cdef readonly object roll
+    cdef readonly tuple rolls
 
 cdef class PhaseTable:
     cdef readonly tuple phases

@@ -10,7 +10,7 @@ from numpy.typing import NDArray
 from surefoot.maths import algebra
 from surefoot.planner.model.time_scaling import CLOCK_ROUNDING
 from surefoot.planner.steps.step import Step
-from surefoot.planner.swing.heel_off import RollSpan
+from surefoot.planner.swing.rolling import RollSpan
 from surefoot.planner.types import Array, Foot, PhaseKind
 
 _DOUBLE = int(PhaseKind.DOUBLE)
@@ -29,7 +29,7 @@ class Phase:
         stance: the only supporting foot of a single support, otherwise None.
         support: support point on which the ZMP reference stands, or which it leaves.
         rest: part of a double support before it leaves [samples].
-        roll: of the foot that leaves the ground in it or after it; None for one that stays level.
+        rolls: of the foot that leaves the ground in it or after it, and of that which lands in it or before it.
     """
 
     kind: PhaseKind
@@ -39,7 +39,7 @@ class Phase:
     stance: Foot | None
     support: int
     rest: float = 0.0
-    roll: RollSpan | None = None
+    rolls: tuple[RollSpan, ...] = ()
 
     @property
     def end(self) -> float:
@@ -69,25 +69,31 @@ def phases_of(steps: Sequence[Step], stands: bool) -> tuple[Phase, ...]:
         if step is None:
             continue
         stop = None if following is None else following.stop
-        roll = None if following is None else following.roll
+        leaving = None if following is None else following.toe_off
         if step.number >= 1:
             stance = step.place.foot.other
-            swing = Phase(
-                PhaseKind.SINGLE, step.lift_off, step.single_support, step.number, stance, step.support, 0.0, step.roll
-            )
-            rolling = roll if stop is None else None
-            double, number, point = step.double_support, step.number, step.support
-            after = Phase(PhaseKind.DOUBLE, step.touchdown, double, number, None, point, roll=rolling)
+            single, double = step.single_support, step.double_support
+            number, point = step.number, step.support
+            swung = _rolls(step.toe_off, step.heel_strike)
+            swing = Phase(PhaseKind.SINGLE, step.lift_off, single, number, stance, point, rolls=swung)
+            stood = _rolls(step.heel_strike, leaving if stop is None else None)
+            after = Phase(PhaseKind.DOUBLE, step.touchdown, double, number, None, point, rolls=stood)
             phases += [swing, after]
         between = step.support + 1
         if stop is not None:
             if stop.stand:
                 phases.append(Phase(PhaseKind.STAND, step.end, stop.stand, step.number, None, between))
             start = step.end + stop.stand
-            phases.append(Phase(PhaseKind.DOUBLE, start, stop.shift, step.number, None, between, stop.rest, roll))
+            shift, rolls = stop.shift, _rolls(leaving)
+            phases.append(Phase(PhaseKind.DOUBLE, start, shift, step.number, None, between, stop.rest, rolls))
         elif following is None and stands:
             phases.append(Phase(PhaseKind.STAND, step.end, np.inf, step.number, None, between))
     return tuple(phases)
+
+
+def _rolls(*spans: RollSpan | None) -> tuple[RollSpan, ...]:
+    """Rolls of a phase, of steps each of which may have none."""
+    return tuple([span for span in spans if span is not None])
 
 
 def phases_since(begin: float, steps: Sequence[Step], stands: bool) -> tuple[Phase, ...]:

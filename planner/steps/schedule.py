@@ -310,7 +310,7 @@ class Schedule:
             if step.lift_off > begun:
                 step = step.retimed(before, (single, double), begun, now, self.ground.parameters)
             elif step.touchdown > begun:
-                step = replace(step, double_support=double)
+                step = step.standing(double, now)
             steps.append(step)
             before = step
         return replace(self.with_steps(tuple(steps)), gait=gait)

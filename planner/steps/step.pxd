@@ -15,4 +15,4 @@ cdef class Step:
     cdef readonly Py_ssize_t support
     cdef readonly object stop
     cdef readonly double lift_off, single_support, double_support
-    cdef readonly object roll
+    cdef readonly object toe_off, heel_strike

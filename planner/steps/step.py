@@ -10,9 +10,10 @@ from surefoot.planner.ground.terrain import Terrain
 from surefoot.planner.parameters import PlannerParameters
 from surefoot.planner.steps.footsteps import Path
 from surefoot.planner.steps.gait import WEIGHT_SHIFT, GaitParameters, in_samples
+from surefoot.planner.swing import rolling
 from surefoot.planner.swing.course import Ground, swing_course
-from surefoot.planner.swing.heel_off import LEVEL_AGAIN, RollSpan, roll_span, rolls
 from surefoot.planner.swing.quintics import PEAK
+from surefoot.planner.swing.rolling import RollSpan
 from surefoot.planner.swing.step_region import check_reach
 from surefoot.planner.swing.trajectory import SwingCourse, SwingTrajectory, start_swing
 from surefoot.planner.types import Array, Foot, Footstep, Twist
@@ -79,7 +80,8 @@ class Step:
         lift_off: when its foot leaves the ground, on the clock [samples].
         single_support: duration of its single support [samples].
         double_support: duration of the double support after it [samples].
-        roll: of its foot as it leaves the ground; None for one that stays level.
+        toe_off: roll of its foot as it leaves the ground; None for one that stays level.
+        heel_strike: roll of its foot as it comes to the ground; None for one that lands flat.
     """
 
     number: int
@@ -100,7 +102,8 @@ class Step:
     lift_off: float = 0.0
     single_support: float = 0.0
     double_support: float = 0.0
-    roll: RollSpan | None = None
+    toe_off: RollSpan | None = None
+    heel_strike: RollSpan | None = None
 
     @property
     def touchdown(self) -> float:
@@ -142,18 +145,32 @@ class Step:
             now: on the clock [samples].
             parameters: of the planner.
         """
-        (single, double), stop, roll = lasting, self.stop, self.roll
+        (single, double), stop, leaving = lasting, self.stop, self.toe_off
         if stop is not None and before.end + stop.stand > begun:
             stop = stop.retimed(double)
         lift_off = lift_off_after(before, stop)
-        if roll is not None and now < roll.start:
-            roll = roll_span(ramp_before(before, stop), lift_off, single, roll.angle)
-        elif roll is not None:
-            single = max(single, (roll.end - lift_off) / LEVEL_AGAIN)
+        if leaving is not None and now < leaving.start:
+            leaving = rolling.toe_off(leaving.foot, ramp_before(before, stop), lift_off, single, leaving.angle)
+        elif leaving is not None:
+            single = max(single, (leaving.end - lift_off) / rolling.LEVEL_AGAIN)
         swing = unit_swing(single, self.climb, self.course, parameters)
-        return replace(
-            self, stop=stop, lift_off=lift_off, single_support=single, double_support=double, roll=roll, swing=swing
-        )
+        step = replace(
+            self, stop=stop, lift_off=lift_off, single_support=single, double_support=double, toe_off=leaving,
+            swing=swing,
+        )  # fmt: skip
+        return step.standing(double, now)
+
+    def standing(self, double: float, now: float) -> "Step":
+        """The step with another double support after it, as far as its foot has not begun to roll by now [samples].
+
+        A roll that has begun stays, and the double support lasts at least until its foot is flat.
+        """
+        landing = self.heel_strike
+        if landing is not None and now < landing.start:
+            landing = rolling.heel_strike(landing.foot, self.touchdown, self.single_support, double, -landing.angle)
+        elif landing is not None:
+            double = max(double, landing.end - self.touchdown)
+        return replace(self, double_support=double, heel_strike=landing)
 
 
 def durations(gait: GaitParameters, sample_time: float) -> tuple[float, float]:
@@ -211,14 +228,17 @@ def make_step(
     path, xy = last.path.advanced(stride, foot)
     position, normal = np.append(xy, terrain.heights(xy[None])), terrain.normals(xy[None])[0]
     place = Footstep(foot, position, path.yaw, normal)
-    course = swing_course(number, start, place, single, gait.swing_height, ground)
     to, off, other = (float(one.position[2]) for one in (place, start, stance))
     climb, lift = round(to - off, _MEASURED), round(min(to, other) - min(other, off), _MEASURED)
+    half_length, edged = float(ground.half_size[0]), terrain.footholds.edged(climb)
+    leaves = gait.heel_off != 0.0 and rolling.strides(start, stance, half_length)
+    strikes = gait.heel_strike != 0.0 and not edged and rolling.strides(stance, place, half_length)
+    course = swing_course(number, start, place, single, gait.swing_height, ground)
+    course = replace(course, braking=rolling.BRAKING, lead=rolling.LEAD, sinking=rolling.SINKING) if strikes else course
     alike = [one.swing for one in before if (one.single_support, one.climb, one.course) == (single, climb, course)]
     swing = alike[0] if alike else unit_swing(single, climb, course, parameters)
     way = math.dist(xy, start.position[:2])
-    lift_off, half_length = lift_off_after(last, stop), float(ground.half_size[0])
-    heel_off = gait.heel_off != 0.0 and rolls(start, stance, half_length)
+    lift_off = lift_off_after(last, stop)
     step = Step(
         number=number,
         ordinal=last.ordinal + (not inserted),
@@ -232,13 +252,16 @@ def make_step(
         room=terrain.free_area(position, path.yaw, ground.half_size, parameters.size.length),
         course=course,
         swing=swing,
-        hardest=_hardest(swing, way) if terrain.footholds.edged(climb) else 0.0,
+        hardest=_hardest(swing, way) if edged else 0.0,
         support=last.support + 1 + (stop is not None),
         stop=stop,
         lift_off=lift_off,
         single_support=single,
         double_support=double,
-        roll=roll_span(ramp_before(last, stop), lift_off, single, gait.heel_off) if heel_off else None,
+        toe_off=rolling.toe_off(foot, ramp_before(last, stop), lift_off, single, gait.heel_off) if leaves else None,
+        heel_strike=(
+            rolling.heel_strike(foot, lift_off + single, single, double, gait.heel_strike) if strikes else None
+        ),
     )
     check_reach(number, seen_from(stance, place), parameters)
     return step

@@ -16,4 +16,4 @@ cdef class SwingTrajectory:
     cdef readonly double aim, lifting
 
 cdef class SwingCourse:
-    cdef readonly double apex, glide_start, glide_end, height
+    cdef readonly double apex, glide_start, glide_end, height, braking, lead, sinking

@@ -257,12 +257,19 @@ class SwingCourse:
         glide_start: when it begins to move forward, sideways and to turn [-].
         glide_end: when that is done [-].
         height: of the apex above the higher of lift-off and touchdown [m].
+        braking: deceleration with which it comes to rest, over way and square of time; 0 comes to rest smoothly [-].
+        lead: time by which it ends before the single support, over `PlannerParameters.touchdown_lead` [-].
+        sinking: speed by which it comes down faster at touchdown than the ground search says, for the reference robot
+            [m/s].
     """
 
     apex: float
     glide_start: float
     glide_end: float
     height: float
+    braking: float = 0.0
+    lead: float = 1.0
+    sinking: float = 0.0
 
 
 def start_swing(
@@ -288,14 +295,19 @@ def start_swing(
     """
     (pose, footstep), (start, samples) = ends, support
     t, (search, aim), begin = parameters.sample_time, parameters.search.for_deviation(*doubt), pose.tolist()
+    if course.sinking:
+        speed = search.touchdown_speed + course.sinking * parameters.size.factor("m/s")
+        search = replace(search, touchdown_speed=speed, speed=max(speed, search.speed))
     target = np.array(footstep)
     target[2] -= aim
-    touchdown = start + samples * t - min(parameters.touchdown_lead, _MOST_LEAD * samples * t)
+    touchdown = start + samples * t - min(course.lead * parameters.touchdown_lead, _MOST_LEAD * samples * t)
     glide_start, apex, glide_end = (
         start + round(share * samples) * t for share in (course.glide_start, course.apex, course.glide_end)
     )
     glide_end, end = min(glide_end, touchdown), target.tolist()
-    ways = [((begin[k], 0.0, 0.0), (end[k], 0.0, 0.0), glide_end - glide_start) for k in _GLIDING]
+    gliding, braking = glide_end - glide_start, course.braking
+    ends = [(end[k], 0.0, (begin[k] - end[k]) * braking / (gliding * gliding)) for k in _GLIDING]
+    ways = [((begin[k], 0.0, 0.0), last, gliding) for k, last in zip(_GLIDING, ends, strict=True)]
     top, still, times = max(begin[2], footstep.item(2)) + course.height, (begin[2], 0.0, 0.0), (start, apex, touchdown)
     rise, fall = up_and_down(still, top, (end[2], search.touchdown_speed), times, lifting, TOUCHING)
     falls = rise is None

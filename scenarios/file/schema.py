@@ -247,6 +247,9 @@ class Gait(Group):
     heel_off: Annotated[float, Field(ge=0, le=1.0), RADIAN] = key(
         0.0, "greatest pitch of a foot about its toes after its stance, 0: feet stay level"
     )
+    heel_strike: Annotated[float, Field(ge=0, le=0.6), RADIAN] = key(
+        0.0, "greatest pitch of a foot about its heel as it lands, toes up, 0: feet land flat"
+    )
 
 
 class PlannerSettings(Group):

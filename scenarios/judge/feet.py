@@ -22,7 +22,8 @@ _CLEARANCE_TICKS = 5
 def landed(run: RunView) -> Array:
     """True place of each footstep's sole when it was booked, x y z yaw, shape (k, 4) [m, rad].
 
-    Not ``/footstep.actual``, which is where the controller believed it. Of a leaning sole, the line on which it stands.
+    Not ``/footstep.actual``, which is where the controller believed it. Of a leaning sole, the line on which it stands;
+    of one that rolls, its centre if it lay flat about its edge.
     """
     steps = run.log["/footstep"]
     ticks, left = (
@@ -34,14 +35,29 @@ def landed(run: RunView) -> Array:
     if feet_lean(run.constants.roles):
         turned = zip(np.where(left, 0, 1), places, rotations(poses[:, 3:]), strict=True)
         places = np.array([line_centre(int(foot), place, R, half_width) for foot, place, R in turned])
+    if run.has("/reference"):
+        pitch = run.field("/reference", "roll")[ticks, np.where(left, 0, 1)]
+        places = places + 0.5 * run.constants.foot_length * _turned_back(rotations(poses[:, 3:]), pitch)
     return np.column_stack((places, headings(poses[:, 3:])))
+
+
+def _turned_back(rotation: Array, pitch: Array) -> Array:
+    """Way of a sole's centre, in half lengths, as it turns back by a pitch about its edge, shape (k, 3) [-].
+
+    Args:
+        rotation: of soles in the world, shape (k, 3, 3).
+        pitch: of each, heel up about its toe edge, negative about its heel edge, shape (k,) [rad].
+    """
+    ahead, up = rotation[:, :, 0], rotation[:, :, 2]
+    level = np.cos(pitch)[:, None] * ahead + np.sin(pitch)[:, None] * up
+    return np.asarray(np.sign(pitch)[:, None] * (ahead - level))
 
 
 @metric(
     unit="m",
     shown=MM,
     needs=("/truth", "/footstep", "/reference"),
-    reads={"/truth": (), "/footstep": ("planned", "foot")},
+    reads={"/truth": (), "/footstep": ("planned", "foot"), "/reference": ("roll",)},
     body=True,
     least=0.0,
 )
@@ -55,7 +71,13 @@ def footstep_error_max(run: RunView) -> float | None:
     return float(np.linalg.norm(landed(run)[:, :3] - planned, axis=1).max())
 
 
-@metric(unit="m", shown=MM, reads={"/truth": (), "/footstep": ("foot",)}, tolerance=(0.001, 0.0))
+@metric(
+    unit="m",
+    shown=MM,
+    needs=("/truth", "/footstep"),
+    reads={"/truth": (), "/footstep": ("foot",), "/reference": ("roll",)},
+    tolerance=(0.001, 0.0),
+)
 def stair_edge_margin_min(run: RunView) -> float | None:
     """Least distance of a landed sole's corner from the edge of its tread, negative beyond it [m]."""
     terrain = terrain_of(run)
@@ -199,16 +221,17 @@ def stance_slips(run: RunView, until: int | None = None) -> list[Slip]:
     return slips
 
 
-_STANCE_READS: Reads = {"/truth": (), "/contact": ("planned", "active", "normal_force")}
+STANCE_READS: Reads = {"/truth": (), "/contact": ("planned", "active", "normal_force")}
+"""Fields that tell the stances."""
 
 
-@metric(unit="m", shown=MM, reads=_STANCE_READS, body=True, least=0.0)
+@metric(unit="m", shown=MM, reads=STANCE_READS, body=True, least=0.0)
 def foot_slip_max(run: RunView) -> float | None:
     """Largest horizontal way of a corner of a sole on the ground from where it came to it, over all stances [m]."""
     return max((slip.distance for slip in stance_slips(run)), default=None)
 
 
-@metric(unit="rad", shown=DEG, reads=_STANCE_READS, body=True, least=0.0)
+@metric(unit="rad", shown=DEG, reads=STANCE_READS, body=True, least=0.0)
 def stance_twist_max(run: RunView) -> float | None:
     """Largest yaw of a loaded stance foot away from its yaw at first load, over all stances [rad]."""
     yaw = run.sole_yaw
@@ -219,8 +242,8 @@ def stance_twist_max(run: RunView) -> float | None:
 @metric(
     unit="rad",
     shown=DEG,
-    needs=tuple(_STANCE_READS),
-    reads={**_STANCE_READS, "/reference": ("roll",)},
+    needs=tuple(STANCE_READS),
+    reads={**STANCE_READS, "/reference": ("roll",)},
     body=True,
     least=0.0,
 )
@@ -252,7 +275,7 @@ def contact_force_peak(run: RunView) -> float:
     return float(run.field("/contact", "normal_force").sum(axis=1).max() / (run.constants.mass * GRAVITY))
 
 
-@metric(unit="s", needs=(*_STANCE_READS, "/reference"), reads=_STANCE_READS, body=True, least=0.0)
+@metric(unit="s", needs=(*STANCE_READS, "/reference"), reads=STANCE_READS, body=True, least=0.0)
 def unplanned_flight_time(run: RunView) -> float:
     """Time, after the first load, in which no foot carried load though one was planned in contact [s]."""
     standing, planned = loaded(run).any(axis=1), (run.field("/contact", "planned") != 0).any(axis=1)

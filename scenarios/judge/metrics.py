@@ -25,6 +25,7 @@ from surefoot.scenarios.judge import (
     linked,
     pushed,
     sensed,
+    strides,
     walking,
 )
 from surefoot.scenarios.judge.digest import CONTROL_TOPICS, GAIT, HELD, SENSED, Digest, RunView, Source
@@ -50,7 +51,7 @@ def gathered(*modules: ModuleType) -> dict[str, Metric[Any]]:
     return found
 
 
-OWN: Mapping[str, Metric[Any]] = gathered(walking, following, balance, feet, effort, computing, sensed, linked)
+OWN: Mapping[str, Metric[Any]] = gathered(walking, following, balance, feet, strides, effort, computing, sensed, linked)
 """Ours, in the order in which they are shown."""
 
 

@@ -174,4 +174,4 @@ class Policy:
     def _tell(self, state: RobotState, contact: tuple[bool, bool] | None) -> None:
         """Give an estimator what was decided; of a policy no acceleration is known."""
         torque = self._command.torque_at(state.q[7:], state.v[6:])
-        self._senses.decided(Planned(np.zeros_like(state.v), torque, contact or (True, True), -1))
+        self._senses.decided(Planned(np.zeros_like(state.v), torque, contact or (True, True), (0, 0)))

@@ -230,7 +230,13 @@ def reference(_: Sizes) -> ChannelSpec:
         _scalar("phase_duration", "s", "of the phase"),
         _real("support", (SUPPORT_VERTICES, 2), "m", "world", "planned support polygon; the last vertex pads"),
         _int("support_count", "vertices of the polygon"),
-        _real("roll", 2, "rad", "", "planned pitch about the toe edge, heel up: left, right"),
+        _real(
+            "roll",
+            2,
+            "rad",
+            "",
+            "planned pitch, heel up about the toe edge, toes up negative about the heel edge: left, right",
+        ),
     )
     return ChannelSpec("/reference", "Reference", fields, doc_of(reference))
 

@@ -178,17 +178,19 @@ class WalkRecorder(RunRecorder):
 
     def reference(self, time_ns: int, plan: WalkPlan, sample: PlanSample) -> None:
         """The reference of a control tick and the gait's clock; the swing foot's sole is where its roll takes it."""
-        phase, roll = plan.phase, plan.roll if self._rolls else None
-        pitch, rate = (0.0, 0.0) if roll is None else roll.evaluate(sample.time)[:2]
-        pitches = (pitch, 0.0) if roll is not None and roll.foot is Foot.LEFT else (0.0, pitch)
+        phase, point, pitches = plan.phase, sample.point, [0.0, 0.0]
+        for roll in plan.rolls if self._rolls else ():
+            pitch, rate, _ = roll.evaluate(sample.time)
+            if not pitch:
+                continue
+            pitches[roll.foot] = pitch
+            if roll.foot is sample.swing_foot:
+                point = point.copy()
+                roll_sole(point[_LEVEL], point[_RATES], roll.pivot, pitch, rate, point[_POSITION], point[_VELOCITY])
         numbers = (
             sample.omega, *pitches, phase.kind, -1 if phase.stance is None else phase.stance, phase.step,
             phase.elapsed + sample.time - plan.time, phase.duration, len(plan.support_polygon),
         )  # fmt: skip
-        point = sample.point
-        if roll is not None and pitch and roll.foot is sample.swing_foot:
-            point = point.copy()
-            roll_sole(point[_LEVEL], point[_RATES], roll.toe, pitch, rate, point[_POSITION], point[_VELOCITY])
         self._reference.append(time_ns, numbers, point, self._support)
 
 

@@ -10,7 +10,7 @@ cdef class Controller:
     cdef readonly Estimate estimate
     cdef object _parts, _leg, _faults, _output, _giving_way, _landed, _arriving, _load, _landing, _torques
     cdef JointCommand _command
-    cdef double _period, _next, _toe, _begin, _now
+    cdef double _period, _next, _toe, _heel, _begin, _now
     cdef bint _estimates, _stands
 
     cdef _stand(self, q)

@@ -91,7 +91,9 @@ class Controller:
         self._output = Output(walk.control, walk.robot, walk.size, walk.rates.control)
         self._next = -math.inf
         self._estimates = walk.sensing.force_estimate
-        self._toe = 0.5 * walk.robot.sole_length if walk.gait.heel_off else 0.0
+        half_length, gait = 0.5 * walk.robot.sole_length, walk.gait
+        self._toe = half_length if gait.heel_off else 0.0
+        self._heel = -half_length if gait.heel_strike else 0.0
         self._giving_way = None if walk.control.give_way is False else GivingWay(body.limits, walk.size)
         self._landed, self._arriving, self._load = (True, True), NONE_TOUCHES, NO_LOAD
         self._landing: Landing | None = None
@@ -253,7 +255,8 @@ class Controller:
             return arriving
         if not self._output.holds:
             return NONE_TOUCHES
-        return comes_down(self.planning.plan, self.terms, self._now, self._output.period)
+        soles = self.terms.level_soles(0.0, self._heel)
+        return comes_down(self.planning.plan, self.terms, soles, self._now, self._output.period)
 
     def _drive(self, driven: DrivenRows, command: JointCommand | None) -> None:
         """Give the whole-body controller the command of the joints that are not its own."""
@@ -287,8 +290,10 @@ class Controller:
         state = CentroidalState(self._now, terms.com.copy(), terms.com_velocity.copy(), self._lasting())
         if False in self._landed and self.planning.plan.balance.catching:
             arrives = self._output.period + self.planning.planner.parameters.freeze_catching
-            self._arriving = comes_down(self.planning.plan, terms, self._now, arrives, due=True)
-        feet = FeetState(terms.level_soles(self._toe), yaws(terms.sole_rotation), self._landed, arriving=self._arriving)
+            soles = terms.level_soles(0.0, self._heel)
+            self._arriving = comes_down(self.planning.plan, terms, soles, self._now, arrives, due=True)
+        soles = terms.level_soles(self._toe, self._heel or self._toe)
+        feet = FeetState(soles, yaws(terms.sole_rotation), self._landed, arriving=self._arriving)
         if self.estimate.deviation is not None:
             state, feet = with_deviations(self.estimate.deviation, state, feet)
         return state, np.array(zmp[:2]), feet
@@ -299,12 +304,15 @@ class Controller:
         return None if load is NO_LOAD else load.per_mass(load.mass_scale * self.whole_body.terms.model_mass)
 
 
-def comes_down(plan: WalkPlan, terms: RobotTerms, now: float, time: float, due: bool = False) -> tuple[bool, bool]:
+def comes_down(
+    plan: WalkPlan, terms: RobotTerms, soles: Array, now: float, time: float, due: bool = False
+) -> tuple[bool, bool]:
     """Mark the soles that come to the planned ground in no more than so long, (left, right).
 
     Args:
         plan: that is followed.
         terms: of the robot now.
+        soles: centres of its soles if they were level, shape (2, 3) [m].
         now: instant [s].
         time: how long [s].
         due: whether one whose touchdown is planned by then does so as well, however slowly it comes down now.
@@ -312,7 +320,7 @@ def comes_down(plan: WalkPlan, terms: RobotTerms, now: float, time: float, due: 
     if plan.swing is None:
         return NONE_TOUCHES
     foot = int(plan.swing.foot)
-    height = float(terms.sole_position[foot, 2] - plan.footsteps[0].position[2])
+    height = float(soles[foot, 2] - plan.footsteps[0].position[2])
     speed = float(terms.sole_rotation[foot, 2] @ terms.sole_velocity[foot, :3])
     comes = speed < 0.0 and height + speed * time < 0.0
     comes = comes or (due and plan.swing.touchdown_time - now <= time)

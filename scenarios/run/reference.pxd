@@ -13,6 +13,7 @@ cdef Py_ssize_t SWING, SWING_VELOCITY, SWING_ACCELERATION
 cpdef planned(PlanSampler sampler, double time, double middle)
 @cython.locals(passed=double, left=double, reference=WbcReference)
 cpdef WbcReference whole_body_reference(plan, PlanSample sample)
+cdef int _roll(WbcReference reference, tuple rolls, double time) except -1
 @cython.locals(swings=int, yaw_left=double, yaw_right=double)
 cdef int _ground(WbcReference reference, plan, double yaw) except -1
 cdef vector3 _tuple(vector)

@@ -8,8 +8,9 @@ from surefoot.planner.geometry import orientation
 from surefoot.planner.plan.plan import WalkPlan
 from surefoot.planner.plan.sample import PlanSample, in_point
 from surefoot.planner.plan.sampling import PlanSampler
+from surefoot.planner.swing.rolling import FootRoll
 from surefoot.planner.types import PhaseKind
-from surefoot.wbc.reference import WbcReference
+from surefoot.wbc.reference import LEVEL, WbcReference
 
 Array = NDArray[np.float64]
 
@@ -45,11 +46,21 @@ def whole_body_reference(plan: WalkPlan, sample: PlanSample) -> WbcReference:
     elif phase.kind is PhaseKind.DOUBLE and phase.leads_to > 0:
         reference.lifting_foot = int(plan.footsteps[0].foot)
     _ground(reference, plan, sample.point.item(SWING + 3))
-    reference.rolling_foot, reference.roll = -1, (0.0, 0.0, 0.0)
-    if plan.roll is not None and plan.roll.rolling(sample.time):
-        reference.rolling_foot, reference.roll = int(plan.roll.foot), plan.roll.evaluate(sample.time)
+    _roll(reference, plan.rolls, sample.time)
     reference.catching = plan.balance.catching
     return reference
+
+
+def _roll(reference: WbcReference, rolls: tuple[FootRoll, ...], time: float) -> None:
+    """The edges on which feet roll at a time [s]."""
+    reference.edge, reference.roll = (0, 0), (LEVEL, LEVEL)
+    for roll in rolls:
+        if roll.rolling(time):
+            edge, pitch = int(roll.edge), roll.evaluate(time)
+            if roll.foot:
+                reference.edge, reference.roll = (reference.edge[0], edge), (reference.roll[0], pitch)
+            else:
+                reference.edge, reference.roll = (edge, reference.edge[1]), (pitch, reference.roll[1])
 
 
 def _ground(reference: WbcReference, plan: WalkPlan, yaw: float) -> None:

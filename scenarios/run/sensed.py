@@ -74,9 +74,7 @@ class Senses:
     def feed_back(self, reference: WbcReference, report: WbcReport) -> None:
         """Give the estimator what was decided, if it takes that."""
         if self._feed is not None:
-            self.decided(
-                Planned(report.acceleration.copy(), report.torque.copy(), report.active, reference.rolling_foot)
-            )
+            self.decided(Planned(report.acceleration.copy(), report.torque.copy(), report.active, reference.edge))
 
     def decided(self, planned: Planned) -> None:
         """Give the estimator what somebody else has decided, if it takes that."""

@@ -49,6 +49,7 @@ _NO_CONTACT = (
     ("terrain", "height_noise"),
     ("sensing", "force_estimate"),
     ("gait", "heel_off"),
+    ("gait", "heel_strike"),
     ("start", "angle_noise"),
     ("errors", "friction"),
     ("errors", "torso_com"),
@@ -64,7 +65,7 @@ _NO_CONTACT = (
 _OF_A_PLANNER = (
     *(("planner", name) for name in PlannerSettings.model_fields if name != "sample_time"),
     *(("sensing", name) for name in ("com_noise", "zmp_noise", "force_estimate")),
-    *(("gait", name) for name in ("swing_height", "apex_single", "apex_double", "heel_off")),
+    *(("gait", name) for name in ("swing_height", "apex_single", "apex_double", "heel_off", "heel_strike")),
 )
 """Keys that mean nothing to what walks without a plan."""
 

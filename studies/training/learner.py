@@ -106,7 +106,7 @@ class Learner:
         if self._senses.listens:
             state = estimate.state
             torque = self._command.torque_at(state.q[7:], state.v[6:])
-            self._senses.decided(Planned(np.zeros_like(state.v), torque, estimate.contact or (True, True), -1))
+            self._senses.decided(Planned(np.zeros_like(state.v), torque, estimate.contact or (True, True), (0, 0)))
         return self._command
 
     def _hear(self, readings: Readings | Measurement, command: Command | None) -> None:

@@ -42,7 +42,8 @@ TEXTS = {
         duration: 0.06
         gait: {steps: 4, step_length: 0.15, step_width: 0.21, lateral_step: 0.01, turn: 0.02, single_support: 0.8,
                double_support: 0.2, swing_height: 0.04, com_height: 0.98, initial_stand: 0.5, apex_single: 0.01,
-               apex_double: 0.001, heel_off: 0.1}
+               apex_double: 0.001, heel_off: 0.1,
+               heel_strike: 0.1}
         planner: {profile: repaired, horizon: 60, control_horizon: 3, jerk_limit: 20, jerk_rate_limit: 10,
                   step_adaptation: none, knee: bent, rise: double, filter: kalman}
         sensing: {source: truth, zmp_noise: 0.001, com_noise: 0.001, force_estimate: false}

@@ -99,6 +99,7 @@ VALUES: dict[str, tuple[Any, ...]] = {
     "gait.lateral_step": (0.03, 1e-300),
     "gait.turn": (0.1, 1e-300),
     "gait.heel_off": (0.2, 1e-300),
+    "gait.heel_strike": (0.2, 1e-300),
     "gait.footsteps": ([{"foot": "left", "x": 0.1, "y": 0.1}],),
     "gait.footsteps.0.foot": ("right",),
     "gait.waypoints": ([{"x": 0.3, "y": 0}], [{"x": 0.0, "y": 0}]),

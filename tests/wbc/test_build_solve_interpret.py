@@ -94,8 +94,8 @@ def test_a_rolling_foot_can_be_built_twice_from_one_state(robot, state, referenc
     controller = robot.controller()
     terms = controller.observe(state)
     sole = terms.sole_jacobian.copy()
-    rolling = references[0](rolling_foot=1, roll=(0.3, 0.5, 0.0))
-    contacts = ContactState((True, True), (True, True), (2943.0, 2943.0), rolling=1)
+    rolling = references[0](edge=(0, 1), roll=((0.0, 0.0, 0.0), (0.3, 0.5, 0.0)))
+    contacts = ContactState((True, True), (True, True), (2943.0, 2943.0), edge=(0, 1))
     first = controller.build(terms, rolling, contacts).copy()
     assert np.abs(terms.sole_jacobian[1] - sole[1]).max() > 1e-2
     np.testing.assert_array_equal(controller.build(terms, rolling, contacts).A, first.A)

@@ -18,7 +18,7 @@ from surefoot.wbc.types import FootSensing
 pytestmark = pytest.mark.unit
 
 BOTH, LEFT = (ContactState((True, on), (True, on), (2943.0, 2943.0 * on)) for on in (True, False))
-ROLLING, LANDING = replace(BOTH, rolling=1), replace(BOTH, landing=(True, True))
+ROLLING, LANDING = replace(BOTH, edge=(-1, 1)), replace(BOTH, landing=(True, True))
 QP = ("H", "g", "A", "bounds_lower", "bounds_upper")
 
 
@@ -46,8 +46,9 @@ def test_a_qp_has_nothing_of_the_ticks_before(robot, references, rng, leaning):
     """At one state: where the feet stood when the contacts changed is what the ZMP keeps to."""
     leans = replace(robot, frames=replace(robot.frames, leaning=leaning))
     standing, swinging = references
-    rolling = standing(rolling_foot=1, roll=(0.3, 0.5, -0.4))
-    lifting = swinging(rolling_foot=1, roll=(0.3, 0.5, -0.4))
+    rolls = (-0.2, 0.4, 0.3), (0.3, 0.5, -0.4)
+    rolling = standing(edge=(-1, 1), roll=rolls)
+    lifting = swinging(edge=(0, 1), roll=rolls)
     stopped = swinging(swing_rotation=np.array([[0.6, 0.0, 0.8], [0.0, 1.0, 0.0], [-0.8, 0.0, 0.6]]))
     cases = [
         (standing(), BOTH), (rolling, ROLLING), (lifting, LEFT), (swinging(), LEFT), (stopped, LEFT),

@@ -28,7 +28,13 @@ def given(rng):
     arrays = {name: rng.normal(size=shape) for name, shape in SHAPES.items()}
     numbers = {"omega": 3.1, "stiffness": 9.7, "heading": 0.3, "heading_rate": -0.2, "swing_progress": 0.25}
     contacts = {"planned_contact": (True, False), "load_share": (0.75, 0.25), "time_to_switch": 0.5}
-    feet = {"lifting_foot": -1, "swing_foot": 1, "rolling_foot": 0, "roll": (0.1, 0.2, 0.3), "catching": True}
+    feet = {
+        "lifting_foot": -1,
+        "swing_foot": 1,
+        "edge": (-1, 1),
+        "roll": ((0.4, 0.5, 0.6), (0.1, 0.2, 0.3)),
+        "catching": True,
+    }
     return {**arrays, **numbers, **contacts, **feet}
 
 

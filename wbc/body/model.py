@@ -268,18 +268,19 @@ class RobotTerms:
         pose[:3] = frame.position
         algebra.quaternion(self._R_sole[k], pose[3:])
 
-    def level_soles(self, toe: float) -> Array:
-        """Centres of the soles if each foot turned level about its toe edge, shape (2, 3) [m].
+    def level_soles(self, toe: float, heel: float) -> Array:
+        """Centres of the soles if each foot turned level about an edge of it, shape (2, 3) [m].
 
         Of leaning soles, the centres of the lines on which they stand.
 
         Args:
-            toe: toe edge from the sole's centre [m].
+            toe: line about which a foot turns whose heel is up, ahead of the sole's centre [m].
+            heel: that about which one turns whose toes are up [m].
         """
         position = self.sole_position
         if self.leaning is not None:
             position = np.array([line_centre(k, position[k], self.sole_rotation[k], self.leaning) for k in (0, 1)])
-        return soles.level(position, self.sole_rotation, toe)
+        return soles.level(position, self.sole_rotation, toe, heel)
 
     def shift_foot(self, k: int, forward: float, pitch: float) -> Array:
         """See foot k from a frame at a point ahead of its sole's centre, turned back by a pitch, until it is unshifted.

@@ -7,22 +7,24 @@ import numpy as np
 from surefoot.wbc.types import Array
 
 
-def level(position: Array, rotation: Array, toe: float) -> Array:
-    """Centres of the soles if each foot turned level about its toe edge, shape (2, 3) [m].
+def level(position: Array, rotation: Array, toe: float, heel: float) -> Array:
+    """Centres of the soles if each foot turned level about an edge of it, shape (2, 3) [m].
 
     Args:
         position: of the soles' centres in the world, shape (2, 3) [m].
         rotation: of the soles in the world, shape (2, 3, 3).
-        toe: toe edge from the sole's centre [m].
+        toe: line about which a foot turns whose heel is up, ahead of the sole's centre [m].
+        heel: that about which one turns whose toes are up [m].
     """
     found = np.empty((2, 3))
     for k in range(2):
         x, y, z = rotation[k, 0, 0], rotation[k, 1, 0], rotation[k, 2, 0]
         # A foot on its toes points nowhere.
+        edge = heel if z > 0.0 else toe
         flat = 1.0 / max(math.hypot(x, y), 1e-9)
-        found[k, 0] = position[k, 0] + toe * (x - x * flat)
-        found[k, 1] = position[k, 1] + toe * (y - y * flat)
-        found[k, 2] = position[k, 2] + toe * z
+        found[k, 0] = position[k, 0] + edge * (x - x * flat)
+        found[k, 1] = position[k, 1] + edge * (y - y * flat)
+        found[k, 2] = position[k, 2] + edge * z
     return np.asarray(found)
 
 

@@ -10,7 +10,7 @@ from surefoot.wbc.types import Array
 CONE_ROWS = 16
 
 TOE_DEPTH = 0.003
-"""Half length of the strip that stands for a toe edge in its wrench cone, and half width of that for a side edge [m].
+"""Half length of the strip that stands for a toe or heel edge in its cone, and half width of that for a side edge [m].
 
 Constants here are the reference robot's; see `surefoot.similarity`."""
 
@@ -32,7 +32,7 @@ class Sole:
     cop_share: float = 0.9
 
     def cones(self, depth: float) -> tuple[Array, Array]:
-        """Rows of the wrench cones of the sole and of its toe edge; the pyramid lies inside the circular cone.
+        """Rows of the wrench cones of the sole and of an edge across it; the pyramid lies inside the circular cone.
 
         Args:
             depth: half length of the strip that stands for the edge [m].

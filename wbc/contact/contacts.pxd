@@ -5,7 +5,7 @@ from surefoot.wbc.types cimport FootSensing
 cdef class ContactState:
     cdef readonly (bint, bint) active, felt
     cdef readonly (double, double) force_cap
-    cdef readonly int rolling
+    cdef readonly (Py_ssize_t, Py_ssize_t) edge
     cdef readonly (bint, bint) landing
 
 cdef class ContactSchedule:
@@ -25,4 +25,4 @@ cdef class ContactSchedule:
     @cython.locals(cap=double, remaining=double, share=double)
     cdef double _cap(self, Py_ssize_t k, WbcReference reference) noexcept
     @cython.locals(last=ContactState)
-    cdef ContactState _contacts(self, (double, double) cap, int rolling, (bint, bint) landing)
+    cdef ContactState _contacts(self, (double, double) cap, (Py_ssize_t, Py_ssize_t) edge, (bint, bint) landing)

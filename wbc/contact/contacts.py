@@ -15,14 +15,14 @@ class ContactState:
         active: held by the QP as rigid contacts.
         felt: loaded, as the feet feel it.
         force_cap: largest normal force the QP may ask of each [N].
-        rolling: index of the foot of which only the toe edge is in contact, -1 for none.
+        edge: of each foot that of which alone it stands: 1 the toe edge, -1 the heel edge, 0 none, all of its sole [-].
         landing: held before anything is felt of it, so that it is to come to rest softly.
     """
 
     active: tuple[bool, bool]
     felt: tuple[bool, bool]
     force_cap: tuple[float, float]
-    rolling: int = -1
+    edge: tuple[int, int] = (0, 0)
     landing: tuple[bool, bool] = (False, False)
 
 
@@ -36,7 +36,7 @@ class ContactSchedule:
     - A foot that comes to the ground before the next tick counts as one that feels it, lest a command swings on a foot
       that stands. So does one with which the planner has ended a single support.
     - A foot is released when the plan lifts it, unless it would be the last contact.
-    - A foot that the plan rolls keeps its toe edge on the ground, while the other foot carries as well.
+    - A foot that the plan rolls keeps an edge on the ground, while the other foot carries as well.
     - Allowed loads grow after touchdown and shrink before lift-off, so that no contact appears or ends with a jump in
       force. A foot that counts as landed before it is felt bears nothing yet, or the robot would fall onto it.
 
@@ -69,8 +69,8 @@ class ContactSchedule:
         most = 3.0 * self.weight
         if self._active[0] and self._active[1]:
             caps, awaited = (self._cap(0, reference), self._cap(1, reference)), (self._awaited[0], self._awaited[1])
-            return self._contacts(caps, reference.rolling_foot, awaited)
-        return self._contacts((most, 0.0) if self._active[0] else (0.0, most), -1, (False, False))
+            return self._contacts(caps, reference.edge, awaited)
+        return self._contacts((most, 0.0) if self._active[0] else (0.0, most), (0, 0), (False, False))
 
     def _feel(self, k: int, force: float, contact: tuple[bool, bool] | None, touches: bool) -> None:
         """Note whether a foot counts as loaded, and whether it does so before anything is felt of it."""
@@ -105,7 +105,7 @@ class ContactSchedule:
             cap = min(cap, self.weight * (share + self._share_margin * remaining))
         return cap
 
-    def _contacts(self, cap: tuple[float, float], rolling: int, landing: tuple[bool, bool]) -> ContactState:
+    def _contacts(self, cap: tuple[float, float], edge: tuple[int, int], landing: tuple[bool, bool]) -> ContactState:
         """The contacts, which are the same object where they are those of the tick before."""
         last = self._last
         if not (
@@ -115,10 +115,11 @@ class ContactSchedule:
             and last.felt[1] == self._felt[1]
             and last.force_cap[0] == cap[0]
             and last.force_cap[1] == cap[1]
-            and last.rolling == rolling
+            and last.edge[0] == edge[0]
+            and last.edge[1] == edge[1]
             and last.landing[0] == landing[0]
             and last.landing[1] == landing[1]
         ):
             active, felt = (self._active[0], self._active[1]), (self._felt[0], self._felt[1])
-            self._last = ContactState(active, felt, cap, rolling, landing)
+            self._last = ContactState(active, felt, cap, edge, landing)
         return self._last

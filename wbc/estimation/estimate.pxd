@@ -10,4 +10,4 @@ cdef class Estimate:
 
 cdef class Planned:
     cdef readonly object acceleration, torque, contact
-    cdef readonly int rolling_foot
+    cdef readonly (Py_ssize_t, Py_ssize_t) edge

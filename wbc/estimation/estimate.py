@@ -59,10 +59,10 @@ class Planned:
         acceleration: generalised acceleration q'' of the whole-body QP, shape (nv,) [m/s^2, rad/s^2].
         torque: commanded to the joints, shape (nj,) [N·m].
         contact: soles that the QP holds as contacts, left first.
-        rolling_foot: index of the foot that rolls about its toe edge, -1 for none.
+        edge: of each foot that on which it rolls: 1 the toe edge, -1 the heel edge, 0 none, its sole lies flat [-].
     """
 
     acceleration: Array
     torque: Array
     contact: tuple[bool, bool]
-    rolling_foot: int
+    edge: tuple[int, int]

@@ -80,7 +80,7 @@ class SensedState:
     def told(self, planned: Planned) -> None:
         """Hear what the controller does until the next tick."""
         self._remember(planned.acceleration)
-        self._still = [planned.contact[k] and k != planned.rolling_foot for k in (0, 1)]
+        self._still = [planned.contact[k] and planned.edge[k] == 0 for k in (0, 1)]
 
     def _remember(self, acceleration: Array) -> None:
         """Generalised accelerations until the next tick, shape (6 + nj,)."""

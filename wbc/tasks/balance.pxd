@@ -8,8 +8,8 @@ cdef class SupportRegion:
     cdef double[:, ::1] _corners, _points, _vertices, _edges
     cdef Py_ssize_t _count
 
-    @cython.locals(count=Py_ssize_t, k=Py_ssize_t, i=Py_ssize_t, j=Py_ssize_t, x=double, y=double)
-    cpdef rebuild(self, const double[:, :] positions, const double[:, :, :] rotations, (bint, bint) active, Py_ssize_t rolling=*)
+    @cython.locals(count=Py_ssize_t, k=Py_ssize_t, i=Py_ssize_t, j=Py_ssize_t, x=double, y=double, rolls=cython.bint)
+    cpdef rebuild(self, const double[:, :] positions, const double[:, :, :] rotations, (bint, bint) active, (Py_ssize_t, Py_ssize_t) edge=*)
     @cython.locals(edge=double[::1])
     cdef void _write_edge(self, Py_ssize_t start, Py_ssize_t end) noexcept nogil
     @cython.locals(edge=double[::1], i=Py_ssize_t, share=double)

@@ -25,17 +25,20 @@ class SupportRegion:
         self._points, self._vertices = np.zeros((8, 2)), np.zeros((18, 2))
         self._edges, self._count = np.zeros((8, 5)), 0
 
-    def rebuild(self, positions: Array, rotations: Array, active: tuple[bool, bool], rolling: int = -1) -> None:
+    def rebuild(
+        self, positions: Array, rotations: Array, active: tuple[bool, bool], edge: tuple[int, int] = (0, 0)
+    ) -> None:
         """Hull of the active soles; positions (2, 3), rotations (2, 3, 3) in the world frame.
 
-        Of a rolling foot, the toe edge alone, which is where its frame is.
+        Of a rolling foot, its edge alone, which is where its frame is.
         """
         count = 0
         for k in range(2):
             if not active[k]:
                 continue
+            rolls = edge[1] != 0 if k else edge[0] != 0
             for i in range(4):
-                x, y = (0.0 if k == rolling else self._corners[i, 0]), self._corners[i, 1]
+                x, y = (0.0 if rolls else self._corners[i, 0]), self._corners[i, 1]
                 for j in range(2):
                     self._points[count, j] = positions[k, j] + (x * rotations[k, j, 0] + y * rotations[k, j, 1])
                 count += 1

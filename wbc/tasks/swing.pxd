@@ -39,14 +39,15 @@ cdef class SwingFoot(TaskLaw):
         double[:, ::1] rows, double[::1] target
     ) noexcept
     @cython.locals(
-        R=double[:, ::1], v=double[::1], bias=double[::1], rolls=cython.bint, lift=double, along=vector3,
+        R=double[:, ::1], v=double[::1], bias=double[::1], edge=int, roll=vector3, lift=double, along=vector3,
         pitching=double
     )
     cdef void _aim(
         self, RobotTerms terms, WbcReference reference, Py_ssize_t k, double most, double[::1] target
     ) noexcept
+    cdef int _edge(self, WbcReference reference, Py_ssize_t k) noexcept nogil
     @cython.locals(e=vector3)
-    cdef vector3 _along(self, WbcReference reference, vector3 position, bint rolls) noexcept nogil
+    cdef vector3 _along(self, WbcReference reference, vector3 position, int edge) noexcept nogil
     @cython.locals(R_d=double[:, ::1], beside=double)
     cdef double _hangs(self, double[:, ::1] R, WbcReference reference) noexcept nogil
     @cython.locals(R=double[:, ::1], R_d=double[:, ::1], k=Py_ssize_t, i=Py_ssize_t, j=Py_ssize_t)

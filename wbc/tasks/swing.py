@@ -111,11 +111,11 @@ def _rolling(model: pin.Model, data: pin.Data, sole: str, columns: tuple[int, ..
 class SwingFoot(TaskLaw):
     """Acceleration of the swing foot's sole, linear then angular, in the sole's frame; absent when both feet stand.
 
-    A foot that leaves the ground rolling is seen from its toe edge (see ``RobotTerms.shift_foot``). A foot that cannot
-    be as level as it should (see `AnkleStops`) is from then on seen from its ankle. If it turns about the ankle, the
-    shank stays where it was planned, and with it the momentum of the leg that the planner counts on. While a step
-    catches the body, the joint that has come to its end is to rest as well. Otherwise the QP would turn the foot as a
-    flywheel for the trunk. It is then lifted by what its side edge hangs lower, or that edge would meet the ground at
+    A foot that rolls is seen from its edge (see ``RobotTerms.shift_foot``). A foot that cannot be as level as it should
+    (see `AnkleStops`) is from then on seen from its ankle. If it turns about the ankle, the shank stays where it was
+    planned, and with it the momentum of the leg that the planner counts on. While a step catches the body, the joint
+    that has come to its end is to rest as well. Otherwise the QP would turn the foot as a flywheel for the trunk. It is
+    then lifted by what its side edge hangs lower, or that edge would meet the ground at
     full speed. Any foot is lifted by a few millimetres of what its toe or heel hangs lower. All of that would take the
     shank off its way again.
     """
@@ -185,7 +185,7 @@ class SwingFoot(TaskLaw):
         if most > 0.0:
             self._turned = k
         self._aim(terms, reference, k, most, target)
-        if self._turned == k and k != reference.rolling_foot:
+        if self._turned == k and self._edge(reference, k) == 0:
             self._see_from_ankle(stops, terms, reference, scale, rows, target)
         for n in range(stops.joints):
             if self._shares[n] > 0.0:
@@ -194,13 +194,14 @@ class SwingFoot(TaskLaw):
     def _aim(self, terms: RobotTerms, reference: WbcReference, k: int, most: float, target: Array) -> None:
         """Target of the sole's centre: K e - D (ẏ - ẏ_d) + ÿ_d - J' v, in the frame of the sole."""
         R, v, bias = terms._R_contact[k], terms._v_sole[k], terms._bias_sole[k]
-        rolls = k == reference.rolling_foot
+        edge = self._edge(reference, k)
         lift = self._k * most * self._hangs(R, reference) if most > 0.0 else 0.0
-        along = self._along(reference, algebra.row(terms._p_contact, k), rolls)
+        along = self._along(reference, algebra.row(terms._p_contact, k), edge)
         a = algebra.rotate_back(R, (along[0], along[1], along[2] + lift))
         ahead = algebra.rotate_back(R, algebra.add(reference._w_dot, algebra.scale(self._d, reference._w)))
         alpha = law.angular_feedback(self._k, self._d, R, (v[3], v[4], v[5]), self._R_d, ahead)
-        pitching = self._d * reference.roll[1] + reference.roll[2] if rolls else 0.0
+        roll = reference.roll[1] if k else reference.roll[0]
+        pitching = self._d * roll[1] + roll[2] if edge else 0.0
         target[0] = a[0] + (-self._d * v[0] - bias[0])
         target[1] = a[1] + (-self._d * v[1] - bias[1])
         target[2] = a[2] + (-self._d * v[2] - bias[2])
@@ -208,14 +209,19 @@ class SwingFoot(TaskLaw):
         target[4] = alpha[1] + pitching - bias[4]
         target[5] = alpha[2] - bias[5]
 
-    def _along(self, reference: WbcReference, position: algebra.Vector, rolls: bool) -> algebra.Vector:
+    def _edge(self, reference: WbcReference, k: int) -> int:
+        """The edge on which a foot rolls, 0 for one that does not."""
+        edge: int = reference.edge[1] if k else reference.edge[0]
+        return edge
+
+    def _along(self, reference: WbcReference, position: algebra.Vector, edge: int) -> algebra.Vector:
         """K e + D ẏ_d + ÿ_d of a sole at a position, in the world [m/s^2].
 
-        The position of a rolling foot is that of its toe edge.
+        The position of a rolling foot is that of its edge.
         """
         e = algebra.subtract(reference._s, position)
-        if rolls:
-            e = algebra.add(e, algebra.scale(self._toe, algebra.column(self._R_d, 0)))
+        if edge:
+            e = algebra.add(e, algebra.scale(edge * self._toe, algebra.column(self._R_d, 0)))
         back = algebra.add(algebra.scale(self._k, e), algebra.scale(self._d, reference._s_dot))
         return algebra.add(back, reference._s_ddot)
 

@@ -174,7 +174,8 @@ def _reach(walk: Walk, facts: RobotFacts) -> Iterator[Problem]:
         hint = meant(gait.step_width, "m", facts.leg_length)
         yield Problem(("gait", "step_width"), what, f"use for example {facts.hip_width:.3f} m{hint}")
         return
-    longest = longest_step(facts.leg_length, gait.com_height - facts.com_above_hip, facts.hip_width, gait.step_width)
+    hips, raised = gait.com_height - facts.com_above_hip, 0.5 * facts.foot_length * math.sin(gait.heel_strike)
+    longest = longest_step(facts.leg_length, hips, facts.hip_width, gait.step_width, raised)
     if math.isnan(longest):
         highest = facts.com_above_hip + math.sqrt(facts.leg_length**2 - sideways**2)
         what = f"gait.com_height {gait.com_height} m is out of reach with feet {gait.step_width} m apart"

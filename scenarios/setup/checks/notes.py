@@ -119,7 +119,16 @@ def _not_felt(walk: Walk) -> Iterator[str]:
     yield from (f"{name} has no effect on a pendulum" for name, body in bodies.items() if body is not None)
 
 
-_STEPPING = ("step_length", "lateral_step", "turn", "swing_height", "apex_single", "apex_double", "heel_off")
+_STEPPING = (
+    "step_length",
+    "lateral_step",
+    "turn",
+    "swing_height",
+    "apex_single",
+    "apex_double",
+    "heel_off",
+    "heel_strike",
+)
 """Keys of a gait that say how steps are taken."""
 
 _TIMES = ("single_support", "double_support", "initial_stand")

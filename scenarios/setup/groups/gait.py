@@ -60,6 +60,7 @@ def gait_of(keys: schema.Gait) -> GaitParameters:
         apex_ss=keys.apex_single,
         apex_ds=keys.apex_double,
         heel_off=keys.heel_off,
+        heel_strike=keys.heel_strike,
     )
     if keys.velocity:
         bouts = velocity_bouts(velocities_of(keys.velocity), plain)

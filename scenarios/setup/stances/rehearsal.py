@@ -46,7 +46,7 @@ class Rehearsed:
         com: shape (n, 3) [m].
         soles: left and right as if they were level, shape (2, n, 3) [m].
         heading: of the feet, shape (2, n) [rad].
-        pitch: of the feet about their toe edges, heel up, shape (2, n) [rad].
+        pitch: of the feet, heel up about their toe edges, negative about their heel edges, shape (2, n) [rad].
         standing: whether a foot stands, shape (2, n).
     """
 
@@ -65,7 +65,7 @@ def check_legs(walk: Walk, feet: FeetState, leg: "LegInertia") -> None:
         ParameterError: a joint would have to be faster than it can, or go farther, or a shank would meet an edge.
     """
     chain = leg.chain
-    fast, rolls = _fast(walk), walk.gait.heel_off > 0.0
+    fast, rolls = _fast(walk), walk.gait.heel_off > 0.0 or walk.gait.heel_strike > 0.0
     if (
         chain is None
         or walk.formulation.profile.planner is not None
@@ -131,8 +131,9 @@ def rehearsed(walk: Walk, feet: FeetState, leg: "LegInertia") -> Rehearsed:
     while True:
         plan = planner.update(CentroidalState(tick * t, com, velocity), ideal.state)
         pitch = np.zeros(2)
-        if plan.roll is not None and plan.roll.rolling(plan.time):
-            pitch[plan.roll.foot] = plan.roll.evaluate(plan.time)[0]
+        for roll in plan.rolls:
+            if roll.rolling(plan.time):
+                pitch[roll.foot] = roll.evaluate(plan.time)[0]
         rows.append((com, ideal.state.position, ideal.state.yaw, pitch, np.array(plan.contacts[0])))
         stands = plan.phase.kind is PhaseKind.STAND and math.isinf(plan.phase.duration)
         if plan.phase.step > STEPS or (stands and tick > 0) or tick * t > walk.duration:

@@ -23,7 +23,7 @@ from surefoot.models.facts import knee_turn
 from surefoot.planner.geometry.plane import frame_rotation, sole_angles, sole_pose
 from surefoot.planner.steps.footsteps import plan_footsteps
 from surefoot.planner.steps.gait import GaitParameters
-from surefoot.planner.swing.heel_off import FootRoll, roll_span, rolls
+from surefoot.planner.swing.rolling import FootRoll, RollSpan, heel_strike, pivot_of, strides, toe_off
 from surefoot.planner.types import GRAVITY, Array, Foot, Footstep
 from surefoot.scenarios.file.group import RecoverySettings
 from surefoot.scenarios.file.schema import Scenario
@@ -249,19 +249,37 @@ def _stance(
     off = ahead * lead[:2] + aside * (way - lead)[:2]
     middle = 0.5 * (stands.position + lands.position)[:2]
     com = np.append(middle + (-off if landing else off), low + gait.com_height)
-    rolled = not landing and gait.heel_off > 0.0 and rolls(stands, lands, toe)
+    span = None
+    if strides(stands, lands, toe):
+        span = _strike(walk, stands, lands) if landing else _leave(gait, stands.foot)
     poses = {step.foot: sole_pose(step.position, step.yaw, step.normal) for step in (stands, lands)}
     heading = float(np.mean([pose[3] for pose in poses.values()]))
-    if rolled:
-        poses[stands.foot] = _on_toe(poses[stands.foot], gait, toe)
+    if span is not None:
+        poses[span.foot] = _on_edge(poses[span.foot], span, toe)
     soles = np.array([poses[foot] for foot in sorted(poses)])
-    return Stance(number, soles, com, heading, landing, int((stands if landing else lands).foot), rolled)
+    return Stance(
+        number, soles, com, heading, landing, int((stands if landing else lands).foot), not landing and span is not None
+    )
 
 
-def _on_toe(sole: Array, gait: GaitParameters, toe: float) -> Array:
-    """A sole, turned about its toe edge as far as it is when it leaves the ground, shape (6,) [m, rad]."""
-    span = roll_span(gait.double_support, 0.0, gait.single_support, gait.heel_off)
-    roll = FootRoll(Foot.LEFT, span.start, span.end, span.angle, toe)
+def _leave(gait: GaitParameters, foot: Foot) -> RollSpan | None:
+    """The roll of a foot that leaves the ground now; None of one that stays level [s]."""
+    if not gait.heel_off:
+        return None
+    return toe_off(foot, gait.double_support, 0.0, gait.single_support, gait.heel_off)
+
+
+def _strike(walk: Walk, stands: Footstep, lands: Footstep) -> RollSpan | None:
+    """The roll of a foot that lands now; None of one that lands flat [s]."""
+    gait, climb = walk.gait, float(lands.position[2] - stands.position[2])
+    if not gait.heel_strike or walk.ground.terrain.footholds.edged(climb):
+        return None
+    return heel_strike(lands.foot, 0.0, gait.single_support, gait.double_support, gait.heel_strike)
+
+
+def _on_edge(sole: Array, span: RollSpan, half_length: float) -> Array:
+    """A sole turned about its edge as far as it is at time 0 of its roll, shape (6,) [m, rad]."""
+    roll = FootRoll(span.foot, span.start, span.end, span.angle, pivot_of(span.angle, half_length))
     centre, _ = roll.centre(0.0, sole, np.zeros(6))
     return np.concatenate((centre, (sole[3], sole[4] + roll.evaluate(0.0)[0], sole[5])))
 

@@ -49,3 +49,25 @@ def _walked(override, folder):
     overrides = ("gait.steps=7", "gait.initial_stand=0.2", "criteria.speed_mean={min: 0.8}", override)
     result = run_scenario(load_scenario("walk-fast", overrides), folder)
     return result.verdict, read(result.log)
+
+
+@pytest.mark.physics
+def test_feet_that_land_on_their_heels_save_knees_and_work(tmp_path):
+    """At 0.75 m/s, with the CoM higher by as much as straighter front legs allow."""
+    gait = ("gait.step_length=0.44", "gait.single_support=0.42", "gait.double_support=0.12", "gait.heel_off=0.5")
+    criteria = (
+        "criteria={fell: false, steps_taken: steps_planned, wbc_fallbacks: {max: 0}, foot_slip_max: {max: 0.005}}"
+    )
+    flat, rolled = (
+        run_scenario(load_scenario("walk", ("gait.steps=12", *gait, *more, criteria)), tmp_path / more[0])
+        for more in (("gait.com_height=1.0",), ("gait.com_height=1.01", "gait.heel_strike=0.2"))
+    )
+    assert flat.verdict.reasons == rolled.verdict.reasons == ()
+    level, heels = flat.verdict.metrics, rolled.verdict.metrics
+    assert abs(level["heel_strike_pitch"]) < 0.01 and 0.17 < heels["heel_strike_pitch"] < 0.21
+    assert heels["stance_tilt_max"] < 0.01 and heels["footstep_error_max"] < 0.015
+    assert heels["knee_stance_mean"] < level["knee_stance_mean"] - 0.1
+    assert heels["knee_heel_strike"] < level["knee_heel_strike"]
+    assert heels["cost_of_transport"] < 0.9 * level["cost_of_transport"]
+    assert heels["landing_peak"] < 1.7
+    assert read(rolled.log)["/reference"].field("roll").min() < -0.19

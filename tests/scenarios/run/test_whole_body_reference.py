@@ -15,6 +15,7 @@ from surefoot.planner.planner import WalkingPlanner
 from surefoot.planner.steps.gait import Bout, GaitParameters
 from surefoot.planner.types import FeetState, PhaseKind, Twist
 from surefoot.scenarios.run.reference import planned, whole_body_reference
+from surefoot.wbc.reference import LEVEL
 
 pytestmark = pytest.mark.unit
 
@@ -78,17 +79,21 @@ def test_a_reference_says_what_sample_and_plan_say(plans):
             np.testing.assert_array_equal(reference.ground_normal, normal)
             assert reference.heading == 0.5 * sum(yaw)
             assert reference.heading_rate == 0.5 * until.swing_velocity[3]
-            rolls = plan.roll is not None and plan.roll.rolling(until.time)
-            assert reference.rolling_foot == (plan.roll.foot if rolls else -1)
-            assert reference.roll == (plan.roll.evaluate(until.time) if rolls else (0.0, 0.0, 0.0))
-            rolled += rolls
+            edges, pitches = [0, 0], [LEVEL, LEVEL]
+            for roll in plan.rolls:
+                if roll.rolling(until.time):
+                    assert edges[roll.foot] == 0
+                    edges[roll.foot], pitches[roll.foot] = roll.edge, roll.evaluate(until.time)
+            assert reference.edge == tuple(edges)
+            assert reference.roll == tuple(pitches)
+            rolled += edges != [0, 0]
     assert swung
-    assert bool(rolled) == any(plan.roll is not None for plan in plans)
+    assert bool(rolled) == any(plan.rolls for plan in plans)
 
 
 def scaled(plans):
     """Plans with feet that roll by a clock that goes faster."""
     for plan in plans:
-        if plan.roll is not None:
+        if plan.rolls:
             scaling = TimeScaling(plan.sample_time, 10.0).scaled(15.0, 12.0)
-            yield replace(plan, roll=replace(plan.roll, scaling=scaling, shown=plan.time))
+            yield replace(plan, rolls=tuple(replace(roll, scaling=scaling, shown=plan.time) for roll in plan.rolls))

@@ -55,7 +55,7 @@ def test_the_line_goes_over_to_the_inner_edge_without_a_jump(foot):
 def test_a_leaning_foot_is_seen_from_its_line(leaning):
     terms = RobotTerms(leaning.model, leaning.frames)
     terms.update(leaning.standing, np.zeros(leaning.nv))
-    lines = terms.level_soles(0.0)
+    lines = terms.level_soles(0.0, 0.0)
     to_sole = terms.shift_foot(0, 0.0, 0.0)
     np.testing.assert_allclose(terms.contact_position[0], lines[0], atol=1e-12)
     assert terms.contact_rotation[0][2, 1] == pytest.approx(0.0, abs=1e-12)

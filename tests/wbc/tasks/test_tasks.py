@@ -241,17 +241,18 @@ def test_the_swing_task_is_absent_when_both_feet_stand(robot, references, loaded
     assert not report.task_error[swing].any()
 
 
-def test_a_rolling_foot_is_steered_by_its_toe_edge(robot, state, references):
+@pytest.mark.parametrize("side", [1, -1])
+def test_a_rolling_foot_is_steered_by_its_edge(robot, state, references, side):
     """The edge goes to that of the planned sole, and the pitch is damped towards the planned one."""
     terms, roll, (k, d) = robot.controller().observe(state), (0.3, 0.5, 2.0), TaskGains().swing
-    terms.shift_foot(1, TOE, roll[0])
+    terms.shift_foot(1, side * TOE, roll[0])
     task = SwingFoot(TaskWeights(), TaskGains(), (TOE, 0.05), 1.0)
     targets = []
-    for rolling in (1, -1):
-        reference, J = references[1](rolling_foot=rolling, roll=roll), np.zeros((6, robot.nv + 12))
+    for edge in (side, 0):
+        reference, J = references[1](edge=(0, edge), roll=((0.0, 0.0, 0.0), roll)), np.zeros((6, robot.nv + 12))
         targets.append(np.array(task.write(terms, reference, np.ones((6, 1)), J)))
         np.testing.assert_array_equal(J[:, : robot.nv], terms.sole_jacobian[1])
-    ahead = terms.contact_rotation[1].T @ (k * TOE * reference.swing_rotation[:, 0])
+    ahead = terms.contact_rotation[1].T @ (k * side * TOE * reference.swing_rotation[:, 0])
     np.testing.assert_allclose(targets[0] - targets[1], [*ahead, 0.0, d * 0.5 + 2.0, 0.0], atol=1e-9)
 
 

@@ -6,6 +6,6 @@ cpdef vector3 bump(double s) noexcept nogil
 
 cdef class FootRoll:
     cdef readonly object foot
-    cdef readonly double start, end, angle, toe
+    cdef readonly double start, end, angle, pivot
     cdef readonly object scaling
     cdef readonly double shown

@@ -1,10 +1,14 @@
-"""Heel-off: at the end of its stance a foot rolls about its toe edge, and comes back level in its swing.
+"""Rolling feet: a foot leaves the ground about its toe edge, and comes to it about its heel edge.
 
 A rear foot that stays flat is what a long step runs out of: with the heel up the ankle comes forward and up, by 7 cm at
-0.5 rad. The roll begins in double support, once the ZMP has left the foot behind: from then on the toe edge and the
-front foot can carry it.
+0.5 rad. Toe-off begins in double support, once the ZMP has left the foot behind: from then on the toe edge and the
+front foot can carry it. The foot comes back level in its swing.
+
+A front foot that lands flat is what a long step runs out of at its other end. At heel strike the toes are up: the heel
+edge touches first, and the sole comes down over the double support.
 """
 
+import math
 from dataclasses import dataclass
 from typing import NamedTuple
 
@@ -13,18 +17,32 @@ import numpy as np
 from surefoot.planner.geometry.orientation import roll_sole
 from surefoot.planner.geometry.plane import frame_rotation
 from surefoot.planner.model.time_scaling import TimeScaling
-from surefoot.planner.types import Array, Foot, Footstep
+from surefoot.planner.types import Array, Edge, Foot, Footstep
 
 _BEGIN = 0.25
-"""Share of the weight shift after which the heel leaves the ground [-]."""
+"""Share of the weight shift after which the heel leaves the ground at toe-off [-]."""
 
 _END = 0.7
-"""Share of single support after which the foot is level again, before it comes down [-].
+"""Share of single support after which the foot is level again after toe-off [-].
 
-It turns back while its shank swings forward, so that the ankle has the less to do."""
+It turns back while its shank swings forward, so that the ankle has the less to do. Toes go up for heel strike in what
+is left."""
 
 LEVEL_AGAIN = 0.9
 """The same at most, of a swing that is shortened when its foot has begun to roll [-]."""
+
+BRAKING, LEAD, SINKING = 6.0, 0.25, 0.1
+"""The arrival of a foot that lands on its heel, see `SwingCourse` [-, -, m/s].
+
+A foot that comes to rest smoothly and early waits for the ground while the hip comes nearer: at 0.8 m/s the knee bends
+by 10 degrees more until the foot carries, and the walk costs a seventh more. One that sinks no faster than others then
+grazes the ground on its way, and slips by a centimetre."""
+
+_FLAT = 0.8
+"""Share of double support after which the sole is flat on the ground after heel strike [-].
+
+By then the ZMP goes on from the heel edge. A sole that comes down as long as the double support lasts holds it back: it
+lands with 1.4 body weights in place of one."""
 
 _LOOKED_AT = 9
 """Instants at which the acceleration of a roll is looked at, of a double support [-]."""
@@ -34,14 +52,16 @@ _LEAST_STEP = 1.5
 
 
 class RollSpan(NamedTuple):
-    """The time and the angle of a foot's roll about its toe edge.
+    """The time and the angle of a foot's roll about an edge of its sole.
 
     Attributes:
+        foot: which.
         start: when it begins to [samples].
         end: when it is level again [samples].
-        angle: its greatest pitch [rad].
+        angle: its greatest pitch, heel up positive, about the toe edge; negative about the heel edge [rad].
     """
 
+    foot: Foot
     start: float
     end: float
     angle: float
@@ -49,17 +69,17 @@ class RollSpan(NamedTuple):
 
 @dataclass(frozen=True)
 class FootRoll:
-    """Pitch of one foot about its toe edge over time; the heel is up where it is positive.
+    """Pitch of one foot about an edge of its sole over time; the heel is up where it is positive.
 
-    θ = 64 A s³ (1 - s)³ between begin and end: twice continuously differentiable, and highest shortly after the foot
-    has left the ground, as a person's.
+    θ = 64 A s³ (1 - s)³ between begin and end: twice continuously differentiable. At toe-off it is highest shortly
+    after the foot has left the ground, as a person's; at heel strike as the foot touches it.
 
     Attributes:
         foot: which.
         start: begin, by the clock of the gait [s].
         end: end, by the clock of the gait [s].
-        angle: A, the greatest pitch [rad].
-        toe: toe edge from the sole's centre [m].
+        angle: A, the greatest pitch, negative about the heel edge [rad].
+        pivot: the edge, ahead of the sole's centre; negative for the heel edge [m].
         scaling: how that clock goes meanwhile; None where it goes as the time does.
         shown: what clock and time show at the instant of the scaling [s].
     """
@@ -68,9 +88,14 @@ class FootRoll:
     start: float
     end: float
     angle: float
-    toe: float
+    pivot: float
     scaling: TimeScaling | None = None
     shown: float = 0.0
+
+    @property
+    def edge(self) -> Edge:
+        """The edge about which it turns."""
+        return Edge.TOE if self.pivot > 0.0 else Edge.HEEL
 
     def rolling(self, time: float) -> bool:
         """Return true if the foot is not level."""
@@ -91,14 +116,16 @@ class FootRoll:
 
     def hardest(self, begin: float, end: float) -> float:
         """Greatest acceleration with which it lifts the sole's centre between two instants [m/s^2]."""
-        return self.toe * max(abs(self.evaluate(time)[2]) for time in np.linspace(begin, end, _LOOKED_AT).tolist())
+        return abs(self.pivot) * max(
+            abs(self.evaluate(time)[2]) for time in np.linspace(begin, end, _LOOKED_AT).tolist()
+        )
 
     def lifts_harder(self, most: float, begin: float, end: float) -> bool:
         """The sole's centre is lifted harder than this between two instants, in which the roll begins [m/s^2]."""
         return self.start >= begin and self.hardest(begin, end) > most
 
     def centre(self, time: float, level: Array, rates: Array) -> tuple[Array, Array]:
-        """Place and velocity of the sole's centre, with the foot turned about its toe edge.
+        """Place and velocity of the sole's centre, with the foot turned about its edge.
 
         Args:
             time: [s].
@@ -110,7 +137,7 @@ class FootRoll:
         """
         (pitch, rate, _), centre, velocity = self.evaluate(time), np.empty(3), np.empty(3)
         pose, moving = np.asarray(level, dtype=np.float64), np.asarray(rates, dtype=np.float64)
-        roll_sole(pose, moving, self.toe, pitch, rate, centre, velocity)
+        roll_sole(pose, moving, self.pivot, pitch, rate, centre, velocity)
         return centre, velocity
 
 
@@ -134,19 +161,38 @@ _PER_WAY, _SHORT, _MOST = 3.0, 1.1, 0.5
 """Pitch for each metre beyond so many radii, and the greatest [rad/m, -, rad]: 7 cm of leg are 0.5 rad."""
 
 
-def rolls(leaving: Footstep, stance: Footstep, half_length: float) -> bool:
-    """Return true if a foot, half a sole's length given [m], leaves so far behind the other one that it rolls."""
-    ahead = (stance.position - leaving.position)[:2] @ frame_rotation(stance.yaw)
-    return bool(ahead[0] > _LEAST_STEP * half_length)
+def strides(behind: Footstep, ahead: Footstep, half_length: float) -> bool:
+    """Return true if a foot, half a sole's length given [m], stands so far ahead of the other one that feet roll."""
+    way = (ahead.position - behind.position)[:2] @ frame_rotation(ahead.yaw)
+    return bool(way[0] > _LEAST_STEP * half_length)
 
 
-def roll_span(ramp: float, lift_off: float, single: float, angle: float) -> RollSpan:
-    """The times of a foot's roll.
+def toe_off(foot: Foot, ramp: float, lift_off: float, single: float, angle: float) -> RollSpan:
+    """The roll of a foot that leaves the ground.
 
     Args:
+        foot: which.
         ramp: time that the weight takes to leave it, which ends as it leaves the ground [samples].
         lift_off: when it leaves the ground [samples].
         single: duration of its single support [samples].
         angle: greatest pitch [rad].
     """
-    return RollSpan(lift_off - (1.0 - _BEGIN) * ramp, lift_off + _END * single, angle)
+    return RollSpan(foot, lift_off - (1.0 - _BEGIN) * ramp, lift_off + _END * single, angle)
+
+
+def heel_strike(foot: Foot, touchdown: float, single: float, double: float, angle: float) -> RollSpan:
+    """The roll of a foot that comes to the ground, which is flat on it at the end of double support.
+
+    Args:
+        foot: which.
+        touchdown: when it comes to the ground [samples].
+        single: duration of its single support [samples].
+        double: duration of the double support after it [samples].
+        angle: greatest pitch, toes up [rad].
+    """
+    return RollSpan(foot, touchdown - min(double, (1.0 - _END) * single), touchdown + _FLAT * double, -angle)
+
+
+def pivot_of(angle: float, half_length: float) -> float:
+    """The edge about which a sole turns by an angle [rad], ahead of its centre [m]."""
+    return math.copysign(half_length, angle)

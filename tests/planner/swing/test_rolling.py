@@ -1,7 +1,11 @@
+from dataclasses import replace
+from itertools import pairwise
+
 import numpy as np
 import pytest
 from scipy.spatial.transform import Rotation
 
+from surefoot.planner.flight import swinging_to, upcoming
 from surefoot.planner.geometry.orientation import sole_rotation
 from surefoot.planner.ground.terrain import flat
 from surefoot.planner.measured import Measured
@@ -15,10 +19,10 @@ from surefoot.planner.references.nominal_feet import NominalFeet
 from surefoot.planner.state import WalkState
 from surefoot.planner.steps.gait import GaitParameters
 from surefoot.planner.swing.course import Ground
-from surefoot.planner.swing.heel_off import FootRoll, bump
 from surefoot.planner.swing.leg_reach import LegReach
+from surefoot.planner.swing.rolling import FootRoll, bump
 from surefoot.planner.track import advanced
-from surefoot.planner.types import CentroidalState, Foot, PhaseKind
+from surefoot.planner.types import CentroidalState, Edge, Foot, PhaseKind
 from surefoot.planner.walk_model import WalkModel
 
 pytestmark = pytest.mark.unit
@@ -48,16 +52,18 @@ def test_rates_of_a_roll_are_its_derivatives():
         assert now[2] == pytest.approx((after[1] - before[1]) / (2 * h), rel=1e-5)
 
 
-def test_the_centre_of_a_rolled_sole_keeps_the_toe_edge_where_it_was():
-    """Its velocity is the derivative of its way, and a foot turned about its toe edge by hand has it there."""
-    roll, h = FootRoll(Foot.LEFT, 1.0, 1.3, 0.5, 0.11), 1e-5
+@pytest.mark.parametrize("side", [1.0, -1.0])
+def test_the_centre_of_a_rolled_sole_keeps_the_edge_where_it_was(side):
+    """Its velocity is the derivative of its way, and a foot turned about its edge by hand has it there."""
+    roll, h = FootRoll(Foot.LEFT, 1.0, 1.3, side * 0.5, side * 0.11), 1e-5
+    assert roll.edge is (Edge.TOE if side > 0.0 else Edge.HEEL)
     level, rates = np.array([0.3, 0.1, 0.02, 0.7, 0.1, -0.05]), np.array([1.0, 0.2, 0.5, 0.3, -0.4, 0.2])
     before, now, after = (roll.centre(1.2 + d, level + d * rates, rates) for d in (-h, 0.0, h))
     np.testing.assert_allclose(now[1], (after[0] - before[0]) / (2 * h), atol=1e-8)
     flat, angle = sole_rotation(*level[3:]), roll.evaluate(1.2)[0]
     turned = flat @ Rotation.from_euler("y", angle).as_matrix()
-    edge = level[:3] + 0.11 * flat[:, 0]
-    np.testing.assert_allclose(now[0] + 0.11 * turned[:, 0], edge, atol=1e-12)
+    edge = level[:3] + side * 0.11 * flat[:, 0]
+    np.testing.assert_allclose(now[0] + side * 0.11 * turned[:, 0], edge, atol=1e-12)
     assert now[0][2] > level[2] + 0.03
 
 
@@ -84,39 +90,39 @@ def test_a_heel_is_lifted_no_harder_than_hips_swing_a_foot(stand, hips, left, be
     feet = stand(GAIT.step_width)
     state = WalkState.start(WalkModel.of(GAIT, ground, SmoothHeight(), legs), feet)
     measured = Measured(CentroidalState(0.0, np.array([0.0, 0.0, GAIT.com_height]), np.zeros(3)), feet)
-    while state.phase.kind is not PhaseKind.DOUBLE or state.phase.roll is None:
+    while state.phase.kind is not PhaseKind.DOUBLE or not state.phase.rolls:
         state = advanced(state, measured)
     for _ in range(begun):
         state = advanced(state, measured)
     time = 0.02 * state.clock.ticks
-    assert (state.roll(time).start < time) is bool(begun)
+    assert (state.rolls(time)[0].start < time) is bool(begun)
     state = state.ending_in(left, time)
-    assert (state.roll(time) is not None) is rolls
+    assert bool(state.rolls(time)) is rolls
     while state.phase.kind is PhaseKind.DOUBLE:
         state = advanced(state, measured)
-    assert (state.phase.roll is not None) is rolls
+    assert bool(state.phase.rolls) is rolls
 
 
 def test_a_roll_begins_in_double_support_and_ends_before_touchdown(walk):
-    singles = [phase for phase in walk.phases if phase.roll is not None and phase.kind is PhaseKind.SINGLE]
+    singles = [phase for phase in walk.phases if phase.rolls and phase.kind is PhaseKind.SINGLE]
     for phase in singles:
-        start, end, _ = phase.roll
+        ((_, start, end, _),) = phase.rolls
         assert phase.start - 5 < start < phase.start < end < phase.end
         # By then the ZMP has left the sole behind that is to roll.
         assert walk.samples.fraction[int(np.ceil(start))] * GAIT.step_length > 0.09
-        assert walk.phases[walk.phases.index(phase) - 1].roll == phase.roll
+        assert walk.phases[walk.phases.index(phase) - 1].rolls == phase.rolls
 
 
 def test_only_feet_that_are_left_behind_roll(walk):
     singles = [phase for phase in walk.phases if phase.kind is PhaseKind.SINGLE]
-    assert [phase.roll is not None for phase in singles] == [False, True, True, True]
+    assert [bool(phase.rolls) for phase in singles] == [False, True, True, True]
 
 
 def test_pitch_over_a_window_is_that_of_the_rolls(walk):
     feet = NominalFeet(len(walk.samples.clock))
     feet.move(len(walk.samples.clock), walk.samples, walk.schedule, (np.eye(2), np.zeros(2)))
     pitch = feet.pitch
-    start, end, angle = next(phase.roll for phase in walk.phases if phase.roll is not None)
+    _, start, end, angle = next(phase.rolls[0] for phase in walk.phases if phase.rolls)
     roll = FootRoll(Foot.RIGHT, 0.02 * start, 0.02 * end, angle, 0.11)
     for sample in range(int(start), int(end) + 2):
         assert pitch[Foot.RIGHT, sample] == pytest.approx(roll.evaluate(0.02 * sample)[0], abs=1e-12)
@@ -128,8 +134,10 @@ def test_plans_of_a_walk_carry_the_roll_of_the_foot_that_leaves(stand):
     com, velocity, ideal, rolled = np.array([0.0, 0.0, 0.95]), np.zeros(3), IdealFeet(stand()), []
     for tick in range(90):
         plan = planner.update(CentroidalState(0.02 * tick, com, velocity), ideal.state)
-        if plan.roll is not None and plan.roll.evaluate(plan.time)[0] > 0.0:
-            foot = plan.roll.foot
+        for roll in plan.rolls:
+            if not roll.evaluate(plan.time)[0] > 0.0:
+                continue
+            foot = roll.foot
             assert plan.swing is None or plan.swing.foot is foot
             assert plan.phase.kind is PhaseKind.SINGLE or plan.footsteps[0].foot is foot
             rolled.append(plan.phase.step)
@@ -141,7 +149,70 @@ def test_plans_of_a_walk_carry_the_roll_of_the_foot_that_leaves(stand):
 def test_level_feet_have_no_roll(stand):
     planner = WalkingPlanner(GaitParameters(steps=2, initial_stand=0.0), stand(), 0.22, 0.11)
     plan = planner.update(CentroidalState(0.0, np.array([0.0, 0.0, 1.0]), np.zeros(3)), IdealFeet(stand()).state)
-    assert plan.roll is None
+    assert plan.rolls == ()
+
+
+ROLLING = replace(GAIT, heel_strike=0.3)
+
+
+def test_a_foot_comes_down_on_its_heel_and_is_flat_before_the_other_one_leaves(schedule):
+    """Its toes are highest as it lands, and are not on their way up before its toe-off is over."""
+    walk = schedule(ROLLING)
+    for single, double in pairwise(walk.phases):
+        landing = [span for span in single.rolls if span.angle < 0.0]
+        if not landing or single.kind is not PhaseKind.SINGLE:
+            continue
+        (strike,) = landing
+        assert strike.foot is single.swing_foot and strike.angle == -0.3
+        assert all(span.end <= strike.start + 1e-9 for span in single.rolls if span is not strike)
+        assert strike in double.rolls and single.end < strike.end <= double.end
+        roll = FootRoll(strike.foot, strike.start, strike.end, strike.angle, -0.11)
+        assert roll.evaluate(single.end)[0] < 0.85 * strike.angle
+
+
+def test_both_feet_roll_at_once_each_on_its_own_edge(schedule):
+    walk, both = schedule(ROLLING), 0
+    feet = NominalFeet(len(walk.samples.clock))
+    feet.move(len(walk.samples.clock), walk.samples, walk.schedule, (np.eye(2), np.zeros(2)))
+    for phase in walk.phases:
+        if phase.kind is PhaseKind.DOUBLE and len(phase.rolls) == 2:
+            assert {span.foot for span in phase.rolls} == {Foot.LEFT, Foot.RIGHT}
+            both += 1
+    assert both == 3
+    rolls = feet.pitch
+    assert np.any((rolls[0] > 0.0) & (rolls[1] < 0.0)) or np.any((rolls[0] < 0.0) & (rolls[1] > 0.0))
+    assert rolls.min() == pytest.approx(-0.3, abs=0.02)
+
+
+@pytest.mark.parametrize("changed", [{"step_length": 0.1}, {"step_length": -0.2}, {"heel_strike": 0.0}])
+def test_feet_that_land_beside_or_behind_the_other_one_land_flat(schedule, changed):
+    walk = schedule(replace(ROLLING, **changed))
+    assert not [span for phase in walk.phases for span in phase.rolls if span.angle < 0.0]
+
+
+def test_toe_off_is_the_same_whether_feet_land_on_their_heels(schedule):
+    spans = [[span for phase in schedule(gait).phases for span in phase.rolls if span.angle > 0.0]
+             for gait in (GAIT, ROLLING)]  # fmt: skip
+    assert spans[0] == spans[1] != []
+
+
+def test_a_step_that_is_moved_back_lands_flat_unless_its_toes_are_on_their_way_up(stand):
+    ground = Ground(flat(), np.array([0.11, 0.055]), PlannerParameters(reach_length=0.8))
+    feet = stand(GAIT.step_width)
+    state = WalkState.start(WalkModel.of(ROLLING, ground, SmoothHeight(), None), feet)
+    measured = Measured(CentroidalState(0.0, np.array([0.0, 0.0, GAIT.com_height]), np.zeros(3)), feet)
+    while state.phase.kind is not PhaseKind.SINGLE:
+        state = advanced(state, measured)
+    strike = state.schedule.step(1).heel_strike
+    (landing,) = upcoming(state, 0.0, np.zeros((2, 2)))[:1]
+    short = replace(landing, position=landing.position * (0.0, 1.0, 1.0))
+    for footstep, flatly in ((landing, False), (short, True)):
+        swung = swinging_to(state, footstep, measured, False)
+        assert (swung.schedule.step(1).heel_strike is None) is flatly
+        assert bool([span for span in swung.phase.rolls if span.angle < 0.0]) is not flatly
+    while state.clock.now < strike.start:
+        state = advanced(state, measured)
+    assert swinging_to(state, short, measured, False).schedule.step(1).heel_strike == strike
 
 
 def test_a_rolling_foot_turns_about_its_toe_edge_and_lifts_the_ankle():
@@ -157,3 +228,6 @@ def test_a_rolling_foot_turns_about_its_toe_edge_and_lifts_the_ankle():
     assert rolled[0] > level[0] + 0.05
     assert rolled[2] > level[2] + 0.05
     np.testing.assert_allclose(flat, level)
+    toes_up = chain.joints(com, soles, heading, np.array([[-0.3], [0.0]]), 0.11)[2][0, 0]
+    assert np.linalg.norm(toes_up + edge) == pytest.approx(np.linalg.norm(level + edge))
+    assert toes_up[0] < level[0] and toes_up[2] > level[2]

@@ -3,7 +3,7 @@
 What is compared are copies of both logs that have few messages in a second (`write_thinned`).
 """
 
-from collections.abc import Sequence
+from collections.abc import Callable, Sequence
 from contextlib import suppress
 from dataclasses import dataclass, replace
 from io import BytesIO
@@ -68,7 +68,19 @@ class Beside:
     note: str = ""
 
 
-def beside(before: Log, now: Log, partings: Sequence[Parting], history: Path, name: str, commit: str) -> Beside:
+DrawRuns = Callable[[Log, Log, float], list[Image]]
+"""From two logs and a time [s] to a picture of each."""
+
+
+def beside(
+    before: Log,
+    now: Log,
+    partings: Sequence[Parting],
+    history: Path,
+    name: str,
+    commit: str,
+    by: DrawRuns | None = None,
+) -> Beside:
     """Hold two runs beside each other, and draw both.
 
     Args:
@@ -78,12 +90,13 @@ def beside(before: Log, now: Log, partings: Sequence[Parting], history: Path, na
         history: folder that gets the pictures.
         name: beginning of the names of the pictures.
         commit: at which the run before was checked.
+        by: draws both; by default `draw`.
     """
     channels = parting_first(before, now)
     time = _moment(before, now, partings)
     found = Beside(commit, time, tuple(map(_text, channels)))
     try:
-        drawn = draw(before, now, time)
+        drawn = (by or draw)(before, now, time)
     except LogError as why:
         return replace(found, note=f"no pictures: {str(why).partition(': ')[2].partition(';')[0]}")
     except RenderingUnavailableError as why:

@@ -82,14 +82,19 @@ class Keeper:
         folder: of the history, which is made where it is not there.
         commit: that is checked; by default that of the working directory.
 
+    Attributes:
+        history: that it writes to.
+        commit: of the lines.
+        time: of the lines, ISO 8601 in UTC.
+
     Raises:
         LogError: the folder cannot be written.
     """
 
     def __init__(self, folder: Path, commit: Commit | None = None) -> None:
-        self._time = iso(datetime.now(UTC))
-        self._commit = Commit.here(Path.cwd()) if commit is None else commit
-        self._file = new_file(folder, self._time, self._commit)
+        self.time = iso(datetime.now(UTC))
+        self.commit = Commit.here(Path.cwd()) if commit is None else commit
+        self._file = new_file(folder, self.time, self.commit)
         self.history = History(folder)
 
     def hold(self, checked: Checked) -> None:
@@ -112,7 +117,7 @@ class Keeper:
         """
         run = "" if checked.now is None else digest(checked.now)
         own = "" if checked.now is None else digest(replace(checked.now, sample=None))
-        line = Line.of(checked, self._time, self._commit, run, own)
+        line = Line.of(checked, self.time, self.commit, run, own)
         before = [
             one
             for one in self.history.lines

@@ -59,7 +59,7 @@ def test_githubs_is_green_keeps_the_history_and_is_red_in_a_pull_request_that_mo
     assert job.failed
     assert [name for name, code in job.steps.items() if code] == ["Check"]
     summary = (place / "summary.md").read_text()
-    assert "gait.step_length is 0.25, 0.2 in the baseline" in summary
+    assert "gait.step_length is 0.25, the default in the baseline" in summary
     assert "Channels that part first" in summary and "`/footsteps next" in summary
     assert "::error file=walks/first-walk.yaml," in job.output
     assert origin.called()[-1] == "gh pr comment 7 --body-file check.md --edit-last --create-if-none"

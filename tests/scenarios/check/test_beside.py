@@ -7,7 +7,6 @@ import numpy as np
 import pytest
 from needs import OPENGL
 
-from surefoot.scenarios.check import beside as module
 from surefoot.scenarios.check.beside import MOST_CHANNELS, SIZE, Beside, beside, parting_first
 from surefoot.scenarios.check.check import cases, run_case
 from surefoot.scenarios.check.pictures import Gallery
@@ -78,12 +77,11 @@ def test_two_pictures_by_one_camera_differ_where_the_runs_do(checked, logs, tmp_
     np.testing.assert_array_equal(*(matplotlib.image.imread(tmp_path / name) for name in same.pictures))
 
 
-def test_without_opengl_a_line_stands_in_their_place(logs, tmp_path, monkeypatch):
+def test_without_opengl_a_line_stands_in_their_place(logs, tmp_path):
     def refuse(*_, **__):
         raise RenderingUnavailableError("no off-screen OpenGL was found")
 
-    monkeypatch.setattr(module, "render_frames", refuse)
-    found = beside(*logs, (), tmp_path, "stand", "abc")
+    found = beside(*logs, (), tmp_path, "stand", "abc", refuse)
     assert (found.pictures, found.note) == ((), "no pictures: no off-screen OpenGL was found")
     assert len(found.channels) == MOST_CHANNELS
 

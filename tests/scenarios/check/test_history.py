@@ -70,7 +70,7 @@ def kept(folder, runs, words):
     """A history of commits, each with the check of a program."""
     keeper = Keeper(folder, commit(1))
     for number, word in enumerate(words, 1):
-        keeper._commit = commit(number)
+        keeper.commit = commit(number)
         for one in runs[word]:
             status = "same" if word in ("as it was", "a little") else "moved"
             now = replace(one.now, settings=runs["as it was"][0].now.settings)
@@ -284,7 +284,7 @@ def test_no_history_and_no_place_for_one_is_refused(tmp_path):
 def test_outside_of_a_repository_checks_are_in_the_order_of_their_times(tmp_path, runs):
     for word in ("as it was", "longer"):
         keeper = Keeper(tmp_path / "history", Commit())
-        keeper._time = f"2026-01-01T00:00:0{len(word)}Z"
+        keeper.time = f"2026-01-01T00:00:0{len(word)}Z"
         for one in runs[word]:
             keep(keeper, replace(one, now=replace(one.now, settings=runs["as it was"][0].now.settings)))
     assert list(summary(walks(History(tmp_path / "history"))))

@@ -1,1 +1,1 @@
-"""How rarely a check over seeds cries, and what it finds: measured on two robots and three scenarios."""
+"""False alarms and power of a check over seeds, measured on two robots and three scenarios."""

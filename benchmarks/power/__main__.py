@@ -25,6 +25,7 @@ from surefoot.scenarios.check.seeds import SeedRuns
 from surefoot.scenarios.file.search import Bisect
 from surefoot.scenarios.many.journal import Journal
 from surefoot.scenarios.many.slots import CampaignBar, run_cells, workers_of
+from surefoot.scenarios.record.provenance import versions
 from surefoot.scenarios.run.processes import cores
 
 HERE = Path(__file__).parent
@@ -190,7 +191,10 @@ def main() -> None:
     assert COUNT >= FIRST
     pools = {name: pool(name, options.out, options.jobs) for name in SCENARIOS}
     found = list(rows(pools))
+    code = versions()
     with options.result.open("w", newline="", encoding="utf-8") as file:
+        file.write("# python -m benchmarks.power\n")
+        file.write(f"# surefoot {code['surefoot']}, source_digest {code['source_digest']}\n")
         writer = csv.DictWriter(file, HEADS, lineterminator="\n")
         writer.writeheader()
         writer.writerows(found)

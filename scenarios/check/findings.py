@@ -132,7 +132,7 @@ def _metric(name: str) -> str:
 
 @dataclass(frozen=True, slots=True)
 class _Held:
-    """How two samples are compared: as pairs or not, and the error of an alarm that the rate and a metric may spend."""
+    """Compares two samples, as pairs or not, with the error of an alarm that the rate and a metric may spend."""
 
     asked: Asked
     paired: bool
@@ -151,10 +151,10 @@ class _Held:
         return _decided_as("worse", found) if news else found
 
     def metric(self, name: str, before: Sequence[MetricValue], now: Sequence[MetricValue]) -> Iterator[Finding]:
-        """A metric, and first whether it can be told as often as before."""
-        told = [value is not None for value in before], [value is not None for value in now]
-        if not all(told[0]) or not all(told[1]):
-            found = self._share(f"{name} can be told", *told, True, False)
+        """A metric, and first whether it has a value as often as before."""
+        has_value = [value is not None for value in before], [value is not None for value in now]
+        if not all(has_value[0]) or not all(has_value[1]):
+            found = self._share(f"share of {name}", *has_value, True, False)
             if found.verdict in ("worse", "better"):
                 yield found
         bound = self.asked.criteria.get(name, self.asked.criteria.get(_metric(name)))
@@ -225,13 +225,13 @@ def _finding(
     levels: tuple[float, float],
     shown: Difference,
     margin: float,
-    told: tuple[bool, bool | None, int],
+    kind: tuple[bool, bool | None, int],
     alarm: bool,
     half: float,
     runs: int,
 ) -> Finding:
     """The finding of a difference, whose interval has that half width after so many runs."""
-    deciding, better, pairs = told
+    deciding, better, pairs = kind
     found = Finding(name, "not decided", *levels, shown, margin, deciding, pairs)
     if alarm:
         which: ChanceVerdict = "moved" if better is None else "better" if better == (shown.value > 0.0) else "worse"
@@ -250,7 +250,7 @@ def _decided_as(verdict: ChanceVerdict, found: Finding) -> Finding:
 
 
 def _upwards(name: str, bound: Bound | None) -> bool | None:
-    """Whether more is better: by the criterion's one bound or truth value, of a threshold always; else None."""
+    """True if more is better, by the criterion's one bound or truth value, of a threshold always; else None."""
     if name.startswith(MARGIN):
         return True
     if bound is None:

@@ -54,11 +54,11 @@ def scenario_json(one: Checked) -> dict[str, Any]:
 
 def _seeds(sampled: Sampled) -> dict[str, Any]:
     """Runs of several seeds: of each what it measured, the pass rate, and what is held against the baseline."""
-    told = {"seeds": list(sampled.sample.seeds), "passed": list(sampled.sample.passed), "asked": sampled.asked}
+    common = {"seeds": list(sampled.sample.seeds), "passed": list(sampled.sample.passed), "asked": sampled.asked}
     values = {name: list(column) for name, column in sampled.sample.values.items()}
     before = sampled.rate_before
     return {
-        **told,
+        **common,
         "random": sampled.random,
         "rate": sampled.rate._asdict(),
         "rate_before": None if before is None else before._asdict(),
@@ -70,20 +70,20 @@ def _seeds(sampled: Sampled) -> dict[str, Any]:
 
 
 def _finding(one: Finding) -> dict[str, Any]:
-    told = {"name": one.name, "verdict": one.verdict, "before": one.before, "now": one.now, "pairs": one.pairs}
+    common = {"name": one.name, "verdict": one.verdict, "before": one.before, "now": one.now, "pairs": one.pairs}
     interval = {"difference": one.difference.value, "low": one.difference.low, "high": one.difference.high}
-    return {**told, **interval, "allowed": one.margin, "deciding": one.deciding, "needs": one.needs}
+    return {**common, **interval, "allowed": one.margin, "deciding": one.deciding, "needs": one.needs}
 
 
 def _move(move: Move) -> dict[str, Any]:
-    told = {"metric": move.name, "before": move.before, "now": move.now, "allowed": move.allowed, "unit": move.unit}
-    return {**told, "direction": move.direction, "far": move.far}
+    common = {"metric": move.name, "before": move.before, "now": move.now, "allowed": move.allowed, "unit": move.unit}
+    return {**common, "direction": move.direction, "far": move.far}
 
 
 def _parting(parting: Parting) -> dict[str, Any]:
     """A parting; what is infinite, since a stage is missing or the last one, is null."""
-    told = {"text": parting.text, "stage": parting.stage, "figure": parting.figure, "begin": parting.begin}
-    return {**told, "end": _finite(parting.end), "excess": _finite(parting.excess)}
+    common = {"text": parting.text, "stage": parting.stage, "figure": parting.figure, "begin": parting.begin}
+    return {**common, "end": _finite(parting.end), "excess": _finite(parting.excess)}
 
 
 def _finite(value: float) -> float | None:

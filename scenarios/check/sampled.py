@@ -1,4 +1,4 @@
-"""What runs of several seeds say of a scenario."""
+"""Runs of several seeds of a scenario, and how they compare with the sample of a baseline."""
 
 from collections.abc import Mapping
 from dataclasses import dataclass, field

@@ -32,14 +32,14 @@ from surefoot.scenarios.many.slots import CampaignBar, closed_at_end, run_round,
 from surefoot.scenarios.setup.load import load, written
 
 FOLDER = "seeds"
-"""Of the journal and of the logs of runs that missed their criteria, below that of the check's logs."""
+"""Folder of the journal and of the logs of runs that missed their criteria, below that of the check's logs."""
 
 NO_SAMPLE = "the baseline says nothing of other seeds"
 
 
 @dataclass(frozen=True, slots=True)
 class Running:
-    """How a check is run.
+    """Options of a check.
 
     Attributes:
         out: directory of the logs.
@@ -96,7 +96,7 @@ def check(
     several = [case for case in chosen if counts[case.scenario.name] > 1]
     keeping = running.keeping
     for case in several:
-        SeedRuns.of(case, ())  # what is wrong with a search is told before any run
+        SeedRuns.of(case, ())  # refuses a search that cannot be before any run
     if running.cluster is not None and not several:
         raise ScenarioError(["--cluster is for runs of several seeds; give it with --seeds 6 or more"])
     done = checking.check(single, running.out, running.jobs, on_done, running.update, keeping) if single else ()
@@ -194,7 +194,10 @@ class SeedRuns:
 
     def sampled(self, journal: Journal, count: int) -> Sampled | str:
         """Runs of the first seeds by their journal, or why one of them gave no result."""
-        runs, reasons, beyond, took = [], {}, {}, 0.0
+        runs: list[tuple[int, bool, Mapping[str, Any]]] = []
+        reasons: dict[int, str] = {}
+        beyond: dict[tuple[int, str], str] = {}
+        took = 0.0
         for seed in self.seeds[:count]:
             record = journal.said(self.point(seed))
             if record is None or record.status in ("refused", "broken"):
@@ -323,7 +326,8 @@ def _write_own(one: Seeded, journal: Journal) -> None:
 
 def judged(one: Seeded, sampled: Sampled) -> Checked:
     """The result of a case by the runs of its seeds."""
-    own, before, verdict, now = one.own, one.before, one.own.verdict, one.own.now
+    own, before = one.own, one.before
+    verdict, now = own.verdict, own.now
     assert verdict is not None
     assert now is not None
     if sampled.random or one.runs.margins:

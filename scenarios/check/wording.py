@@ -71,7 +71,7 @@ def _named(sampled: Sampled, verdict: str) -> Iterator[str]:
 
 
 def _undecided_lines(sampled: Sampled) -> Iterator[str]:
-    """What decides, and is not decided: with how many runs more it would be."""
+    """Findings that decide and are not decided, with how many runs more they would be."""
     found = [one for one in sampled.findings if one.verdict == "not decided" and one.deciding]
     found = [] if sampled.alarms else found
     yield from (f"not decided: {finding_text(one)}; needs {needed(one)}" for one in found[:_SHOWN])

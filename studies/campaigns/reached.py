@@ -1,4 +1,4 @@
-"""What each value of an axis reached: rates and thresholds with intervals, and tests of pairs that had the same pushes.
+"""Rates and thresholds of each value of an axis, with intervals, and tests of pairs that had the same pushes.
 
 One rate over all says nothing of a campaign that compares laws or gains.
 """
@@ -26,7 +26,7 @@ Key = tuple[tuple[str, str], ...]
 
 @dataclass(frozen=True, slots=True)
 class Reached:
-    """What the runs or searches of one value of an axis reached.
+    """Rate of the runs, or mean threshold of the searches, of one value of an axis.
 
     Attributes:
         axis: its name.
@@ -77,7 +77,7 @@ class PairTest:
 
 
 def reached(swept: "Swept") -> list[Reached]:
-    """What each value of each axis that varies reached, axis by axis."""
+    """Rates or thresholds of each value of each axis that varies, axis by axis."""
     return [one for axis in varied(swept) for one in _of_axis(swept, axis)]
 
 
@@ -207,7 +207,7 @@ def _test_line(test: PairTest) -> str:
 
 
 def to_json(swept: "Swept") -> dict[str, Any]:
-    """What each value reached and the tests, as parts of the object of a campaign."""
+    """Rates or thresholds and the tests, as parts of the object of a campaign."""
     return {"reached": [_reached_json(one) for one in reached(swept)], "tests": list(map(_json, pair_tests(swept)))}
 
 

@@ -121,8 +121,8 @@ class Swept:
         files = [path.name for path in self.files]
         name, runs = self.campaign.spec.name, len(self.records)
         counts["repeated"] = runs - len(self.facts)
-        told = {"campaign": name, "runs": runs, **counts, "out": str(self.folder), "files": files}
-        return {**told, **reached.to_json(self)}
+        common = {"campaign": name, "runs": runs, **counts, "out": str(self.folder), "files": files}
+        return {**common, **reached.to_json(self)}
 
 
 def sweep(campaign: Campaign, out: Path, jobs: int, cluster: str | None = None) -> Swept:

@@ -131,8 +131,8 @@ def test_a_seed_that_is_lost_where_none_was_is_worse_and_else_chance_is_asked():
 def test_a_metric_that_is_gone_is_worse():
     before = sample(range(24), speed_mean=[0.2 + 0.001 * seed for seed in range(24)])
     gone = sample(range(24), speed_mean=[None] * 24)
-    (_, told) = findings(before, gone, Asked(BOUNDED, {}))
-    assert (told.name, told.verdict, told.now) == ("speed_mean can be told", "worse", 0.0)
+    (_, share) = findings(before, gone, Asked(BOUNDED, {}))
+    assert (share.name, share.verdict, share.now) == ("share of speed_mean", "worse", 0.0)
 
 
 def test_a_count_may_be_off_by_half_of_one_in_the_mean():

@@ -89,7 +89,7 @@ def checked(reference="walks/stroll.yaml", count=None, update=False, overrides=(
 
 @pytest.fixture(scope="module")
 def first(tmp_path_factory):
-    """What a scenario's baseline of twelve seeds says."""
+    """Text of a baseline of twelve seeds."""
     with pytest.MonkeyPatch.context() as patch:
         patch.chdir(tmp_path_factory.mktemp("first"))
         alone(patch)

@@ -1,4 +1,4 @@
-"""What each law or gain of a campaign reached: rates with intervals, and tests of pairs that had the same pushes."""
+"""Rates of each law or gain of a campaign with intervals, and tests of pairs that had the same pushes."""
 
 import json
 from dataclasses import replace

@@ -100,7 +100,7 @@ def _world(walk: Walk, pushes: tuple[Push, ...], drives: Drives | None) -> World
 
 
 def going_on(walk: Walk, **options: object) -> Plant:
-    """What a log holds, and then the simulated world from its state on."""
+    """The plant that says what a log holds up to a time, and is then the simulated world from its state on."""
     from surefoot.scenarios.run.logged import log_plant
 
     drives = _drives(walk)

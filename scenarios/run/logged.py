@@ -1,4 +1,4 @@
-"""What a log holds of a run, tick by tick, and a plant that goes on from a state of it."""
+"""The measurements of a log, tick by tick, and a plant that goes on from a state of it."""
 
 from collections.abc import Mapping
 from typing import Any

@@ -14,6 +14,7 @@ from surefoot.scenarios.judge.verdict import missed
 from surefoot.scenarios.judge.walking import fall_time
 from surefoot.scenarios.log import Log
 from surefoot.scenarios.output import shown
+from surefoot.scenarios.record.provenance import END_RECORD
 
 Array = NDArray[np.float64]
 
@@ -36,12 +37,14 @@ class Harm:
         way: from the middle of the feet to the CoM at the fall, shape (2,) [m]; None where it did not fall.
         missed: criteria that a run missed which did not fall.
         within: time within which another fall counts as the same [s].
+        fault: that ended the run, in words; empty where none has.
     """
 
     time: float
     way: Array | None
     missed: tuple[str, ...]
     within: float
+    fault: str = ""
 
     @property
     def fell(self) -> bool:
@@ -51,6 +54,8 @@ class Harm:
     @property
     def text(self) -> str:
         """The incident in words."""
+        if self.fault:
+            return f"ends at {self.time:.3f} s by a fault: {self.fault}"
         if not self.fell:
             return f"misses {', '.join(self.missed)}"
         return f"falls at {self.time:.3f} s {self.direction}".rstrip()
@@ -65,8 +70,10 @@ class Harm:
 
     def same(self, other: "Harm | None") -> bool:
         """Return true if another run came to the same: at about the time, and the same way."""
-        if other is None or self.fell is not other.fell:
+        if other is None or self.fell is not other.fell or bool(self.fault) is not bool(other.fault):
             return False
+        if self.fault:
+            return abs(self.time - other.time) <= self.within
         if self.way is None or other.way is None:
             return bool(set(self.missed) & set(other.missed))
         if abs(self.time - other.time) > self.within:
@@ -76,7 +83,7 @@ class Harm:
 
 
 def harm_of(log: Log, criteria: Mapping[str, Bound]) -> Harm | None:
-    """The incident of a run by its log; None of a run that neither fell nor missed a criterion.
+    """The incident of a run by its log; None of one that neither fell, nor ended by a fault, nor missed a criterion.
 
     Criteria on times of the wall's clock are no incident.
 
@@ -91,6 +98,9 @@ def harm_of(log: Log, criteria: Mapping[str, Bound]) -> Harm | None:
         row = int(np.searchsorted(run.time, time))
         way = run.field("/truth", "com")[row, :2] - run.soles[row, :, :2].mean(axis=0)
         return Harm(time, way, (), within)
+    end = log.metadata.get(END_RECORD, {})
+    if end.get("kind") == "fault":
+        return Harm(float(run.time[-1]), None, (), within, end.get("reason") or "without a reason")
     values = measure(log).values
     metrics = {name: known(name) for name in criteria}
     lasting = (name for name, metric in metrics.items() if metric is not None and metric.repeatable)

@@ -106,7 +106,7 @@ class Incident:
         scenario = read_scenario(text, place, path.stem)
         harm = harm_of(log, scenario.criteria)
         if harm is None:
-            what = f"{path}: shows no incident: the robot did not fall, and no criterion was missed"
+            what = f"{path}: shows no incident: no fall, no fault that ended the run, and no criterion that was missed"
             raise LogError(f"{what}; give the log of a run that failed")
         gathered = digest(log)
         named = tuple(one.check for one in findings(gathered) if one.relation == "cause")

@@ -115,6 +115,8 @@ def _too_late(found: Regression) -> Iterator[str]:
 
 def rule(harm: Harm) -> str:
     """The rule by which another run counts as the same incident, in words."""
+    if harm.fault:
+        return f"the same is a fault within {harm.within:.2g} s"
     if not harm.fell:
         return "the same is to miss the same criterion"
     return f"the same is a fall within {harm.within:.2g} s and {SAME_WAY:g} degrees"
@@ -149,7 +151,7 @@ def _harm(harm: Harm | None) -> Mapping[str, Any] | None:
     if harm is None:
         return None
     way = None if harm.way is None else harm.way.tolist()
-    return {"fell": harm.fell, "time": harm.time, "way": way, "missed": list(harm.missed)}
+    return {"fell": harm.fell, "time": harm.time, "way": way, "missed": list(harm.missed), "fault": harm.fault or None}
 
 
 def _trial(trial: Trial) -> dict[str, Any]:

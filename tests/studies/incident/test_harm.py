@@ -33,6 +33,7 @@ def fall(time=2.0, angle=0.0, length=0.3):
         (fall(angle=180.0, length=1e-6), True),
         (None, False),
         (Harm(2.0, None, ("foot_slip_max",), SAME_TIME), False),
+        (Harm(2.0, None, (), SAME_TIME, "not finite"), False),
     ],
 )
 def test_a_fall_is_the_same_by_time_and_way(other, same):
@@ -44,6 +45,13 @@ def test_missed_criteria_are_the_same_where_one_is():
     assert one.same(Harm(3.0, None, ("speed_mean",), SAME_TIME))
     assert not one.same(Harm(5.0, None, ("zmp_error_rms",), SAME_TIME))
     assert not one.same(fall(5.0))
+
+
+def test_faults_are_the_same_at_about_the_time():
+    one = Harm(2.0, None, (), SAME_TIME, "not finite")
+    assert one.same(Harm(2.1, None, (), SAME_TIME, "diverged"))
+    assert not one.same(Harm(2.0 + 2.0 * SAME_TIME, None, (), SAME_TIME, "not finite"))
+    assert not one.same(Harm(2.0, None, ("speed_mean",), SAME_TIME))
 
 
 @pytest.fixture(scope="module")

@@ -138,6 +138,19 @@ def test_a_run_that_cannot_be_repeated_begins_where_it_comes_closest(tmp_path):
     assert len(found.causes) == 1, "the push that was over by then is in the log"
 
 
+def test_a_fault_that_ends_a_run_is_an_incident(tmp_path):
+    faults = [{"kind": "state_nan", "time": 0.4}, {"kind": "planner_freeze", "time": 0.1, "duration": 0.1}]
+    values = {"sensing.source": "truth", "duration": 0.8, "faults": faults, "criteria": {"fell": False}}
+    log = surefoot.run(surefoot.load("stand", values), out=tmp_path).log
+    incident = Incident.of(log)
+    assert incident.harm.fault
+    found = regression(incident, Trials(incident, "fault"))
+    assert found.comes_back
+    assert found.again.likeness.parts is None
+    assert [cause.keys for cause in found.needed] == [(("faults", 0),)]
+    assert found.without(found.needed[0]).harm is None
+
+
 def test_what_falls_otherwise_is_another_incident(tmp_path):
     """The control of the tests above: the same push the other way is no return of the fall."""
     scenario = scenario_of("push", tmp_path)

@@ -4,7 +4,7 @@ import inspect
 import json
 from collections.abc import Callable, Iterator
 from pathlib import Path
-from typing import TYPE_CHECKING, Annotated, Any, TypeVar
+from typing import TYPE_CHECKING, Annotated, Any, TypeVar, get_args, get_origin
 
 import typer
 
@@ -47,7 +47,8 @@ def keys(group: "type[BaseModel]", prefix: str = "") -> Iterator[tuple[str, str]
 
     for name, field in (*group.model_fields.items(), *own_keys(group)):
         yield prefix + name, field.description or ""
-        for inner in groups_in(field.annotation):
+        parts = get_args(field.annotation) or (field.annotation,)
+        for inner in (group for part in parts if get_origin(part) is not dict for group in groups_in(part)):
             yield from keys(inner, f"{prefix}{name}.")
 
 

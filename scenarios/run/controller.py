@@ -91,9 +91,9 @@ class Controller:
         self._output = Output(walk.control, walk.robot, walk.size, walk.rates.control)
         self._next = -math.inf
         self._estimates = walk.sensing.force_estimate
-        half_length, gait = 0.5 * walk.robot.sole_length, walk.gait
-        self._toe = half_length if gait.heel_off else 0.0
-        self._heel = -half_length if gait.heel_strike else 0.0
+        half_length = 0.5 * walk.robot.sole_length
+        self._toe = half_length if walk.gait.heel_off else 0.0
+        self._heel = -half_length if walk.gait.heel_strike else 0.0
         self._giving_way = None if walk.control.give_way is False else GivingWay(body.limits, walk.size)
         self._landed, self._arriving, self._load = (True, True), NONE_TOUCHES, NO_LOAD
         self._landing: Landing | None = None

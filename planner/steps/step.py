@@ -168,6 +168,7 @@ class Step:
         landing = self.heel_strike
         if landing is not None and now < landing.start:
             landing = rolling.heel_strike(landing.foot, self.touchdown, self.single_support, double, -landing.angle)
+            landing = landing._replace(start=max(landing.start, now))
         elif landing is not None:
             double = max(double, landing.end - self.touchdown)
         return replace(self, double_support=double, heel_strike=landing)

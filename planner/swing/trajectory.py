@@ -305,9 +305,9 @@ def start_swing(
         start + round(share * samples) * t for share in (course.glide_start, course.apex, course.glide_end)
     )
     glide_end, end = min(glide_end, touchdown), target.tolist()
-    gliding, braking = glide_end - glide_start, course.braking
-    ends = [(end[k], 0.0, (begin[k] - end[k]) * braking / (gliding * gliding)) for k in _GLIDING]
-    ways = [((begin[k], 0.0, 0.0), last, gliding) for k, last in zip(_GLIDING, ends, strict=True)]
+    gliding = glide_end - glide_start
+    brake = course.braking / (gliding * gliding)
+    ways = [((begin[k], 0.0, 0.0), (end[k], 0.0, brake * (begin[k] - end[k])), gliding) for k in _GLIDING]
     top, still, times = max(begin[2], footstep.item(2)) + course.height, (begin[2], 0.0, 0.0), (start, apex, touchdown)
     rise, fall = up_and_down(still, top, (end[2], search.touchdown_speed), times, lifting, TOUCHING)
     falls = rise is None

@@ -8,7 +8,7 @@ cdef class Controller:
     cdef readonly object walk, body, whole_body, planning, posture, state, report, terms, wrench, sample, spent
     cdef readonly Senses senses
     cdef readonly Estimate estimate
-    cdef object _parts, _leg, _faults, _output, _giving_way, _landed, _arriving, _load, _landing, _torques
+    cdef object _parts, _leg, _faults, _output, _giving_way, _landed, _arriving, _load, _landing, _torques, _normals
     cdef JointCommand _command
     cdef double _period, _next, _toe, _heel, _begin, _now
     cdef bint _estimates, _stands

@@ -28,7 +28,7 @@ from surefoot.scenarios.setup.robot.body import body_of, feet_at
 from surefoot.scenarios.setup.walk import Walk
 from surefoot.similarity import GRAVITY
 from surefoot.wbc.body.falling import GivingWay
-from surefoot.wbc.body.model import RobotTerms
+from surefoot.wbc.body.model import VERTICAL, RobotTerms
 from surefoot.wbc.body.soles import yaws
 from surefoot.wbc.contact.zmp import measured_zmp
 from surefoot.wbc.qp.driven import DrivenRows
@@ -91,9 +91,10 @@ class Controller:
         self._output = Output(walk.control, walk.robot, walk.size, walk.rates.control)
         self._next = -math.inf
         self._estimates = walk.sensing.force_estimate
-        half_length, gait = 0.5 * walk.robot.sole_length, walk.gait
-        self._toe = half_length if gait.heel_off else 0.0
-        self._heel = -half_length if gait.heel_strike else 0.0
+        half_length = 0.5 * walk.robot.sole_length
+        self._toe = half_length if walk.gait.heel_off else 0.0
+        self._heel = -half_length if walk.gait.heel_strike else 0.0
+        self._normals = VERTICAL
         self._giving_way = None if walk.control.give_way is False else GivingWay(body.limits, walk.size)
         self._landed, self._arriving, self._load = (True, True), NONE_TOUCHES, NO_LOAD
         self._landing: Landing | None = None
@@ -195,6 +196,8 @@ class Controller:
         # compared with the plan of now.
         middle = now + 0.5 * self._output.period
         self.sample, reference = planned(planning.sampler, now, middle)
+        if self._toe or self._heel:
+            self._normals = reference.ground_normal
         if now < self._next:
             self.spent = Spent(state_time, plan_time)
             return self._command
@@ -255,7 +258,7 @@ class Controller:
             return arriving
         if not self._output.holds:
             return NONE_TOUCHES
-        soles = self.terms.level_soles(0.0, self._heel)
+        soles = self.terms.level_soles(0.0, self._heel, self._normals)
         return comes_down(self.planning.plan, self.terms, soles, self._now, self._output.period)
 
     def _drive(self, driven: DrivenRows, command: JointCommand | None) -> None:
@@ -290,9 +293,9 @@ class Controller:
         state = CentroidalState(self._now, terms.com.copy(), terms.com_velocity.copy(), self._lasting())
         if False in self._landed and self.planning.plan.balance.catching:
             arrives = self._output.period + self.planning.planner.parameters.freeze_catching
-            soles = terms.level_soles(0.0, self._heel)
+            soles = terms.level_soles(0.0, self._heel, self._normals)
             self._arriving = comes_down(self.planning.plan, terms, soles, self._now, arrives, due=True)
-        soles = terms.level_soles(self._toe, self._heel or self._toe)
+        soles = terms.level_soles(self._toe, self._heel or self._toe, self._normals)
         feet = FeetState(soles, yaws(terms.sole_rotation), self._landed, arriving=self._arriving)
         if self.estimate.deviation is not None:
             state, feet = with_deviations(self.estimate.deviation, state, feet)

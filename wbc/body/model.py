@@ -17,6 +17,9 @@ from surefoot.wbc.types import GRAVITY, Array
 
 _LOCAL = pin.ReferenceFrame.LOCAL
 
+VERTICAL = np.array([[0.0, 0.0, 1.0]] * 2)
+"""Normals of level ground under both feet [-]."""
+
 
 @dataclass(frozen=True, slots=True)
 class BodyFrames:
@@ -268,19 +271,20 @@ class RobotTerms:
         pose[:3] = frame.position
         algebra.quaternion(self._R_sole[k], pose[3:])
 
-    def level_soles(self, toe: float, heel: float) -> Array:
-        """Centres of the soles if each foot turned level about an edge of it, shape (2, 3) [m].
+    def level_soles(self, toe: float, heel: float, normal: Array = VERTICAL) -> Array:
+        """Centres of the soles if each foot turned flat on the ground about an edge of it, shape (2, 3) [m].
 
         Of leaning soles, the centres of the lines on which they stand.
 
         Args:
             toe: line about which a foot turns whose heel is up, ahead of the sole's centre [m].
             heel: that about which one turns whose toes are up [m].
+            normal: of the ground under each of them, shape (2, 3) [-].
         """
         position = self.sole_position
         if self.leaning is not None:
             position = np.array([line_centre(k, position[k], self.sole_rotation[k], self.leaning) for k in (0, 1)])
-        return soles.level(position, self.sole_rotation, toe, heel)
+        return soles.level(position, self.sole_rotation, toe, heel, normal)
 
     def shift_foot(self, k: int, forward: float, pitch: float) -> Array:
         """See foot k from a frame at a point ahead of its sole's centre, turned back by a pitch, until it is unshifted.

@@ -15,6 +15,7 @@ from surefoot.planner.plants import IdealFeet
 from surefoot.planner.references.com_height import Rise, SmoothHeight
 from surefoot.planner.steps.commands import Command
 from surefoot.planner.steps.gait import GaitParameters
+from surefoot.planner.swing.rolling import LEAD
 from surefoot.planner.types import CentroidalState, Foot, PhaseKind, Twist
 
 pytestmark = pytest.mark.unit
@@ -107,6 +108,11 @@ def test_durations_may_change_as_a_foot_leaves_the_ground(stand):
     assert_walked(plans, 4)
 
 
+def test_toes_that_would_be_up_already_after_a_longer_double_support_go_up_from_now(stand):
+    """The roll takes as long before touchdown as the double support after it."""
+    assert_rolls_on(plans_of(stand, GAIT, [(17, 0.75), (69, 1.0)], Rise.DOUBLE))
+
+
 def test_a_swing_shortened_while_its_foot_rolls_lasts_until_it_is_level(stand):
     rolling = next(
         n
@@ -180,4 +186,5 @@ def test_what_is_left_of_a_step_changes_in_proportion(stand, ratio):
     assert plain[tick].phase.kind is PhaseKind.SINGLE
     left = [plans[tick].footsteps[0].touchdown_time - plans[tick].time for plans in (plain, changed)]
     assert left[1] == pytest.approx(ratio * left[0])
-    assert changed[tick].swing.touchdown_time == pytest.approx(changed[tick].time + left[1] - PARAMETERS.touchdown_lead)
+    lead = LEAD * PARAMETERS.touchdown_lead  # of a foot that lands on its heel
+    assert changed[tick].swing.touchdown_time == pytest.approx(changed[tick].time + left[1] - lead)

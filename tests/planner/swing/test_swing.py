@@ -1,4 +1,5 @@
 import math
+from dataclasses import replace
 
 import numpy as np
 import pytest
@@ -200,3 +201,21 @@ def test_quick_looks_at_a_swing_see_what_it_does(bent):
         places = trajectory.places(*times.tolist())
         np.testing.assert_allclose(places, seen[:, 0, :2], atol=1e-12)
         assert trajectory.places(3.0) == [tuple(trajectory.target[:2])]
+
+
+def test_a_braking_foot_is_later_and_at_rest_as_it_touches_down():
+    """It comes down faster, and ends its swing nearer to the end of single support."""
+    pose, target = np.zeros(6), np.array([0.8, 0.1, 0.0, 0.2, 0.0, 0.0])
+    parameters, plain = PlannerParameters(), SwingCourse(0.5, 0.0, 1.0, 0.05)
+    braking = replace(plain, braking=6.0, lead=0.25, sinking=0.1)
+    smooth, late = (start_swing(Foot.LEFT, (pose, target), (1.0, 21), one, parameters) for one in (plain, braking))
+    assert late.touchdown_time == pytest.approx(smooth.touchdown_time + 0.75 * parameters.touchdown_lead)
+    end = late.evaluate(late.glide_end - 1e-7)
+    gliding = late.glide_end - late.start_time
+    np.testing.assert_allclose(end[0, [0, 1, 3]], target[[0, 1, 3]], atol=1e-6)
+    np.testing.assert_allclose(end[1, [0, 1, 3]], 0.0, atol=1e-5)
+    np.testing.assert_allclose(end[2, [0, 1, 3]], -6.0 * target[[0, 1, 3]] / gliding**2, rtol=1e-4)
+    times = np.linspace(1.01, smooth.glide_end - 0.01, 30)
+    assert (late.positions(times)[:, 0] < smooth.positions(times)[:, 0]).all()
+    down = [swing.evaluate(swing.touchdown_time - 1e-7)[1, 2] for swing in (smooth, late)]
+    assert down[1] == pytest.approx(down[0] - 0.1, abs=1e-4)

@@ -11,8 +11,8 @@ from surefoot.scenarios.run.controller import comes_down
 pytestmark = pytest.mark.unit
 
 
-def coming(touchdown: float, speed: float) -> tuple[SimpleNamespace, SimpleNamespace]:
-    """Plan and terms of a robot whose left foot is 1 cm above the ground."""
+def coming(touchdown: float, speed: float) -> tuple[SimpleNamespace, SimpleNamespace, np.ndarray]:
+    """Plan, terms and soles of a robot whose left foot is 1 cm above the ground."""
     plan = SimpleNamespace(
         swing=SimpleNamespace(foot=Foot.LEFT, touchdown_time=touchdown),
         footsteps=[SimpleNamespace(position=np.zeros(3))],
@@ -22,7 +22,7 @@ def coming(touchdown: float, speed: float) -> tuple[SimpleNamespace, SimpleNames
         sole_rotation=np.tile(np.eye(3), (2, 1, 1)),
         sole_velocity=np.full((2, 6), speed),
     )
-    return plan, terms
+    return plan, terms, terms.sole_position
 
 
 @pytest.mark.parametrize(

@@ -64,3 +64,9 @@ def test_a_run_lasts_until_the_robot_has_stood():
     assert Walk(Scenario()).duration == pytest.approx(1.0 + 1.0 + 5 * 2.0 + FINAL_STAND)
     assert Walk(Scenario(duration=3.0)).duration == 3.0
     assert Walk(Scenario(gait=Gait(steps=0))).duration == 1.0 + FINAL_STAND
+
+
+def test_a_foot_that_lands_on_its_heel_reaches_farther_by_what_its_ankle_is_higher():
+    """The leg that lands spans from there; the other one as far as it did."""
+    flat, heels = (longest_step(0.9, 0.85, 0.2, 0.2, raised) for raised in (0.0, 0.02))
+    assert heels - 0.5 * flat == pytest.approx(math.sqrt(0.9**2 - 0.83**2))

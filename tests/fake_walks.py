@@ -203,3 +203,8 @@ def _same_content(a: str | Path, b: str | Path) -> list[str]:
 @pytest.fixture(name="same_content")
 def same_content_fixture() -> Callable[..., list[str]]:
     return _same_content
+
+
+def alone(patch, module):
+    """Let a module do in this process what it does in processes side by side; `patch` takes it back."""
+    patch.setattr(module, "side_by_side", lambda work, given, *_: (work(*one) for one in given))

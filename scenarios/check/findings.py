@@ -82,12 +82,14 @@ class Asked:
         margins: its searches by name.
         scenarios: number of scenarios of the check, among which the error is shared.
         look: number of this look, from 1 on.
+        alarm: error that all looks at the check may spend on alarms.
     """
 
     criteria: Mapping[str, Bound]
     margins: Mapping[str, Bisect]
     scenarios: int = 1
     look: int = 1
+    alarm: float = ALARM
 
 
 def findings(before: SeedSample, now: SeedSample, asked: Asked) -> tuple[Finding, ...]:
@@ -105,7 +107,7 @@ def findings(before: SeedSample, now: SeedSample, asked: Asked) -> tuple[Finding
     else:  # of equal number: then the noise of both is symmetric, however skewed that of one is
         before = before.at(before.seeds[: len(now.seeds)])
     names = [name for name in before.values if name in now.values and _is_compared(name, asked)]
-    half = 0.5 * ALARM / asked.scenarios
+    half = 0.5 * asked.alarm / asked.scenarios
     held = _Held(asked, paired, half, half / max(1, 2 * len(names)))
     found = [held.rate(before, now)]
     for name in names:

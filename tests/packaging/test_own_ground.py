@@ -70,7 +70,7 @@ def test_keys_that_do_not_shape_it_are_said_to_be_idle(ditch, tmp_path):
 
 
 @pytest.mark.unit
-def test_a_common_key_acts_where_the_kind_names_it_and_nowhere_else(ditch, monkeypatch, tmp_path):
+def test_a_common_key_acts_where_the_kind_names_it_and_nowhere_else(ditch, tmp_path):
     """Heights are uncertain on a kind that says so; on another a note says that they are not, and they are not."""
     keys = {**WALK, "fidelity": "pendulum", "duration": 0.1, "terrain.height_noise": 0.01, "criteria": {}}
     scenario = surefoot.load("diagonal-walk", keys)
@@ -82,7 +82,7 @@ def test_a_common_key_acts_where_the_kind_names_it_and_nowhere_else(ditch, monke
     assert ground().unforeseen == {}
     notes = surefoot.run(scenario, out=tmp_path).verdict.notes
     assert "terrain.height_noise has no effect on terrain.kind ditch" in notes
-    monkeypatch.setattr(type(ditch), "keys", (*ditch.keys, "height_noise"))
+    KINDS.add("ditch", type("Uneven", (type(ditch),), {"keys": (*ditch.keys, "height_noise")})())
     assert not _same(ground())
     assert ground().unforeseen == {"terrain.height_noise": (1,)}  # the bank of the start is known
     notes = surefoot.run(scenario, out=tmp_path).verdict.notes
@@ -95,13 +95,13 @@ def _same(ground):
 
 
 @pytest.mark.unit
-def test_a_key_of_its_own_that_is_refused_is_named_as_it_is(ditch, monkeypatch):
+def test_a_key_of_its_own_that_is_refused_is_named_as_it_is(ditch):
     """Also where a parameter of the planner has the same name."""
 
     def build(self, ground):
         raise surefoot.ParameterError(("terrain", "depth"), "a ditch without a floor", "give it one")
 
-    monkeypatch.setattr(type(ditch), "build", build)
+    KINDS.add("ditch", type("Bottomless", (type(ditch),), {"build": build})())
     with pytest.raises(ScenarioError) as refused:
         surefoot.load("diagonal-walk", {**WALK, "terrain.bank": 1.0})
     assert scenario_key(("terrain", "depth")) == ("terrain", "depth")

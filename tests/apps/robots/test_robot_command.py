@@ -5,6 +5,7 @@ from dataclasses import replace
 
 import numpy as np
 import pytest
+from fake_walks import alone
 
 from surefoot.apps.robots import taken
 from surefoot.apps.robots.taken import CatalogueBar, CatalogueRow, rows
@@ -115,15 +116,12 @@ def test_each_scenario_is_looked_at_once_and_the_longest_run_comes_first(monkeyp
     durations = {"stand": 1.0, "stairs-tall": 0.0, "walk": 2.0, "slope": 3.0}
     looked: list[str] = []
 
-    def alone(work, arguments, jobs, lost):
-        return (work(*given) for given in arguments)
-
     def look(name: str, robot: str):
         looked.append(name)
         outcome = "accepted" if durations[name] else "refused"
         return taken._Looked(CatalogueRow(name, outcome, duration=durations[name]), name if durations[name] else None)
 
-    monkeypatch.setattr(taken, "side_by_side", alone)
+    alone(monkeypatch, taken)
     monkeypatch.setattr(taken, "_look", look)
     monkeypatch.setattr(taken, "_run", lambda row, scenario, out: replace(row, outcome="walks"))
     told: list[str] = []

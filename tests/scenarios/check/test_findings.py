@@ -6,7 +6,7 @@ import numpy as np
 import pytest
 
 from surefoot.maths.chance import look_error
-from surefoot.scenarios.check.findings import RATE, Asked, decided, findings
+from surefoot.scenarios.check.findings import ALARM, RATE, Asked, decided, findings
 from surefoot.scenarios.check.sample import SeedSample, read_sample
 from surefoot.scenarios.file.criteria import Bound
 from surefoot.scenarios.file.search import Bisect
@@ -72,10 +72,8 @@ def test_a_shift_that_pairs_show_is_not_seen_without_them():
     assert (of("speed_mean", apart).verdict, of("speed_mean", apart).pairs) == ("not decided", 0)
 
 
-def alarms(replicas, error=None, monkeypatch=None):
+def alarms(replicas, error=ALARM):
     """Number of checks with an alarm, of an unchanged program with fresh seeds and noise with a long tail."""
-    if error is not None:
-        monkeypatch.setattr("surefoot.scenarios.check.findings.ALARM", error)
     rng, count = np.random.default_rng(7), 0
     names = ["speed_mean", "path_length", "zmp_error_rms[0]", "zmp_error_rms[1]", "foot_slip_max", "torque_ratio_max"]
     for _ in range(replicas):
@@ -84,7 +82,7 @@ def alarms(replicas, error=None, monkeypatch=None):
         before = SeedSample(tuple(range(24)), tuple(passed[:24]), {name: tuple(x[:24]) for name, x in draws.items()})
         rest = SeedSample(tuple(range(24, 48)), tuple(passed[24:]), {name: tuple(x[24:]) for name, x in draws.items()})
         looks = ((look, rest.at(range(24, 24 + 6 * 2 ** (look - 1)))) for look in (1, 2, 3))
-        said = (findings(before, now, Asked(BOUNDED, {}, 1, look)) for look, now in looks)
+        said = (findings(before, now, Asked(BOUNDED, {}, 1, look, error)) for look, now in looks)
         count += any(one.verdict in ("worse", "moved", "better") for found in said for one in found)
     return count
 
@@ -93,8 +91,8 @@ def test_an_unchanged_program_raises_an_alarm_in_less_than_a_percent_of_checks()
     assert alarms(600) <= 6
 
 
-def test_without_its_parts_of_the_error_it_would_raise_many(monkeypatch):
-    assert alarms(150, 1.0, monkeypatch) > 15
+def test_without_its_parts_of_the_error_it_would_raise_many():
+    assert alarms(150, 1.0) > 15
 
 
 def test_what_is_not_decided_is_decided_by_about_as_many_runs_more_as_it_says():

@@ -5,6 +5,7 @@ from dataclasses import replace
 from pathlib import Path
 
 import pytest
+from fake_walks import alone
 from typer.testing import CliRunner
 
 from surefoot.scenarios.check import check as checking
@@ -21,6 +22,7 @@ from surefoot.scenarios.errors import ScenarioError
 from surefoot.scenarios.many import slots
 from surefoot.scenarios.many.engine import perform
 from surefoot.scenarios.many.journal import LOGS, SCRATCH
+from surefoot.scenarios.many.points import Record
 from surefoot.scenarios.many.slots import InterruptedRunsError
 
 pytestmark = pytest.mark.unit
@@ -48,13 +50,15 @@ criteria: {fell: false}
 class Here:
     """A worker in this process, which counts what it makes."""
 
-    made = ()
+    made, breaks = (), False
 
     def __init__(self, folder):
         self._folder = folder
 
     def __call__(self, point):
         Here.made = (*Here.made, point)
+        if Here.breaks:
+            return Record(point.id, "broken", ("its process ended",))
         return perform(point, self._folder / SCRATCH, self._folder / LOGS, False)
 
     def close(self):
@@ -65,13 +69,14 @@ class Here:
 def in_this_process(monkeypatch, tmp_path):
     """Runs without processes beside this one, in an empty directory."""
     monkeypatch.chdir(tmp_path)
-    alone(monkeypatch)
+    Here.breaks = False
+    in_one_process(monkeypatch)
 
 
-def alone(patch):
+def in_one_process(patch):
     """Run everything in this process, and make the folder of the scenarios."""
     patch.setattr(slots, "local_workers", lambda folder, jobs, keep_all: [Here(folder)])
-    patch.setattr(checking, "side_by_side", lambda work, given, jobs, lost: (work(*one) for one in given))
+    alone(patch, checking)
     Path("walks").mkdir()
 
 
@@ -92,7 +97,7 @@ def first(tmp_path_factory):
     """Text of a baseline of twelve seeds."""
     with pytest.MonkeyPatch.context() as patch:
         patch.chdir(tmp_path_factory.mktemp("first"))
-        alone(patch)
+        in_one_process(patch)
         found, runs = checked(written(), 12, update=True)
         assert (found.status, runs) == ("written", 11)
         return Path(found.case.baseline).read_text()
@@ -253,17 +258,11 @@ def test_the_object_of_a_check_has_the_sample_and_the_findings(kept):
     assert worse["low"] < worse["difference"] < worse["high"]
 
 
-def test_a_run_that_gives_no_result_is_no_pass(kept, monkeypatch):
-    monkeypatch.setattr(Here, "__call__", lambda self, point: _broken(point))
+def test_a_run_that_gives_no_result_is_no_pass(kept):
+    Here.breaks = True
     found, _ = checked()
     assert (found.status, found.reasons) == ("could not run", ("seed 1: its process ended",))
     assert not found.passed
-
-
-def _broken(point):
-    from surefoot.scenarios.many.points import Record
-
-    return Record(point.id, "broken", ("its process ended",))
 
 
 def test_scenarios_with_seeds_and_without_stand_in_one_check_in_their_order(kept):

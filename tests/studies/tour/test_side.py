@@ -7,6 +7,7 @@ import math
 import mujoco
 import numpy as np
 import pytest
+from fake_walks import alone
 from needs import POLICY
 from typer.testing import CliRunner
 
@@ -105,7 +106,7 @@ def test_a_policy_that_stands_is_never_pushed_in_a_step_and_the_command_goes_on(
     monkeypatch.setattr(drill, "VELOCITIES", 1)
     monkeypatch.setattr(drill, "LATEST", 0.5)
     monkeypatch.setattr(module, "PLACES_TIME", 1.0)
-    monkeypatch.setattr(module, "side_by_side", lambda work, given, *_: (work(*one) for one in given))
+    alone(monkeypatch, module)
     stander = policies.stander(tmp_path / "stander").parent
     out = tmp_path / "out"
     side = Side(entrants((), [stander]), 1, out)

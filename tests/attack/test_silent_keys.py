@@ -31,6 +31,10 @@ WITHOUT_OCCASION = {
     "log.keep": "a run that is no longer is held whole",
     "log.rate": "bounds what no metric reads, none of which is in a digest of what is measured",
     "wbc.weights.swing": "acts on a foot that swings",
+    "wbc.gains.swing": "acts on a foot that swings",
+    "wbc.contact.softening": "acts on a foot that has landed",
+    "wbc.contact.sinking": "acts on a foot that has landed",
+    "requirements": "named in reports of checks",
     **dict.fromkeys((key for key in keys() if key.endswith("_catching")), "acts while a step catches the body"),
     **dict.fromkeys(
         (f"wbc.schedule.{name}" for name in ("felt_force", "felt_ticks", "early_progress", "early_cap")),

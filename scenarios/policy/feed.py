@@ -43,7 +43,7 @@ class Feed:
             None if term.joints is None else indices(term.joints, contract.joints, f"term {term.term}")
             for term in terms
         ]
-        self._told = list(zip(functions, joints, strict=True))
+        self._functions = list(zip(functions, joints, strict=True))
         self._sizes: list[int] | None = None
         lengths = [term.history or history.length for term in terms]
         try:
@@ -57,7 +57,7 @@ class Feed:
 
     def values(self, seen: Seen) -> list[Array]:
         """The newest values of each term, as they are; joints of what is seen are those of the contract."""
-        return [_numbers(function(seen if at is None else _of(seen, at))) for function, at in self._told]
+        return [_numbers(function(seen if at is None else _of(seen, at))) for function, at in self._functions]
 
     def observe(self, values: Sequence[Array]) -> Array:
         """The input: values of each term, clipped and scaled, with what was observed before.
@@ -79,9 +79,9 @@ class Feed:
         return self._kept.add(newest * self._scale, self._sizes)
 
 
-def _numbers(told: Any) -> Array:
+def _numbers(values: Any) -> Array:
     """The numbers that a term tells, shape (k,)."""
-    return np.asarray(told, dtype=np.float64).ravel()
+    return np.asarray(values, dtype=np.float64).ravel()
 
 
 def _of(seen: Seen, at: NDArray[np.intp]) -> Seen:

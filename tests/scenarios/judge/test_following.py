@@ -1,4 +1,4 @@
-"""How far a walk follows velocities: the law of the mean, and which commands are judged."""
+"""Errors against commanded velocities: the law of the mean, and which commands are judged."""
 
 from types import SimpleNamespace
 

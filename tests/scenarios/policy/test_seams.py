@@ -100,6 +100,8 @@ def test_check_in_two_processes_makes_equal_bits(walks, same_content, command, t
     for jobs in ("1", "2"):
         code, out = command("check", *names, "--update", "--jobs", jobs, "--out", jobs)
         assert code == 0, out
+        for baseline in tmp_path.rglob("*.baseline.yaml"):
+            baseline.unlink()  # the logs of runs that are the same as a baseline are not kept
     logs = [sorted((tmp_path / jobs).rglob("log.mcap")) for jobs in "12"]
     assert len(logs[0]) == len(logs[1]) == len(walks)
     for one, other in zip(*logs, strict=True):

@@ -178,7 +178,7 @@ class _Fold:
 
 
 def disagreeing(channels: Iterable[ChannelDifference]) -> tuple[ChannelDifference, ...]:
-    """Those of the channels that do not agree within the tolerance, in the order in which they part by more."""
+    """Channels that do not agree within the tolerance, in the order in which they part by more."""
     found = (channel for channel in channels if not channel.agrees)
     return tuple(sorted(found, key=lambda one: _place(one.beyond, one.topic)))
 

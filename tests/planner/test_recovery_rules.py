@@ -61,7 +61,7 @@ def acted(request):
 
 @pytest.mark.parametrize("case", list(CASES))
 def test_a_plan_has_the_names_of_the_rules_that_acted(stand, case):
-    """Those which changed the view, and no others."""
+    """They are rules that changed the view, and no others."""
     gait, parameters, push, end = CASES[case]
     changed, named = [], []
 

@@ -1,4 +1,4 @@
-"""Errors against commanded velocities: the law of the mean, and which commands are judged."""
+"""The errors against commanded velocities: the law of the mean, and which commands are judged."""
 
 from types import SimpleNamespace
 

@@ -176,7 +176,7 @@ def planned(view: View, motion: Motion, acted: tuple[str, ...]) -> tuple[WalkSta
         balance = replace(balance, shift=shift, catching=catching)
     if state.phase.swing_foot is not None:
         state = swinging_to(state, footsteps[0], measured, motion.solver is SolverStatus.HELD)
-    plan = _world_plan(view, state, motion, footsteps, replace(_status(state, motion, balance), acted=acted), balance)
+    plan = _world_plan(view, state, motion, footsteps, _status(state, motion, balance, acted), balance)
     law_memory = None if motion.memory is None else motion.memory @ support.rotation.T
     return replace(state, plan=plan, law_memory=law_memory), plan
 
@@ -226,7 +226,7 @@ def _world_plan(
     )
 
 
-def _status(state: WalkState, motion: Motion, balance: Balance) -> PlanStatus:
+def _status(state: WalkState, motion: Motion, balance: Balance, acted: tuple[str, ...]) -> PlanStatus:
     """The status of a plan."""
     last, swing, age = state.plan, state.swing, 0
     falls = last is not None and last.status.falling
@@ -241,4 +241,5 @@ def _status(state: WalkState, motion: Motion, balance: Balance) -> PlanStatus:
         late_touchdown=swing.waited,
         early_touchdown=swing.stage is SwingStage.LANDED,
         falling=(falls or balance.lost > 0) and falling(balance, falls, state.model.parameters.recovery),
+        acted=acted,
     )

@@ -13,6 +13,7 @@ import surefoot
 from surefoot.models.facts import RobotFacts
 from surefoot.scenarios.file.schema import RobotSettings, Scenario
 from surefoot.scenarios.log import LogWriter
+from surefoot.scenarios.many import slots
 from surefoot.scenarios.record import channels
 from surefoot.scenarios.run.skeleton import End, Progress
 from surefoot.scenarios.show.differences import WALL_CLOCK
@@ -208,3 +209,8 @@ def same_content_fixture() -> Callable[..., list[str]]:
 def alone(patch, module):
     """Let a module do in this process what it does in processes side by side; `patch` takes it back."""
     patch.setattr(module, "side_by_side", lambda work, given, *_: (work(*one) for one in given))
+
+
+def with_worker(patch, worker):
+    """Let a class of a worker, of a folder and whether it keeps all logs, make the runs of campaigns and checks."""
+    patch.setattr(slots, "local_workers", lambda folder, jobs, keep_all: [worker(folder, keep_all)])

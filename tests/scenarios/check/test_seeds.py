@@ -5,7 +5,7 @@ from dataclasses import replace
 from pathlib import Path
 
 import pytest
-from fake_walks import alone
+from fake_walks import alone, with_worker
 from typer.testing import CliRunner
 
 from surefoot.scenarios.check import check as checking
@@ -52,14 +52,14 @@ class Here:
 
     made, breaks = (), False
 
-    def __init__(self, folder):
-        self._folder = folder
+    def __init__(self, folder, keep_all):
+        self._folder, self._keep_all = folder, keep_all
 
     def __call__(self, point):
         Here.made = (*Here.made, point)
         if Here.breaks:
             return Record(point.id, "broken", ("its process ended",))
-        return perform(point, self._folder / SCRATCH, self._folder / LOGS, False)
+        return perform(point, self._folder / SCRATCH, self._folder / LOGS, self._keep_all)
 
     def close(self):
         pass
@@ -75,7 +75,7 @@ def in_this_process(monkeypatch, tmp_path):
 
 def in_one_process(patch):
     """Run everything in this process, and make the folder of the scenarios."""
-    patch.setattr(slots, "local_workers", lambda folder, jobs, keep_all: [Here(folder)])
+    with_worker(patch, Here)
     alone(patch, checking)
     Path("walks").mkdir()
 

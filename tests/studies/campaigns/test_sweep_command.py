@@ -11,6 +11,7 @@ import time
 from pathlib import Path
 
 import pytest
+from fake_walks import with_worker
 from strangers import listening
 
 from surefoot.scenarios.cli import program as cli
@@ -48,10 +49,7 @@ class Here:
 @pytest.fixture
 def surefoot(monkeypatch, capsys, tmp_path):
     """Run the command in this process."""
-    monkeypatch.setattr(
-        "surefoot.scenarios.many.slots.local_workers",
-        lambda folder, jobs, keep_all: [Here(folder, keep_all)],
-    )
+    with_worker(monkeypatch, Here)
     (tmp_path / "short.yaml").write_text(CAMPAIGN % 2)
     monkeypatch.chdir(tmp_path)
 

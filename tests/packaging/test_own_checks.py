@@ -29,7 +29,7 @@ def test_a_strangers_baseline_is_written_holds_and_fails_when_the_walk_changes(g
         (tmp_path / f"{name}.scenario.yaml").write_text(WALK)
     written = give("surefoot", "check", "held.scenario.yaml", "--update")
     assert written.returncode == 0, written.stderr
-    assert "written: baselines/held.scenario.baseline.yaml" in written.stdout
+    assert "held.scenario: written\n  - baselines/held.scenario.baseline.yaml\n" in written.stdout
     ways = ("pytest", "-q", "-p", "no:cacheprovider", "-p", "no:xdist")
     passed = give(*ways)
     assert (passed.returncode, "2 passed" in passed.stdout) == (0, True), passed.stdout

@@ -19,7 +19,7 @@ from surefoot.wbc.controller import WholeBodyController
 sys.path.append(str(Path(__file__).parents[2] / "incidents"))
 
 from falls import FALLS, scenario_of
-from table import told
+from kinds import told
 
 pytestmark = pytest.mark.physics
 

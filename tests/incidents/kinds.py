@@ -1,6 +1,6 @@
 """The table of docs/incidents.md: ten falls, what of each is needed, and what `surefoot check` says of it.
 
-    python tests/incidents/table.py [KIND]... > docs/results/incidents.csv
+    python tests/incidents/kinds.py [KIND]... > docs/results/incidents.csv
 
 `python docs/reference.py` then puts it onto the page. With ``--seconds S`` the scenarios begin in the state of the log
 so long before the fall.
@@ -98,7 +98,7 @@ def main(words: Sequence[str] | None = None) -> None:
     parser.add_argument("kinds", nargs="*", metavar="KIND", default=list(FALLS))
     parser.add_argument("--seconds", type=float)
     given, code = parser.parse_args(words), relevant_versions()
-    print(f"# python tests/incidents/table.py\n# surefoot {code['surefoot']}, source_digest {code['source_digest']}")
+    print(f"# python tests/incidents/kinds.py\n# surefoot {code['surefoot']}, source_digest {code['source_digest']}")
     writer = csv.writer(sys.stdout, lineterminator="\n")
     writer.writerow(HEAD)
     for number, kind in enumerate(given.kinds):

@@ -99,8 +99,9 @@ def rotations(quaternions: Array) -> Array:
 def turn_each(quaternions: Array, R: Array) -> None:
     """Write what `rotations` gives into an array, shape (n, 3, 3)."""
     for k in range(quaternions.shape[0]):
-        x, y, z, w = quaternions[k, 0], quaternions[k, 1], quaternions[k, 2], quaternions[k, 3]
-        first, second, third = algebra.quaternion_rows(x, y, z, w)
+        first, second, third = algebra.quaternion_rows(
+            quaternions[k, 0], quaternions[k, 1], quaternions[k, 2], quaternions[k, 3]
+        )
         algebra.put_row(R[k], 0, first)
         algebra.put_row(R[k], 1, second)
         algebra.put_row(R[k], 2, third)

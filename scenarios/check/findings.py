@@ -199,9 +199,8 @@ class _Held:
         sure, unsure = self._errors(error or self.of_metric)
         if self.paired:
             kinds = [(old, new) for old, new in zip(before, now, strict=True)]
-            both, lost, gained, neither = (
-                kinds.count(kind) for kind in ((True, True), (True, False), (False, True), (False, False))
-            )
+            lost, gained = kinds.count((True, False)), kinds.count((False, True))
+            both, neither = kinds.count((True, True)), kinds.count((False, False))
             chance, shown = mcnemar(lost, gained), paired_share(both, lost, gained, neither, unsure)
         else:
             chance, shown = fisher(then, today), unpaired_share(then, today, unsure)

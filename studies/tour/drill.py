@@ -27,9 +27,17 @@ MOST = (0.4, 0.25, 0.5)
 VELOCITIES, HELD, SETTLED = 8, 4.0, 2.0
 """Number of them, time for which each is commanded, and time from which on it is judged [-, s, s]."""
 
-AHEAD, PUSHED_STEP, PUSH_TIME, AFTER = 0.3, 5, 0.1, 3.0
-"""Speed at which a pushed robot walks [m/s], the step in which it is pushed, for how long, and how long it must stay up
-from then on [-, s, s]."""
+AHEAD = 0.3
+"""Speed at which a pushed robot walks [m/s]."""
+
+PUSHED_STEP = 5
+"""Step in which it is pushed."""
+
+PUSH_TIME = 0.1
+"""Duration of the push [s]."""
+
+AFTER = 3.0
+"""Time for which it must stay up from then on [s]."""
 
 LATEST = 12.0
 """Time by which that step must have come [s]."""

@@ -1,7 +1,7 @@
 """Parameters of the planner itself, apart from the gait."""
 
 import math
-from dataclasses import dataclass, field, fields, replace
+from dataclasses import dataclass, field, replace
 from enum import Enum
 
 import numpy as np
@@ -10,6 +10,7 @@ from surefoot.errors import ParameterError
 from surefoot.planner.model.jerk import BLOCK_STARTS
 from surefoot.planner.model.leg_chain import LegChain
 from surefoot.similarity import REFERENCE_SIZE, Similarity, quantity
+from surefoot.tunable import check, number, positive
 
 SOLVERS = ("daqp", "piqp")
 """The solvers of qpsolvers that are tried, in this order.
@@ -26,44 +27,36 @@ tolerances of `planner.laws.qp` meets DAQP's cost to 1e-10 (its jerk to 4e-4 m/s
 class GroundSearch:
     """A search in two stages: gently, since the ground is hardly below; then in haste, since waiting costs balance.
 
-    Attributes:
-        touchdown_speed: downward speed at touchdown [m/s].
-        speed: greatest downward speed after it [m/s].
-        acceleration: at which that speed is gained; a jump would shake the ZMP of the stance foot [m/s^2].
-        hurry_after: time from the touchdown after which the foot hurries, infinite for never [s].
-        hurry_speed: greatest downward speed then [m/s].
-        hurry_acceleration: at which that is gained [m/s^2].
-        unsure_speed: how much faster the touchdown is for each metre by which the ground's height is unsure [1/s].
-        unsure_acceleration: how much greater its acceleration is for each metre of that [1/s^2].
-        unsure_aim: how far below the ground a footstep is aimed, in standard deviations of its height [-].
-        most_unsure: deviation of the height beyond which nothing changes any more [m].
-        most_astray: by which feet are believed more over the map, or under it, than a step before (see `astray`) [m].
-
     Raises:
         ParameterError: a number is negative, an acceleration is zero, or one that must be finite is not.
     """
 
-    touchdown_speed: float = quantity(0.01, "m/s")
-    speed: float = quantity(0.15, "m/s")
-    acceleration: float = quantity(0.5, "m/s^2")
-    hurry_after: float = quantity(math.inf, "s")
-    hurry_speed: float = quantity(0.5, "m/s")
-    hurry_acceleration: float = quantity(16.0, "m/s^2")
-    unsure_speed: float = quantity(36.0, "1/s")
-    unsure_acceleration: float = quantity(5100.0, "1/s^2")
-    unsure_aim: float = quantity(1.5, "-")
-    most_unsure: float = quantity(2e-3, "m")
-    most_astray: float = quantity(6e-3, "m")
+    touchdown_speed: float = number(0.01, "m/s", "downward speed at touchdown")
+    speed: float = number(0.15, "m/s", "greatest downward speed after it")
+    acceleration: float = positive(
+        0.5, "m/s^2", "at which that speed is gained; a jump would shake the ZMP of the stance foot"
+    )
+    hurry_after: float = number(
+        math.inf, "s", "time from the touchdown after which the foot hurries, infinite for never", endless=True
+    )
+    hurry_speed: float = number(0.5, "m/s", "greatest downward speed then")
+    hurry_acceleration: float = positive(16.0, "m/s^2", "at which that is gained")
+    unsure_speed: float = number(
+        36.0, "1/s", "how much faster the touchdown is for each metre by which the ground's height is unsure"
+    )
+    unsure_acceleration: float = positive(
+        5100.0, "1/s^2", "how much greater its acceleration is for each metre of that"
+    )
+    unsure_aim: float = number(
+        1.5, "-", "how far below the ground a footstep is aimed, in standard deviations of its height"
+    )
+    most_unsure: float = number(2e-3, "m", "deviation of the height beyond which nothing changes any more")
+    most_astray: float = number(
+        6e-3, "m", "by which feet are believed more over the map, or under it, than a step before (see `astray`)"
+    )
 
     def __post_init__(self) -> None:
-        for entry in fields(self):
-            value = getattr(self, entry.name)
-            key, what = ("parameters", "search", entry.name), f"{entry.name} of the ground search is {value:g}"
-            least = "greater than 0" if entry.name.endswith("acceleration") else "at least 0"
-            if not value >= 0.0 or (value == 0.0 and least == "greater than 0"):
-                raise ParameterError(key, what, f"it must be {least}")
-            if not math.isfinite(value) and entry.name != "hurry_after":
-                raise ParameterError(key, what, "it must be finite")
+        check(self, "parameters", "search", of="the ground search")
 
     def for_deviation(self, deviation: float, over: float = 0.0) -> tuple["GroundSearch", float]:
         """The search for ground of unsure height, and how far below it the footstep is to be aimed [m].
@@ -178,89 +171,130 @@ class RecoveryParameters:
     Each is a key ``planner.recovery.*`` of a scenario, described as here. Those with a unit beside their default follow
     the robot's size. What each moves when it is halved or doubled is measured by the campaign ``recovery-numbers`` and
     reported in docs/recovery-results.md, with the tests that notice those which move no threshold.
-
-    Attributes:
-        second_weight: cost of a squared shift of the second step; the other weights count against it [1/m^2].
-        shift_weight: cost of a squared shift of the next footstep; small, since that step is the means [1/m^2].
-        time_weight: cost of a squared change of the times left, as shares of a step; small changes are cheap [-].
-        stretch_weight: cost of the squared way by which the stance hip is out of its leg's reach at landing [1/m^2].
-        swing_weight: cost of a squared way that the hips cannot swing the foot in time; nearly a constraint [1/m^2].
-        cross_factor: factor, before squaring, of a second shift that is to cross: legs cross less than they spread [-].
-        least_saving: cost that other times must save; between equal ones the plan would go to and fro [-].
-        cop_share: share of the ZMP box on which an adjusted step counts; the rest corrects what comes later [-].
-        landing_share: DCM error at landing, as a share of the CoP's box, that an adjusted step may leave [-].
-        landing_spare: the same for long boxes: all of the box but this [m].
-        tolerance: DCM error beyond what the CoP holds at which a step is adjusted, or in a stand its foot chosen [m].
-        unheld_share: the same of feet whose CoP cannot be moved at will, as a share of the ZMP box [-].
-        stand_share: share of the ZMP box of a stand that holds a DCM error without any step [-].
-        again_cost: cost of its next step above which the foot that has just landed does not step again [-].
-        time_changes: changes of the times left that are tried, close where a swing's reach grows fast [s].
-        least_double: time left of a double support below which none is cut; the load has to go over [s].
-        least_single: time left of a single support below which none is cut; a foot has to lift and land [s].
-        apart: distance of a foot from its place beside the other at which it is brought back there [m].
-        calm: DCM error below which a standing robot brings it back; a step at more would be a second push [m].
-        margin_times: shares between the shortest and longest single support at which the margin is evaluated [-].
-        longer: by how much the margin lets a single support last longer [s].
-        most_steps: steps that the margin counts with; the sum over more of them has converged [-].
-        fall_margin: how far outside the capture margin the DCM is of a robot that will fall [m].
-        fall_plans: plans on end with the DCM so far outside that tell a fall; a touchdown makes up for fewer [-].
-        regained_plans: plans on end with margin that take it back; fewer come in the middle of falls [-].
-        sole_gap: least distance of soles side by side [m].
-        across: how far beyond its stance foot a foot may land, with the thighs apart [m].
-        clear: gap of soles one ahead of the other from which on the foot may cross [m].
-        spanned: share of what both legs span at a height that a step makes use of: the body is not midway [-].
-        parallel: angle up to which feet count as parallel, and the room of a footstep as the same in both frames [rad].
-        lifting: vertical acceleration of the CoM in a height transition; like gravity the same for all sizes [m/s^2].
-        same_height: change of the wanted lowering that begins no height transition [m].
-        offset_ticks: plans for which an offset of the legs serves; making it costs more than the rest of one [-].
-        same_swing: shift of a footstep for which it serves: it moves the DCM by less than a millimetre [m].
     """
 
-    second_weight: float = quantity(1.0, "1/m^2")
-    shift_weight: float = quantity(0.02, "1/m^2")
-    time_weight: float = quantity(0.38, "-")
-    stretch_weight: float = quantity(1.0, "1/m^2")
-    swing_weight: float = quantity(40.0, "1/m^2")
-    cross_factor: float = quantity(3.0, "-")
-    least_saving: float = quantity(0.001, "-")
-    cop_share: float = quantity(0.8, "-")
-    landing_share: float = quantity(0.5, "-")
-    landing_spare: float = quantity(0.03, "m")
-    tolerance: float = quantity(0.02, "m")
-    unheld_share: float = quantity(0.5, "-")
-    stand_share: float = quantity(0.85, "-")
-    again_cost: float = quantity(1.75, "-")
-    time_changes: tuple[float, ...] = quantity(tuple(map(float, _TIME_CHANGES)), "s")
-    least_double: float = quantity(0.04, "s")
-    least_single: float = quantity(0.10, "s")
-    apart: float = quantity(0.03, "m")
-    calm: float = quantity(0.005, "m")
-    margin_times: tuple[float, ...] = quantity((0.0, 0.1, 0.2, 0.3, 0.4, 0.5, 0.7, 1.0), "-")
-    longer: float = quantity(0.2, "s")
-    most_steps: int = 5
-    fall_margin: float = quantity(0.15, "m")
-    fall_plans: int = 3
-    regained_plans: int = 5
-    sole_gap: float = quantity(0.01, "m")
-    across: float = quantity(0.12, "m")
-    clear: float = quantity(0.02, "m")
-    spanned: float = quantity(0.75, "-")
-    parallel: float = quantity(0.02, "-")
-    lifting: float = 5.0
-    same_height: float = quantity(0.005, "m")
-    offset_ticks: int = 5
-    same_swing: float = quantity(0.005, "m")
+    second_weight: float = positive(
+        1.0, "1/m^2", "cost of a squared shift of the second step; the other weights count against it"
+    )
+    shift_weight: float = positive(
+        0.02,
+        "1/m^2",
+        "cost of a squared shift of the next footstep; small, since that step is the means",
+    )
+    time_weight: float = positive(
+        0.38,
+        "-",
+        "cost of a squared change of the times left, as shares of a step; small changes are cheap",
+    )
+    stretch_weight: float = positive(
+        1.0,
+        "1/m^2",
+        "cost of the squared way by which the stance hip is out of its leg's reach at landing",
+    )
+    swing_weight: float = positive(
+        40.0,
+        "1/m^2",
+        "cost of a squared way that the hips cannot swing the foot in time; nearly a constraint",
+    )
+    cross_factor: float = positive(
+        3.0,
+        "-",
+        "factor, before squaring, of a second shift that is to cross: legs cross less than they spread",
+    )
+    least_saving: float = positive(
+        0.001, "-", "cost that other times must save; between equal ones the plan would go to and fro"
+    )
+    cop_share: float = positive(
+        0.8,
+        "-",
+        "share of the ZMP box on which an adjusted step counts; the rest corrects what comes later",
+    )
+    landing_share: float = positive(
+        0.5, "-", "DCM error at landing, as a share of the CoP's box, that an adjusted step may leave"
+    )
+    landing_spare: float = positive(0.03, "m", "the same for long boxes: all of the box but this")
+    tolerance: float = positive(
+        0.02,
+        "m",
+        "DCM error beyond what the CoP holds at which a step is adjusted, or in a stand its foot chosen",
+    )
+    unheld_share: float = positive(
+        0.5, "-", "the same of feet whose CoP cannot be moved at will, as a share of the ZMP box"
+    )
+    stand_share: float = positive(0.85, "-", "share of the ZMP box of a stand that holds a DCM error without any step")
+    again_cost: float = positive(
+        1.75, "-", "cost of its next step above which the foot that has just landed does not step again"
+    )
+    time_changes: tuple[float, ...] = number(
+        tuple(map(float, _TIME_CHANGES)),
+        "s",
+        "changes of the times left that are tried, close where a swing's reach grows fast",
+        least=-math.inf,
+    )
+    least_double: float = positive(
+        0.04, "s", "time left of a double support below which none is cut; the load has to go over"
+    )
+    least_single: float = positive(
+        0.10, "s", "time left of a single support below which none is cut; a foot has to lift and land"
+    )
+    apart: float = positive(
+        0.03, "m", "distance of a foot from its place beside the other at which it is brought back there"
+    )
+    calm: float = positive(
+        0.005,
+        "m",
+        "DCM error below which a standing robot brings it back; a step at more would be a second push",
+    )
+    margin_times: tuple[float, ...] = number(
+        (0.0, 0.1, 0.2, 0.3, 0.4, 0.5, 0.7, 1.0),
+        "-",
+        "shares between the shortest and longest single support at which the margin is evaluated",
+    )
+    longer: float = positive(0.2, "s", "by how much the margin lets a single support last longer")
+    most_steps: int = positive(
+        5, "-", "steps that the margin counts with; the sum over more of them has converged", most=1000
+    )
+    fall_margin: float = positive(0.15, "m", "how far outside the capture margin the DCM is of a robot that will fall")
+    fall_plans: int = positive(
+        3, "-", "plans on end with the DCM so far outside that tell a fall; a touchdown makes up for fewer", most=1000
+    )
+    regained_plans: int = positive(
+        5, "-", "plans on end with margin that take it back; fewer come in the middle of falls", most=1000
+    )
+    sole_gap: float = positive(0.01, "m", "least distance of soles side by side")
+    across: float = positive(0.12, "m", "how far beyond its stance foot a foot may land, with the thighs apart")
+    clear: float = positive(0.02, "m", "gap of soles one ahead of the other from which on the foot may cross")
+    spanned: float = positive(
+        0.75,
+        "-",
+        "share of what both legs span at a height that a step makes use of: the body is not midway",
+    )
+    parallel: float = positive(
+        0.02,
+        "rad",
+        "angle up to which feet count as parallel, and the room of a footstep as the same in both frames",
+    )
+    lifting: float = positive(
+        5.0,
+        "m/s^2",
+        "vertical acceleration of the CoM in a height transition; like gravity the same for all sizes",
+        sized=False,
+    )
+    same_height: float = positive(0.005, "m", "change of the wanted lowering that begins no height transition")
+    offset_ticks: int = positive(
+        5, "-", "plans for which an offset of the legs serves; making it costs more than the rest of one", most=1000
+    )
+    same_swing: float = positive(
+        0.005, "m", "shift of a footstep for which it serves: it moves the DCM by less than a millimetre"
+    )
+
+    def __post_init__(self) -> None:
+        check(self, "planner", "recovery")
 
     @property
     def longest_cut(self) -> float:
         """The greatest cut among the changes of a time [s]. It is infinite without any cut."""
         return max(-min(self.time_changes, default=0.0), 0.0) or math.inf
-
-
-_ZERO_TOO = (
-    "late_touchdown", "freeze_time", "freeze_catching", "touchdown_lead", "terminal_weight", "jerk_weight",
-    "compliance_margin",
-)  # fmt: skip
 
 
 @dataclass(frozen=True, slots=True)
@@ -270,36 +304,9 @@ class PlannerParameters:
     Those of a robot of another size are these, scaled by their units (see `surefoot.similarity`).
 
     Attributes:
-        sample_time: T_s [s].
-        horizon: samples over which the jerk is planned (N_p).
-        preview: samples beyond the horizon in which known footsteps still shape the terminal DCM bound and ω.
         moves: first sample of each block of constant jerk (see `planner.model.jerk`).
-        jerk_limit: bound of the CoM jerk per axis [m/s^3].
-        jerk_rate_limit: bound of its change from one block to the next [m/s^3 per sample]; infinite for none.
-        jerk_weight: cost of a squared move, against 1 for a squared ZMP error [(m / (m/s^3))^2].
-        terminal_weight: cost of the squared DCM error at the end of the horizon; 2 / (ω T_s) is the cost-to-go of the
-            best linear DCM feedback, 32 at 1 m [-].
-        step_weight: cost of a squared footstep shift; smaller ones shorten the nominal steps [-].
-        zmp_slack: quadratic and linear cost of leaving the ZMP box [-, m].
-        terminal_slack: quadratic and linear cost of leaving the terminal DCM bound [-, m].
-        foot_margin: share of the foot in which the ZMP must stay (the paper's 90 %) [-].
-        cop_room: how far from the sole's centre, forward and sideways, the ankles' torques let the CoP go [m].
-        cop_authority: how far the CoP of one foot can be moved against a disturbance, forward and sideways; feet that
-            stand on an edge have none sideways, and a step catches what other feet would hold [m].
-        terminal_margin: share of the box's half size that bounds the terminal DCM [-].
         leg: inertia of the legs; the default is the paper's point mass without any.
         step_adaptation: what a disturbance may change about the footsteps.
-        reach_length: largest distance of a footstep ahead of or behind the stance foot [m].
-        reach_width: smallest and largest lateral distance of a footstep from the stance foot [m].
-        compliance_margin: change of a footstep that the paper's step law does not ask for [m].
-        swing_speed: fastest mean speed of the swing foot to a shifted footstep, where the legs are not known [m/s].
-        freeze_time: time before touchdown from which the footstep is fixed [s].
-        freeze_catching: that time of a step that catches the body, since until then the DCM may go on elsewhere; not on
-            faces that were chosen [s].
-        late_touchdown: longest wait of the phase clock for a touchdown [s].
-        apex_share: share of single support after which the swing sole is highest; a late apex keeps the sole high while
-            the leg is stretched furthest, shortly before touchdown [-].
-        touchdown_lead: the swing ends this long before single support does, so that the foot is felt in time [s].
         search: speed of the swing foot at the planned touchdown, and how it goes on while it feels no ground.
         recovery: numbers of step adjustment, capture margin and what belongs to them.
         solvers: QP solvers of qpsolvers, in the order in which they are tried (see `planner.laws.law` for the choice).
@@ -309,44 +316,81 @@ class PlannerParameters:
         ParameterError: a number is not positive, or not finite where it must be.
     """
 
-    sample_time: float = quantity(0.02, "s")
-    horizon: int = 50
-    preview: int = 100
+    sample_time: float = positive(0.02, "s", "T_s")
+    horizon: int = positive(50, "-", "samples over which the jerk is planned (N_p)")
+    preview: int = positive(
+        100,
+        "-",
+        "samples beyond the horizon in which known footsteps still shape the terminal DCM bound and ω",
+    )
     moves: tuple[int, ...] = BLOCK_STARTS
-    jerk_limit: float = quantity(60.0, "m/s^3")
-    jerk_rate_limit: float = quantity(math.inf, "m/s^3")
-    jerk_weight: float = quantity(1e-6, "s^6")
-    terminal_weight: float = quantity(32.0, "-")
-    step_weight: float = quantity(30.0, "-")
-    zmp_slack: tuple[float, float] = quantity((1e3, 30.0), "-, m")
-    terminal_slack: tuple[float, float] = quantity((1e3, 10.0), "-, m")
-    foot_margin: float = quantity(0.9, "-")
-    cop_room: tuple[float, float] = quantity((math.inf, math.inf), "m")
-    cop_authority: tuple[float, float] = quantity((math.inf, math.inf), "m")
-    terminal_margin: float = quantity(0.8, "-")
+    jerk_limit: float = positive(60.0, "m/s^3", "bound of the CoM jerk per axis")
+    jerk_rate_limit: float = positive(
+        math.inf,
+        "m/s^3",
+        "bound of its change from one block to the next, per sample; infinite for none",
+        endless=True,
+    )
+    jerk_weight: float = number(1e-6, "s^6", "cost of a squared move, against 1 for a squared ZMP error")
+    terminal_weight: float = number(
+        32.0,
+        "-",
+        "cost of the squared DCM error at the end of the horizon; the cost-to-go of the best linear DCM feedback is "
+        "2 / (ω T_s), 32 at 1 m",
+    )
+    step_weight: float = positive(30.0, "-", "cost of a squared footstep shift; smaller ones shorten the nominal steps")
+    zmp_slack: tuple[float, float] = number((1e3, 30.0), "-, m", "quadratic and linear cost of leaving the ZMP box")
+    terminal_slack: tuple[float, float] = number(
+        (1e3, 10.0), "-, m", "quadratic and linear cost of leaving the terminal DCM bound"
+    )
+    foot_margin: float = positive(0.9, "-", "share of the foot in which the ZMP must stay (the paper's 90 %)")
+    cop_room: tuple[float, float] = number(
+        (math.inf, math.inf),
+        "m",
+        "how far from the sole's centre, forward and sideways, the ankles' torques let the CoP go",
+        endless=True,
+    )
+    cop_authority: tuple[float, float] = number(
+        (math.inf, math.inf),
+        "m",
+        "how far the CoP of one foot can be moved against a disturbance, forward and sideways; feet that stand on an "
+        "edge have none sideways, and a step catches what other feet would hold",
+        endless=True,
+    )
+    terminal_margin: float = positive(0.8, "-", "share of the box's half size that bounds the terminal DCM")
     leg: LegInertia = LegInertia()
     step_adaptation: StepAdaptation = StepAdaptation.CROSSING
-    reach_length: float = quantity(0.4, "m")
-    reach_width: tuple[float, float] = quantity((0.08, 0.4), "m")
-    compliance_margin: float = quantity(0.05, "m")
-    swing_speed: float = quantity(3.0, "m/s")
-    freeze_time: float = quantity(0.08, "s")
-    freeze_catching: float = quantity(0.04, "s")
-    late_touchdown: float = quantity(0.3, "s")
-    apex_share: float = quantity(0.5, "-")
-    touchdown_lead: float = quantity(0.02, "s")
+    reach_length: float = positive(0.4, "m", "largest distance of a footstep ahead of or behind the stance foot")
+    reach_width: tuple[float, float] = number(
+        (0.08, 0.4), "m", "smallest and largest lateral distance of a footstep from the stance foot"
+    )
+    compliance_margin: float = number(0.05, "m", "change of a footstep that the paper's step law does not ask for")
+    swing_speed: float = positive(
+        3.0,
+        "m/s",
+        "fastest mean speed of the swing foot to a shifted footstep, where the legs are not known",
+    )
+    freeze_time: float = number(0.08, "s", "time before touchdown from which the footstep is fixed")
+    freeze_catching: float = number(
+        0.04,
+        "s",
+        "that time of a step that catches the body, since until then the DCM may go on elsewhere; not on faces that "
+        "were chosen",
+    )
+    late_touchdown: float = number(0.3, "s", "longest wait of the phase clock for a touchdown")
+    apex_share: float = positive(
+        0.5,
+        "-",
+        "share of single support after which the swing sole is highest; a late apex keeps the sole high while the leg "
+        "is stretched furthest, shortly before touchdown",
+    )
+    touchdown_lead: float = number(
+        0.02, "s", "the swing ends this long before single support does, so that the foot is felt in time"
+    )
     search: GroundSearch = field(default_factory=GroundSearch)
     recovery: RecoveryParameters = RecoveryParameters()
     solvers: tuple[str, str] = SOLVERS
     size: Similarity = REFERENCE_SIZE
 
     def __post_init__(self) -> None:
-        for entry in fields(self):
-            value = getattr(self, entry.name)
-            if not isinstance(value, int | float) or 0 < value < math.inf:
-                continue
-            key, what = ("parameters", entry.name), f"{entry.name} is {value:g}"
-            if not (value > 0 or (entry.name in _ZERO_TOO and value == 0)):
-                raise ParameterError(key, what, "it must be greater than 0")
-            if not math.isfinite(value) and entry.name != "jerk_rate_limit":
-                raise ParameterError(key, what, "it must be finite")
+        check(self, "parameters", of="the planner")

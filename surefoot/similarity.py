@@ -105,7 +105,7 @@ class Similarity:
                 changed[entry.name] = self
             elif is_dataclass(value):
                 changed[entry.name] = self.scaled(value)
-            elif "unit" in entry.metadata:
+            elif "unit" in entry.metadata and entry.metadata.get("sized", True):
                 changed[entry.name] = self.times(value, entry.metadata["unit"])
         return replace(group, **changed) if changed else group  # type: ignore[type-var]
 

@@ -2,9 +2,8 @@
 
 from dataclasses import dataclass, field
 
-from surefoot.errors import ParameterError
 from surefoot.similarity import REFERENCE_SIZE, Similarity
-from surefoot.wbc.tunable import check, number
+from surefoot.tunable import check, choice, number, positive
 
 SOLVER_NAMES = ("equality-first", "daqp", "proxqp")
 """Names of the solvers of the QP, which `wbc.qp.solvers` has."""
@@ -50,11 +49,11 @@ class TaskWeights:
     upper_posture: float = number(0.5, "s^4", "joint acceleration of waist, arms and head")
     upper_posture_catching: float = number(0.05, "s^4", "the same while a step is adapted to catch the body")
     leg_posture: float = number(1e-5, "s^4", "joint acceleration of the legs")
-    acceleration: float = number(
-        1e-5, "s^4/m^2", "any generalised acceleration, an angular one times the robot's size", positive=True
+    acceleration: float = positive(
+        1e-5, "s^4/m^2", "any generalised acceleration, an angular one times the robot's size"
     )
-    force: float = number(1e-6, "1/N^2", "sole force less its planned share of the weight", positive=True)
-    moment: float = number(1e-4, "1/(N·m)^2", "moment at a sole's centre", positive=True)
+    force: float = positive(1e-6, "1/N^2", "sole force less its planned share of the weight")
+    moment: float = positive(1e-4, "1/(N·m)^2", "moment at a sole's centre")
 
     def __post_init__(self) -> None:
         check(self, "wbc", "weights")
@@ -96,9 +95,7 @@ class BalanceGains:
     dcm: float = number(3.0, "-", "ZMP moved per DCM error")
     height_stiffness: float = number(60.0, "1/s^2", "vertical stiffness per mass")
     height_damping: float = number(15.0, "1/s", "vertical damping per mass")
-    polygon_share: float = number(
-        0.95, "-", "share of the support polygon that the commanded ZMP may use", positive=True, most=1.0
-    )
+    polygon_share: float = positive(0.95, "-", "share of the support polygon that the commanded ZMP may use", most=1.0)
     beyond_catching: float = number(
         0.07,
         "m",
@@ -141,16 +138,12 @@ class ContactParameters:
     """
 
     felt_force: float = number(8.0, "N", "normal force above which a foot feels the ground")
-    felt_ticks: int = number(
-        2, "-", "consecutive control ticks, at the usual rate, of that force before it counts", positive=True
-    )
+    felt_ticks: int = positive(2, "-", "consecutive control ticks, at the usual rate, of that force before it counts")
     early_progress: float = number(0.6, "-", "share of its swing from which a swing foot may land", most=1.0)
     early_cap: float = number(50.0, "N", "load allowed on a foot that landed before its time")
-    loading_time: float = number(
-        0.05, "s", "time in which a landed foot's allowed load grows to the full weight", positive=True
-    )
-    unloading_time: float = number(
-        0.1, "s", "time before lift-off in which a foot's allowed load shrinks to its planned share", positive=True
+    loading_time: float = positive(0.05, "s", "time in which a landed foot's allowed load grows to the full weight")
+    unloading_time: float = positive(
+        0.1, "s", "time before lift-off in which a foot's allowed load shrinks to its planned share"
     )
     share_margin: float = number(
         0.5, "-", "allowed load above the planned share at the start of unloading, of the weight"
@@ -171,8 +164,8 @@ class SeparationParameters:
     """
 
     clearance: float = number(0.003, "m", "distance that must remain")
-    attention: float = number(0.05, "m", "distance from which a pair is looked at", positive=True)
-    horizon: float = number(0.02, "s", "time constant T of the critically damped approach", positive=True)
+    attention: float = positive(0.05, "m", "distance from which a pair is looked at")
+    horizon: float = positive(0.02, "s", "time constant T of the critically damped approach")
     slots: int = number(3, "-", "pairs that are looked at in one tick, the nearest ones")
 
     def __post_init__(self) -> None:
@@ -207,16 +200,10 @@ class WbcParameters:
     contact: ContactGains = field(default_factory=ContactGains)
     schedule: ContactParameters = field(default_factory=ContactParameters)
     separation: SeparationParameters = field(default_factory=SeparationParameters)
-    solver: str = field(default="equality-first", metadata={"doc": "QP solver that is tried first"})
-    second_solver: str = field(default="proxqp", metadata={"doc": "QP solver that is tried when the first fails"})
+    solver: str = choice("equality-first", SOLVER_NAMES, "QP solver that is tried first")
+    second_solver: str = choice("proxqp", SOLVER_NAMES, "QP solver that is tried when the first fails")
     arm_swing: float = number(0.6, "rad/m", "swing of the shoulders per stride")
     size: Similarity = REFERENCE_SIZE
 
     def __post_init__(self) -> None:
         check(self, "wbc")
-        for name in ("solver", "second_solver"):
-            value = getattr(self, name)
-            if value not in SOLVER_NAMES:
-                raise ParameterError(
-                    ("wbc", name), f"wbc.{name} is '{value}'", f"choose one of {', '.join(sorted(SOLVER_NAMES))}"
-                )

@@ -15,6 +15,8 @@ from surefoot.planner.plan.plan import Planner
 from surefoot.planner.references.com_height import HeightProfile, PaperHeight
 from surefoot.planner.rules import RULES, Rule
 
+_BOUNDS = ("jerk_limit", "jerk_rate_limit")
+
 
 @dataclass(frozen=True, slots=True)
 class Profile:
@@ -32,6 +34,7 @@ class Profile:
         planner: makes a planner that takes the place of `planner.planner.WalkingPlanner`, from the same arguments; None
             for that one.
         rules: what is made of the steps to come, in their order (see `planner.rules`).
+        numbers: bounds and weights among its parameters that its law reads, and a scenario may therefore change.
     """
 
     name: str
@@ -43,6 +46,7 @@ class Profile:
     catches: bool = False
     planner: Callable[..., Planner] | None = None
     rules: tuple[Rule, ...] = RULES
+    numbers: tuple[str, ...] = _BOUNDS
 
 
 _PAPER = PlannerParameters(
@@ -59,9 +63,13 @@ _REPAIRED = replace(_PAPER, moves=BLOCK_STARTS)
 
 _SAID = PROFILES.said
 
-DEFAULT = Profile("default", _SAID["default"], PlannerParameters(), FootstepTvmpc, True, catches=True)
-PAPER = Profile("paper", _SAID["paper"], _PAPER, paper_law, moves=True, height=PaperHeight())
-REPAIRED = Profile("repaired", _SAID["repaired"], _REPAIRED, repaired_law, moves=True)
-LTI = Profile("lti", _SAID["lti"], PlannerParameters(), ConstantHeightTvmpc, True, catches=True)
+_WEIGHED = (*_BOUNDS, "jerk_weight", "terminal_weight", "step_weight")
+
+DEFAULT = Profile("default", _SAID["default"], PlannerParameters(), FootstepTvmpc, True, catches=True, numbers=_WEIGHED)
+PAPER = Profile(
+    "paper", _SAID["paper"], _PAPER, paper_law, True, height=PaperHeight(), numbers=(*_BOUNDS, "jerk_weight")
+)
+REPAIRED = Profile("repaired", _SAID["repaired"], _REPAIRED, repaired_law, True, numbers=(*_BOUNDS, "jerk_weight"))
+LTI = Profile("lti", _SAID["lti"], PlannerParameters(), ConstantHeightTvmpc, True, catches=True, numbers=_WEIGHED)
 PREVIEW = Profile("preview", _SAID["preview"], PlannerParameters(), ZmpPreview, moves=False)
 DCM = Profile("dcm", _SAID["dcm"], PlannerParameters(), DcmFeedback, moves=False)

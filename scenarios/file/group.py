@@ -1,19 +1,20 @@
 """Groups of scenario keys, and keys that are made from parameters' fields."""
 
-import re
-from collections.abc import Iterator
+import math
+from collections.abc import Container, Iterator, Mapping
 from dataclasses import Field as DataclassField
 from dataclasses import fields, is_dataclass, replace
-from typing import TYPE_CHECKING, Annotated, Any, TypeVar, get_args
+from types import MappingProxyType
+from typing import TYPE_CHECKING, Annotated, Any, Literal, TypeVar, get_args
 
 from pydantic import BaseModel, BeforeValidator, ConfigDict, Field, create_model
 
-from surefoot.errors import ParameterError
-from surefoot.planner.parameters import RecoveryParameters
+from surefoot.planner.parameters import PlannerParameters, RecoveryParameters
 from surefoot.scenarios.documented import doc_of
 from surefoot.scenarios.file.names import OneOf
 from surefoot.scenarios.file.units import Unit
 from surefoot.similarity import REFERENCE_SIZE, Similarity
+from surefoot.tunable import Range
 from surefoot.wbc.parameters import WbcParameters
 
 T = TypeVar("T")
@@ -73,53 +74,60 @@ WHOLE = BeforeValidator(_whole)
 """Takes 5.0 for 5, as JSON Schema does."""
 
 
-def _group(name: str, parameters: Any, doc: str, more: dict[str, Any] | None = None) -> type[Group]:
-    """A group with a key for every field of a dataclass, each null by default: the controller's own value."""
+def _group(
+    name: str,
+    parameters: Any,
+    doc: str,
+    more: Mapping[str, Any] = MappingProxyType({}),
+    only: Container[str] = (),
+) -> type[Group]:
+    """A group with a key for each number of a dataclass, or for those named; null is the value that it has."""
     values = {entry: getattr(parameters, entry.name) for entry in fields(parameters)}
-    keys = {entry.name: _key(entry, value) for entry, value in values.items() if not isinstance(value, Similarity)}
-    made: type[Group] = create_model(name, __base__=Group, __doc__=doc, __module__=__name__, **keys, **(more or {}))
+    chosen = {entry: value for entry, value in values.items() if not isinstance(value, Similarity)}
+    if only:
+        chosen = {entry: value for entry, value in values.items() if entry.name in only}
+    keys = {entry.name: _key(entry, value, "the profile's own" if only else None) for entry, value in chosen.items()}
+    made: type[Group] = create_model(name, __base__=Group, __doc__=doc, __module__=__name__, **keys, **more)
     globals()[name] = made  # where pickle looks for it
     return made
 
 
-def _key(entry: "DataclassField[Any]", value: Any) -> Any:
+def _key(entry: "DataclassField[Any]", value: Any, null: str | None) -> Any:
+    """A key for a field, null by default; its range is the field's.
+
+    Args:
+        entry: the field.
+        value: its value.
+        null: name of what null stands for; None for this value.
+    """
     if is_dataclass(value):
         inner = _group(f"Wbc{entry.name.title()}", value, f"wbc.{entry.name}, null: the controller's own.")
         return inner | None, key(None, f"{entry.name}, null: the controller's own")
-    if "doc" not in entry.metadata:
-        return _planner_key(entry, value)
     doc, unit = entry.metadata["doc"], entry.metadata.get("unit")
-    shown = list(value) if isinstance(value, tuple) else value
-    kind = _annotation(value)
-    annotation = Annotated[kind, Unit(unit)] if unit and not isinstance(value, tuple) else kind
-    described = f"{doc}, null: {shown}" + (f" [{unit}]" if isinstance(value, tuple) else "")
-    return annotation | None, key(None, described)
-
-
-def _planner_key(entry: "DataclassField[Any]", value: Any) -> Any:
-    """One of the planner's, whose meaning is in the docstring of its dataclass and is positive."""
-    doc, unit = _RECOVERY[entry.name]
+    names = entry.metadata.get("names")
+    kind = Literal[names] if names else _kind(value, entry.metadata["range"])
     if isinstance(value, tuple):
-        return _annotation(value) | None, key(None, f"{doc}, null: the planner's own [{unit}]")
-    least = (
-        Annotated[int, Field(ge=1, le=1000), WHOLE] if isinstance(value, int) else Annotated[float, Field(gt=0, le=1e9)]
-    )
-    annotation = Annotated[least, Unit(unit)] if "unit" in entry.metadata else least
-    described = f"{doc}, null: {value}" + (f" [{unit}]" if "unit" not in entry.metadata else "")
-    return annotation | None, key(None, described)
+        shown = list(value) if len(value) <= _SHOWN else "the planner's own"
+        return kind | None, key(None, f"{doc}, null: {shown} [{unit}]")
+    sized = unit if entry.metadata.get("sized", True) else None
+    described = f"{doc}, null: {null or value}" + ("" if sized or not unit else f" [{unit}]")
+    return (Annotated[kind, Unit(sized)] if sized else kind) | None, key(None, described)
 
 
-_RECOVERY = {
-    name: (doc, unit) for name, doc, unit in re.findall(r"(?m)^ +(\w+): (.*) \[(.*)\]\.$", doc_of(RecoveryParameters))
-}
-"""Meaning and unit of each number of the planner's recovery."""
+_SHOWN = 3
+"""Numbers that the description of a key tells of its default."""
+
+_MOST = 1e9
+"""The greatest number that a key takes where its field sets no end."""
 
 
-def _annotation(value: Any) -> Any:
-    """Type of a key whose default is this value; its range is the controller's to know."""
+def _kind(value: Any, within: Range) -> Any:
+    """Type of a key whose default is this value, with its range."""
     if isinstance(value, tuple):
-        return Annotated[tuple[(float,) * len(value)], BeforeValidator(as_tuple)]  # type: ignore[misc]
-    return Annotated[int, WHOLE] if isinstance(value, int) else str if isinstance(value, str) else float
+        return Annotated[tuple[tuple(_kind(part, within) for part in value)], BeforeValidator(as_tuple)]  # type: ignore[misc]
+    least: dict[str, Any] = {} if within.least == -math.inf else {"gt" if within.positive else "ge": within.least}
+    ends = Field(**least, le=min(within.most, _MOST))
+    return Annotated[int, ends, WHOLE] if isinstance(value, int) else Annotated[float, ends]
 
 
 if TYPE_CHECKING:
@@ -165,6 +173,24 @@ else:
     )
 
 
+LAW_NUMBERS = ("jerk_limit", "jerk_rate_limit", "jerk_weight", "terminal_weight", "step_weight")
+"""Numbers of the planner's law of motion that a scenario may change, each a key of its group ``planner``."""
+
+if TYPE_CHECKING:
+
+    class LawSettings(Group):
+        """Numbers of the law of motion."""
+
+        jerk_limit: float | None
+        jerk_rate_limit: float | None
+        jerk_weight: float | None
+        terminal_weight: float | None
+        step_weight: float | None
+
+else:
+    LawSettings = _group("LawSettings", PlannerParameters(), "Numbers of the law of motion.", only=LAW_NUMBERS)
+
+
 def recovery_parameters(settings: "RecoverySettings | None", usual: RecoveryParameters) -> RecoveryParameters:
     """Numbers of a planner's recovery, with what a scenario's group ``planner.recovery``, if any, changes of them."""
     changed: RecoveryParameters = _changed(usual, settings)
@@ -179,25 +205,6 @@ def controller_parameters(settings: "ControllerSettings | None", size: Similarit
     """
     changed: WbcParameters = _changed(size.scaled(WbcParameters()), settings)
     return changed
-
-
-def controller_faults(settings: "ControllerSettings | None") -> list[ParameterError]:
-    """List what `controller_parameters` would refuse of a group: the fault of every key, each looked at alone."""
-    faults = []
-    for alone in () if settings is None else _one_by_one(settings):
-        try:
-            controller_parameters(alone)
-        except ParameterError as fault:
-            faults.append(fault)
-    return faults
-
-
-def _one_by_one(settings: Any) -> Iterator[Any]:
-    """Copies of a group, with one key each that is not null."""
-    for name, value in settings:
-        parts = _one_by_one(value) if isinstance(value, BaseModel) else () if value is None else (value,)
-        for part in parts:
-            yield type(settings).model_construct(**{name: part})
 
 
 def _changed(parameters: Any, settings: Any) -> Any:

@@ -19,6 +19,7 @@ from surefoot.scenarios.file.group import (
     WHOLE,
     ControllerSettings,
     Group,
+    LawSettings,
     Many,
     RecoverySettings,
     Unfelt,
@@ -252,7 +253,7 @@ class Gait(Group):
     )
 
 
-class PlannerSettings(Group):
+class PlannerSettings(LawSettings):
     """The walking planner."""
 
     profile: Annotated[str, OneOf("planner", "profile")] = key(DEFAULTS["planner"], "formulation of the planner")
@@ -264,10 +265,6 @@ class PlannerSettings(Group):
     )
     sample_time: Annotated[float, Field(ge=1e-5, le=1), SECOND] = key(
         0.02, "sample time of the horizon, and of replanning"
-    )
-    jerk_limit: Annotated[Positive, Unit("m/s^3")] | None = key(None, "bound on the CoM jerk, null: the profile's own")
-    jerk_rate_limit: Annotated[Positive, Unit("m/s^3")] | None = key(
-        None, "bound on its change per sample, null: the profile's own"
     )
     step_adaptation: Literal["none", "location", "timing", "crossing"] = key(
         "crossing", "what of the next footsteps a push may change: where, when, beyond the stance foot"

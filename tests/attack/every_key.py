@@ -45,12 +45,13 @@ TEXTS = {
                apex_double: 0.001, heel_off: 0.1,
                heel_strike: 0.1}
         planner: {profile: repaired, horizon: 60, control_horizon: 3, jerk_limit: 20, jerk_rate_limit: 10,
-                  step_adaptation: none, knee: bent, rise: double, filter: kalman}
+                  jerk_weight: 1.0e-5, step_adaptation: none, knee: bent, rise: double, filter: kalman}
         sensing: {source: truth, zmp_noise: 0.001, com_noise: 0.001, force_estimate: false}
         """,
     "velocity": """
         duration: 0.06
         gait: {velocity: [{time: 0, v_x: 0.1, v_y: 0.02, yaw_rate: 0.05}, {time: 6}]}
+        planner: {terminal_weight: 30, step_weight: 20}
         """,
     "footsteps": """
         duration: 0.06

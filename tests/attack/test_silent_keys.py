@@ -13,6 +13,7 @@ WITHOUT_OCCASION = {
     "gait.velocity.0.time": "the walk begins when it may, by whichever command is in force then",
     "planner.jerk_limit": "a bound, which the motion may stay within",
     "planner.jerk_rate_limit": "a bound, which the motion may stay within",
+    "planner.step_weight": "weighs shifts of footsteps, which there are when the robot is pushed",
     "planner.step_adaptation": "acts when the robot is pushed",
     "planner.profile": "two of them agree on a robot that stands at a constant height",
     "planner.rise": "one of its values is what null means",

@@ -7,7 +7,7 @@ sheet says: those numbers were measured in simulated walks. Forces and moments a
 
 from dataclasses import dataclass
 
-from surefoot.wbc.tunable import check, number
+from surefoot.tunable import check, number, positive
 
 
 @dataclass(frozen=True, slots=True)
@@ -77,10 +77,10 @@ class ContactDetection:
     force: float = number(8.0, "N", "normal force that is felt by a sensor without noise")
     certain: float = number(4.0, "-", "deviations of the filtered force that are felt at least")
     released: float = number(0.5, "-", "share of that force below which a contact ends")
-    ticks: int = number(2, "-", "consecutive ticks after which a contact begins or ends", positive=True)
+    ticks: int = positive(2, "-", "consecutive ticks after which a contact begins or ends")
     anchor: float = number(0.08, "-", "share of the weight from which a sole that lands stands still")
     edge: float = number(0.9, "-", "share of the half sole within which its CoP is where it stands still")
-    tare_time: float = number(0.1, "s", "time constant of the tare of a swinging foot's sensor", positive=True)
+    tare_time: float = positive(0.1, "s", "time constant of the tare of a swinging foot's sensor")
     tare_height: float = number(0.008, "m", "height of a sole over the ground above which its sensor is tared")
     tared_after: float = number(0.15, "s", "swing after which a sensor counts as tared")
 
@@ -101,8 +101,8 @@ class EstimatorParameters:
     sensors: SensorNoise = SensorNoise()
     ground: GroundNoise = GroundNoise()
     contact: ContactDetection = ContactDetection()
-    covariance_rate: float = number(100.0, "Hz", "at which covariance and gain are computed", positive=True)
-    joint_bandwidth: float = number(80.0, "Hz", "of the joint observer for encoders of 1e-5 rad", positive=True)
+    covariance_rate: float = positive(100.0, "Hz", "at which covariance and gain are computed")
+    joint_bandwidth: float = positive(80.0, "Hz", "of the joint observer for encoders of 1e-5 rad")
 
     def __post_init__(self) -> None:
         check(self, "estimator")

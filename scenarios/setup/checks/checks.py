@@ -17,7 +17,6 @@ from surefoot.planner.swing.step_region import StepRegion, check_reach, soles_ap
 from surefoot.planner.swing.trajectory import FEWEST_SWING_SAMPLES
 from surefoot.planner.types import Footstep, Twist
 from surefoot.scenarios.errors import Key, Problem, nearest
-from surefoot.scenarios.file.group import controller_faults
 from surefoot.scenarios.file.schema import Gait
 from surefoot.scenarios.file.units import meant
 from surefoot.scenarios.setup.events import command_problems, cut_off, idle_commands, never_act, slight
@@ -138,8 +137,6 @@ def _controller(walk: Walk) -> Iterator[Problem]:
     wbc = walk.keys.wbc
     if wbc is not None and wbc.friction is not None and walk.keys.errors.friction != 0.0:
         yield Problem(("wbc", "friction"), "a believed friction beside errors.friction", "give one of them")
-    for fault in controller_faults(wbc):
-        yield Problem(fault.key, fault.what, fault.right)
 
 
 def _robot(walk: Walk, robots: Robots) -> Iterator[Problem]:

@@ -23,7 +23,7 @@ from surefoot.planner.swing.leg_reach import LegReach
 from surefoot.planner.swing.step_region import StepRegion
 from surefoot.planner.types import GRAVITY
 from surefoot.scenarios.errors import Problem, nearest
-from surefoot.scenarios.file.group import recovery_parameters
+from surefoot.scenarios.file.group import LAW_NUMBERS, recovery_parameters
 from surefoot.scenarios.file.schema import PlannerSettings
 from surefoot.scenarios.setup.groups.gait import longest_landing, step_region
 from surefoot.scenarios.setup.parts import profile_guard
@@ -130,8 +130,7 @@ class Formulation:
         chosen: dict[str, Any] = {
             "horizon": keys.horizon,
             "moves": None if keys.control_horizon is None else tuple(range(keys.control_horizon)),
-            "jerk_limit": keys.jerk_limit,
-            "jerk_rate_limit": keys.jerk_rate_limit,
+            **{name: getattr(keys, name) for name in LAW_NUMBERS},
         }
         usual = self._widened(self.profile.parameters)
         return replace(
@@ -149,8 +148,9 @@ class Formulation:
         return tuple(rule for rule in self.profile.rules if rule_name(rule) not in self.keys.without)
 
     def problems(self) -> Iterator[Problem]:
-        """List what the scenario asks of the profile that it has not got: moves of the jerk, or rules."""
+        """List what the scenario asks of the profile that it has not got: moves of the jerk, numbers or rules."""
         yield from self._missing_rules()
+        yield from self._unread_numbers()
         yield from self._missing_moves()
 
     def _missing_rules(self) -> Iterator[Problem]:
@@ -161,6 +161,13 @@ class Formulation:
                 what = f"planner.without {name[:100]!r}, which is no rule of profile {profile.name!r}"
                 right = nearest(name, own) if own else "leave it out: there is none"
                 yield Problem(("planner", "without"), what, right)
+
+    def _unread_numbers(self) -> Iterator[Problem]:
+        """List the numbers of a law of motion that the profile's law does not read."""
+        for name in LAW_NUMBERS:
+            if getattr(self.keys, name) is not None and name not in self.profile.numbers:
+                what = f"planner.{name} with profile {self.profile.name!r}, whose law does not read it"
+                yield Problem(("planner", name), what, "leave it null")
 
     def _missing_moves(self) -> Iterator[Problem]:
         """List moves of the jerk that the profile has not got, or that begin after the horizon."""

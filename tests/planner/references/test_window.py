@@ -104,7 +104,7 @@ def test_an_offset_that_serves_is_about_what_it_would_be_anew(stand):
     end, com = gait.lift_off(2) + 0.48, np.array([0.0, 0.0, 0.95])
     plans = walk_pendulum(usual, stand(), end, com=com, pushes=(push,)).plans
     assert 10 < sum(adapts for *_, adapts in usual.given) > 2 * sum(made)
-    anew, apart = planner(same_swing=-1.0), []
+    anew, apart = planner(offset_ticks=1), []
     stiffness = np.full(len(plans[0].zmp_offset), 9.81 / gait.com_height)
     weights = viability_weights(stiffness, np.sqrt(stiffness), usual.parameters.sample_time)
     for plan, (state, feet, adapts) in zip(plans, usual.given, strict=True):

@@ -35,7 +35,7 @@ def test_a_duration_may_be_anything_and_a_multiple_is_a_whole_number():
 
 @pytest.mark.parametrize(("name", "value"), [("horizon", 0), ("jerk_limit", -1.0), ("step_weight", math.nan)])
 def test_bad_planner_parameter_is_refused_by_name(name, value):
-    with pytest.raises(ParameterError, match=rf"^{name} is") as refused:
+    with pytest.raises(ParameterError, match=rf"^{name} of the planner is") as refused:
         PlannerParameters(**{name: value})
     assert refused.value.key == ("parameters", name)
 

@@ -4,7 +4,7 @@ import contextlib
 import json
 import math
 from collections.abc import Iterable, Iterator, Mapping
-from dataclasses import dataclass
+from dataclasses import dataclass, replace
 from pathlib import Path
 from typing import Any, Literal
 
@@ -122,6 +122,17 @@ class Baseline:
         unknown = [name for name in self.metrics if name in counted and known(name) is None]
         right = "install the package that has this metric"
         return [*gaps, *(f"{name} of the baseline is not known here; {right}" for name in unknown)]
+
+    def filled(self, now: "Baseline") -> "Baseline":
+        """The baseline with what it lacks beside a run of its scenario; what it says of that run stays as it is.
+
+        What the run has not got goes, such as a metric of a package that is not here.
+        """
+        world = {name: self.world.get(name, value) for name, value in now.world.items()}
+        metrics = {name: self.metrics.get(name, value) for name, value in now.metrics.items()}
+        trace = replace(now.trace, values={**now.trace.values, **self.trace.values})
+        held = None if self.sample is None or now.sample is None else self.sample.filled(now.sample)
+        return replace(now, world=world, metrics=metrics, trace=trace, sample=held or now.sample)
 
     def other_world(self, now: "Baseline") -> list[str]:
         """Options of the world that are not as here, a sentence each."""

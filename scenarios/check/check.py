@@ -304,11 +304,16 @@ def updated(checked: Checked) -> Checked:
 
 
 def rewritten(checked: Checked) -> Checked:
-    """Write the baseline of a run anew; what became of it then."""
+    """Write the baseline of a run anew; what became of it then.
+
+    One from which the run has not moved gains what it lacks, and keeps its numbers: they tell what has crept since.
+    """
     assert checked.now is not None
+    path, now = checked.case.baseline, checked.now
     try:
-        write_baseline(checked.case.baseline, checked.now)
-    except LogError as error:
+        fills = checked.status == "incomplete baseline" and not checked.moves
+        write_baseline(path, read_baseline(path).filled(now) if fills else now)
+    except (LogError, ScenarioError) as error:
         return replace(checked, status="could not write", reasons=(*checked.reasons, str(error)))
     return replace(checked, status="written", reasons=(f"was: {checked.status}", *checked.reasons))
 

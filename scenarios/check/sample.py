@@ -2,7 +2,7 @@
 
 import math
 from collections.abc import Iterable, Iterator, Mapping, Sequence
-from dataclasses import dataclass
+from dataclasses import dataclass, replace
 from typing import Any
 
 from surefoot.scenarios.file.units import is_number
@@ -47,6 +47,10 @@ class SeedSample:
         return SeedSample(
             tuple(self.seeds[place] for place in kept), tuple(self.passed[place] for place in kept), values
         )
+
+    def filled(self, now: "SeedSample") -> "SeedSample":
+        """The sample with the values that it lacks beside another of the same seeds; of other seeds it is that one."""
+        return replace(now, values={**now.values, **self.values}) if self.seeds == now.seeds else now
 
     @property
     def missed(self) -> tuple[int, ...]:

@@ -240,6 +240,26 @@ def test_a_baseline_of_other_settings_is_told_and_compared_all_the_same(kept, tm
     assert any(line.startswith("look at: surefoot plot") for line in report.lines_of(found))
 
 
+def test_update_adds_what_a_baseline_lacks_and_keeps_what_it_says(kept, tmp_path):
+    """A metric, a column and an option that are new get into it; a number within its tolerance stays."""
+    case, baseline = kept
+    metrics = {name: value for name, value in baseline.metrics.items() if name != "zmp_error_rms"}
+    metrics["speed_mean"] += 0.5 * known("speed_mean").allowed(metrics["speed_mean"])
+    columns = {name: values for name, values in baseline.trace.values.items() if name != "com_y"}
+    world = {name: value for name, value in baseline.world.items() if name != "timestep"}
+    little = replace(baseline, metrics=metrics, world=world, trace=replace(baseline.trace, values=columns))
+    write_baseline(case.baseline, little)
+    found = run_case(case, tmp_path / "again")
+    assert (found.status, found.moves) == ("incomplete baseline", ())
+    assert updated(found).status == "written"
+    filled = read_baseline(case.baseline)
+    assert filled.metrics["speed_mean"] == pytest.approx(metrics["speed_mean"], rel=1e-5) != baseline.metrics["speed_mean"]
+    assert filled.metrics.keys() == baseline.metrics.keys()
+    assert filled.trace.values.keys() == baseline.trace.values.keys()
+    assert filled.world == baseline.world
+    assert run_case(case, tmp_path / "third").status == "same"
+
+
 @pytest.mark.parametrize(
     ("statuses", "code"),
     [

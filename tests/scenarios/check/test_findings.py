@@ -196,3 +196,10 @@ def test_a_sample_is_read_back_as_it_was_written():
 def test_what_is_no_sample_is_refused(data, why):
     with pytest.raises(ValueError, match=why):
         read_sample(data)
+
+
+def test_a_sample_gains_the_values_that_it_lacks_and_one_of_other_seeds_takes_its_place():
+    before, now = sample((1, 2), a=(1.0, 2.0)), sample((1, 2), a=(1.1, 2.1), b=(3.0, 4.0))
+    assert before.filled(now).values == {"a": (1.0, 2.0), "b": (3.0, 4.0)}
+    others = sample((1, 3), a=(1.1, 2.1))
+    assert before.filled(others) == others

@@ -10,11 +10,12 @@ import surefoot
 pytestmark = [pytest.mark.physics, POLICY.mark]
 
 
-def test_it_walks_on_a_plant_in_another_process(bridge, same_content, tmp_path):
-    stander = policies.stander(tmp_path / "stander")
-    gait = {"steps": 0, "com_height": 0.67, "initial_stand": 0.2}
+@pytest.mark.parametrize(("robot", "height"), [("g1", 0.67), ("humanoid100", 0.95)])
+def test_it_walks_on_a_plant_in_another_process(bridge, same_content, tmp_path, robot, height):
+    stander = policies.stander(tmp_path / "stander", robot)
+    gait = {"steps": 0, "com_height": height, "initial_stand": 0.2}
     values = {
-        "robot": "g1",
+        "robot": robot,
         "duration": 1.0,
         "gait": gait,
         "criteria": {"fell": False},

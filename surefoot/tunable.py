@@ -37,24 +37,17 @@ class Range:
         return " and ".join(part for part in (finite, least, most) if part)
 
 
-def number(
-    default: Any, unit: str, doc: str, *, least: float = 0.0, most: float = math.inf, endless: bool = False,
-    sized: bool = True, positive: bool = False,
-) -> Any:  # fmt: skip
+def number(default: Any, unit: str, doc: str, *, sized: bool = True, **within: Any) -> Any:
     """A dataclass field for a number, or for a tuple of numbers of one unit each.
 
     Args:
         default: its value.
         unit: of the number, "-" for none.
         doc: its meaning, without the unit.
-        least: smallest value.
-        most: largest value.
-        endless: whether it may be infinite.
         sized: whether it follows the size of a robot (see `surefoot.similarity`).
-        positive: whether zero is refused.
+        within: its `Range`, field by field.
     """
-    within = Range(least, most, positive, endless)
-    return field(default=default, metadata={"unit": unit, "doc": doc, "range": within, "sized": sized})
+    return field(default=default, metadata={"unit": unit, "doc": doc, "range": Range(**within), "sized": sized})
 
 
 def positive(default: Any, unit: str, doc: str, **more: Any) -> Any:

@@ -10,7 +10,7 @@ called the same though it is not within its tolerance may come in `UNSURE` of th
 
 import math
 from collections.abc import Iterator, Mapping, Sequence
-from dataclasses import dataclass
+from dataclasses import dataclass, replace
 from typing import Literal
 
 from surefoot.maths.chance import (
@@ -113,7 +113,7 @@ def findings(before: SeedSample, now: SeedSample, asked: Asked) -> tuple[Finding
     for name in names:
         found += held.metric(name, before.values[name], now.values[name])
     if paired and now.is_as(before):  # the same runs are the same, however few
-        return tuple(_decided_as("same", one) for one in found)
+        return tuple(replace(one, verdict="same", needs=0) for one in found)
     return tuple(found)
 
 
@@ -150,7 +150,7 @@ class _Held:
         both_sides = 2.0 * self.of_rate  # of which one is an alarm
         found = self._share(RATE, before.passed, now.passed, True, True, both_sides)
         news = self.paired and not before.missed and bool(now.missed)
-        return _decided_as("worse", found) if news else found
+        return replace(found, verdict="worse", needs=0) if news else found
 
     def metric(self, name: str, before: Sequence[MetricValue], now: Sequence[MetricValue]) -> Iterator[Finding]:
         """A metric, and first whether it has a value as often as before."""
@@ -184,7 +184,8 @@ class _Held:
         sure, shown = map(interval, self._errors(self.of_metric))
         alarm = sure.excludes_zero and abs(sure.value) > margin
         half = 0.5 * (sure.high - sure.low) if abs(sure.value) > margin else 0.5 * (shown.high - shown.low)
-        return _finding(name, levels, shown, margin, (deciding, better, pairs), alarm, half, len(now))
+        found = Finding(name, "not decided", *levels, shown, margin, deciding, pairs)
+        return _judged(found, better, alarm, half, len(now))
 
     def _share(
         self,
@@ -207,7 +208,8 @@ class _Held:
         levels = then[0] / then[1], today[0] / today[1]
         alarm, half = chance <= sure and shown.value != 0.0, 0.5 * (shown.high - shown.low)
         pairs = len(now) if self.paired else 0
-        return _finding(name, levels, shown, RATE_MARGIN, (deciding, better, pairs), alarm, half, len(now))
+        found = Finding(name, "not decided", *levels, shown, RATE_MARGIN, deciding, pairs)
+        return _judged(found, better, alarm, half, len(now))
 
     def _margin(self, name: str, before: Sequence[float]) -> float:
         """Distance up to which a mean counts as the same, in SI units."""
@@ -221,33 +223,25 @@ class _Held:
         return metric.allowed(sum(before) / len(before))
 
 
-def _finding(
-    name: str,
-    levels: tuple[float, float],
-    shown: Difference,
-    margin: float,
-    kind: tuple[bool, bool | None, int],
-    alarm: bool,
-    half: float,
-    runs: int,
-) -> Finding:
-    """The finding of a difference, whose interval has that half width after so many runs."""
-    deciding, better, pairs = kind
-    found = Finding(name, "not decided", *levels, shown, margin, deciding, pairs)
+def _judged(found: Finding, better: bool | None, alarm: bool, half: float, runs: int) -> Finding:
+    """A finding that is not decided yet, with its verdict, or with the runs that it still needs.
+
+    Args:
+        found: the finding.
+        better: whether more is better; None where that is not known.
+        alarm: whether the difference is beyond chance.
+        half: half width of its interval.
+        runs: that it is made of.
+    """
+    shown = found.difference
     if alarm:
         which: ChanceVerdict = "moved" if better is None else "better" if better == (shown.value > 0.0) else "worse"
-        return _decided_as(which, found)
-    if shown.within(margin):
-        return _decided_as("same", found)
-    room = abs(shown.value) if abs(shown.value) > margin else margin - abs(shown.value)
+        return replace(found, verdict=which)
+    if shown.within(found.margin):
+        return replace(found, verdict="same")
+    room = abs(shown.value) if abs(shown.value) > found.margin else found.margin - abs(shown.value)
     wanted = runs * (half / room) ** 2 if room > 0.0 else math.inf
-    needs = max(1, math.ceil(min(wanted, 2.0 * MOST_NEEDED)) - runs)
-    return Finding(name, "not decided", *levels, shown, margin, deciding, pairs, needs)
-
-
-def _decided_as(verdict: ChanceVerdict, found: Finding) -> Finding:
-    levels = found.before, found.now
-    return Finding(found.name, verdict, *levels, found.difference, found.margin, found.deciding, found.pairs)
+    return replace(found, needs=max(1, math.ceil(min(wanted, 2.0 * MOST_NEEDED)) - runs))
 
 
 def _upwards(name: str, bound: Bound | None) -> bool | None:

@@ -253,7 +253,9 @@ def test_update_adds_what_a_baseline_lacks_and_keeps_what_it_says(kept, tmp_path
     assert (found.status, found.moves) == ("incomplete baseline", ())
     assert updated(found).status == "written"
     filled = read_baseline(case.baseline)
-    assert filled.metrics["speed_mean"] == pytest.approx(metrics["speed_mean"], rel=1e-5) != baseline.metrics["speed_mean"]
+    assert (
+        filled.metrics["speed_mean"] == pytest.approx(metrics["speed_mean"], rel=1e-5) != baseline.metrics["speed_mean"]
+    )
     assert filled.metrics.keys() == baseline.metrics.keys()
     assert filled.trace.values.keys() == baseline.trace.values.keys()
     assert filled.world == baseline.world

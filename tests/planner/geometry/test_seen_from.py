@@ -1,12 +1,23 @@
-"""A foothold seen from its stance foot."""
+"""What is seen from a foot or a pose: footholds, points and corners of soles."""
+
+import math
 
 import numpy as np
 import pytest
 from hypothesis import given
 from hypothesis import strategies as st
+from scipy.spatial.transform import Rotation
 
 from surefoot.planner.geometry.orientation import sole_rotation
-from surefoot.planner.geometry.plane import seen_from
+from surefoot.planner.geometry.plane import (
+    corners,
+    forward,
+    headings,
+    level_corners,
+    points_seen_from,
+    rotations,
+    seen_from,
+)
 from surefoot.planner.types import Foot, Footstep, Twist
 
 pytestmark = pytest.mark.unit
@@ -33,3 +44,31 @@ def test_a_foot_lies_on_its_own_side_until_legs_cross():
     for foot in Foot:
         assert Twist(0.2, 0.0, 0.0, 0.18).landing(foot).beside == pytest.approx(0.18)
         assert Twist(0.2, -0.3 * foot.side, 0.0, 0.18).landing(foot).beside == pytest.approx(-0.12)
+
+
+@given(NUMBERS, NUMBERS, NUMBERS, NUMBERS, NUMBERS)
+def test_points_are_seen_from_poses_as_they_were_laid_from_them(x, y, yaw, ahead, left):
+    laid = np.array([[ahead, left], [left, ahead]]) @ sole_rotation(yaw, 0.0, 0.0)[:2, :2].T + (x, y)
+    pose = np.array([x, y, 0.7, yaw])
+    seen = points_seen_from(pose, laid)
+    np.testing.assert_allclose(seen, [[ahead, left], [left, ahead]], atol=1e-12)
+    np.testing.assert_allclose(points_seen_from(np.stack((pose, pose)), laid), seen)
+
+
+@given(NUMBERS, NUMBERS, NUMBERS)
+def test_corners_of_level_soles_are_those_of_soles_of_any_orientation(x, y, yaw):
+    half = 0.5 * yaw
+    poses = np.array([[x, y, 0.3, 0.0, 0.0, math.sin(half), math.cos(half)]])
+    level = level_corners(np.array([[x, y, yaw]]), 0.24, 0.1)
+    np.testing.assert_allclose(level, corners(poses, 0.24, 0.1)[:, :, :2], atol=1e-12)
+    np.testing.assert_allclose(level_corners(np.array([[x, y, 9.0, yaw]]), 0.24, 0.1), level)
+
+
+@given(NUMBERS, NUMBERS, NUMBERS)
+def test_headings_are_those_of_the_forward_axis(roll, pitch, yaw):
+    R = sole_rotation(yaw, 0.3 * roll, 0.3 * pitch)
+    x, y, z, w = Rotation.from_matrix(R).as_quat()
+    quaternion = np.array([x, y, z, w])
+    np.testing.assert_allclose(forward(quaternion), R[:2, 0], atol=1e-12)
+    assert headings(quaternion) == pytest.approx(math.atan2(R[1, 0], R[0, 0]))
+    np.testing.assert_allclose(rotations(quaternion[None])[0], R, atol=1e-12)

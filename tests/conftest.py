@@ -7,6 +7,7 @@ from xml.etree import ElementTree
 
 import numpy as np
 import pytest
+from hypothesis import settings
 from needs import BROWSER
 from sensed_catalogue import from_sensors, pytest_addoption, pytest_configure
 from skips import pytest_sessionfinish, pytest_terminal_summary
@@ -15,6 +16,10 @@ import surefoot.engines.windowless  # noqa: F401  before a test imports MuJoCo, 
 from surefoot.models import RobotDescription, RobotOptions, describe
 
 __all__ = ["from_sensors", "pytest_addoption", "pytest_configure", "pytest_sessionfinish", "pytest_terminal_summary"]
+
+
+settings.register_profile("untimed", deadline=None)  # a slow machine finds no fault
+settings.load_profile("untimed")
 
 
 def _heeding() -> Iterator[None]:

@@ -125,7 +125,7 @@ def test_a_swing_shortened_while_its_foot_rolls_lasts_until_it_is_level(stand):
     assert_walked(plans, 4)
 
 
-@settings(max_examples=8, deadline=None)
+@settings(max_examples=8)
 @given(data=st.data())
 def test_durations_may_change_at_any_moment(stand, data):
     ticks = data.draw(st.sets(st.integers(1, 170), min_size=1, max_size=5))
@@ -135,7 +135,7 @@ def test_durations_may_change_at_any_moment(stand, data):
     assert_walked(plans, 4)
 
 
-@settings(max_examples=5, deadline=None)
+@settings(max_examples=5)
 @given(data=st.data())
 def test_commands_at_any_moment_leave_no_jump(stand, data):
     """The steps that are not kept change; what was planned for the next sample never does."""

@@ -328,7 +328,7 @@ def changed(schedule, now, operation, given):
     return schedule.reordered(now).extended(now + 160.0, now), now
 
 
-@settings(max_examples=60, deadline=None)
+@settings(max_examples=60)
 @given(operations=st.lists(OPERATIONS, min_size=1, max_size=8))
 def test_whatever_is_done_to_a_schedule_leaves_another_whole_one_and_the_first_as_it_was(stand, operations):
     now, schedule = 0.0, seen_from(stand, 0.0)
@@ -344,7 +344,7 @@ def test_whatever_is_done_to_a_schedule_leaves_another_whole_one_and_the_first_a
 
 
 @given(clock=clocks, gait=gaits)
-@settings(max_examples=40, deadline=None)
+@settings(max_examples=40)
 def test_steps_that_are_retimed_keep_their_order_and_what_has_begun(stand, clock, gait):
     before = seen_from(stand, clock)
     after, present = before.retimed(gait, clock), before.phase(clock)
@@ -360,7 +360,7 @@ def test_steps_that_are_retimed_keep_their_order_and_what_has_begun(stand, clock
 
 
 @given(clock=clocks, way=ways)
-@settings(max_examples=40, deadline=None)
+@settings(max_examples=40)
 def test_a_step_lands_where_it_is_moved_and_those_before_it_stay(stand, clock, way):
     before, offset = seen_from(stand, clock), np.array([*way, 0.0])
     number = next_to_land(before, clock)
@@ -376,7 +376,7 @@ def test_a_step_lands_where_it_is_moved_and_those_before_it_stay(stand, clock, w
 
 
 @given(clock=clocks)
-@settings(max_examples=40, deadline=None)
+@settings(max_examples=40)
 def test_steps_that_are_inserted_and_dropped_again_leave_the_walk_as_it_was(stand, clock):
     before = seen_from(stand, clock)
     number = next_to_land(before, clock)

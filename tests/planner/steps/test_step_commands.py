@@ -171,7 +171,7 @@ def test_footsteps_must_alternate():
 TWISTS = st.builds(Twist, st.floats(-1, 1), st.floats(-0.5, 0.5), st.floats(-1, 1))
 
 
-@settings(max_examples=60, deadline=None)
+@settings(max_examples=60)
 @given(data=st.data())
 def test_any_velocity_command_within_limits_gives_a_sound_walk(schedule, data):
     """Whatever follows whatever: every foot lands in reach and apart from the other, and the schedule is consistent."""

@@ -11,7 +11,7 @@ from surefoot.scenarios.setup.load import read_scenario
 
 pytestmark = pytest.mark.unit
 
-QUICK = settings(max_examples=150, deadline=None, suppress_health_check=list(HealthCheck))
+QUICK = settings(max_examples=150, suppress_health_check=list(HealthCheck))
 
 _NAMES = sorted({"step", "0", ""} | set(Scenario.model_fields) | {"max", "min", "equals", "fell", "zmp_error_rms"})
 _KEYS = st.sampled_from(

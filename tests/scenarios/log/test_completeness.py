@@ -31,7 +31,7 @@ def count(*parts):
 NUMBERS = st.lists(st.integers(0, 60), min_size=2, max_size=80).filter(lambda found: len(set(found)) > 1)
 
 
-@settings(max_examples=200, deadline=None)
+@settings(max_examples=200)
 @given(NUMBERS, st.integers(1, 9))
 def test_gaps_and_doubles_are_those_of_the_sorted_numbers(numbers, size):
     parts = [(3, numbers[start : start + size]) for start in range(0, len(numbers), size)]

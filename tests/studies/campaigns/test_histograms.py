@@ -4,7 +4,7 @@ from itertools import pairwise
 from xml.etree import ElementTree
 
 import pytest
-from hypothesis import given, settings
+from hypothesis import given
 from hypothesis import strategies as st
 from matplotlib.colors import to_hex
 
@@ -25,7 +25,6 @@ def height(axes, word):
 
 
 @given(passed=GROUP, failed=GROUP, bounds=st.lists(NUMBERS, max_size=3))
-@settings(deadline=None)
 def test_bars_count_every_run_once_and_lie_within_the_axes(passed, failed, bounds):
     axes = axes_of(passed, failed, bounds)
     assert height(axes, "met") == len(passed) and height(axes, "missed") == len(failed)

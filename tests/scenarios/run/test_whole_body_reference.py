@@ -97,3 +97,20 @@ def scaled(plans):
         if plan.rolls:
             scaling = TimeScaling(plan.sample_time, 10.0).scaled(15.0, 12.0)
             yield replace(plan, rolls=tuple(replace(roll, scaling=scaling, shown=plan.time) for roll in plan.rolls))
+
+
+def test_progress_and_time_to_the_switch_go_on_between_plans_as_the_next_plans_say(plans):
+    """What a plan says of an instant ahead is what the plan of that instant says, while the phase goes on."""
+    compared = 0
+    for now, later in pairwise(plans):
+        ahead = later.time - now.time
+        goes_on = later.phase.kind is now.phase.kind and later.phase.elapsed == pytest.approx(now.phase.elapsed + ahead)
+        if not goes_on or later.phase.duration != now.phase.duration:
+            continue
+        seen = whole_body_reference(now, PlanSampler(now).sample(later.time))
+        then = whole_body_reference(later, PlanSampler(later).sample(later.time))
+        if seen.swing_foot == then.swing_foot:
+            compared += seen.swing_foot >= 0
+            assert seen.swing_progress == pytest.approx(then.swing_progress, abs=1e-9)
+            assert seen.time_to_switch == pytest.approx(then.time_to_switch, abs=1e-9)
+    assert compared > 10

@@ -27,6 +27,7 @@ from surefoot.wbc.tasks.arm_swing import ArmSwing
 from surefoot.wbc.tasks.balance import SupportRegion
 from surefoot.wbc.tasks.default import default_tasks
 from surefoot.wbc.tasks.diagonal import ForceDistribution, Posture, Regularisation
+from surefoot.wbc.tasks.knees import Knees, StanceKnees
 from surefoot.wbc.tasks.registry import TaskLayout
 from surefoot.wbc.tasks.stack import TaskStack
 from surefoot.wbc.tasks.swing import AnkleStops
@@ -76,6 +77,7 @@ class WholeBodyController:
         arm_joints: which joints are the left and the right shoulder pitch; None for arms that do not swing.
         arm_back: sign of the angles of these that swing the arms back [-].
         driven: which joints somebody else drives, bool, shape (nj,); None for none.
+        knees: those of the legs; None for legs of which none is known.
         tasks: others, after the default ones.
 
     Attributes:
@@ -107,6 +109,7 @@ class WholeBodyController:
         tasks: Sequence[Task] = (),
         arm_back: tuple[float, float] = (1.0, 1.0),
         driven: NDArray[np.bool_] | None = None,
+        knees: Knees | None = None,
     ) -> None:
         size, limits = parameters.size, parameters.size.scaled(limits)
         if driven is not None and limbs is not None:
@@ -135,7 +138,8 @@ class WholeBodyController:
             Posture(parameters.weights, parameters.gains, posture, leg_joints, arms, driven),
             ForceDistribution(parameters.weights, self.terms.wrench_unit),
         )
-        self.tasks = TaskStack(self.qp, (*default, *tasks), diagonal)
+        straight = () if knees is None or not parameters.knees.weight else (StanceKnees(parameters.knees, knees),)
+        self.tasks = TaskStack(self.qp, (*default, *straight, *tasks), diagonal)
         self.schedule = ContactSchedule(parameters.schedule, self.terms.mass * GRAVITY, control_period)
         self._observer = LoadObserver(self.terms.mass, control_period, size)
         self.driven = None if driven is None or not driven.any() else DrivenRows(self.layout, driven, control_period)

@@ -121,9 +121,9 @@ class ContactGains:
         100.0, "1/s^2", "stiffness that turns an active sole flat on the ground of its planned normal"
     )
     striking: float = number(
-        900.0, "1/s^2", "stiffness that turns a foot on its heel edge to its planned pitch, lest the sole slaps down"
+        2500.0, "1/s^2", "stiffness that turns a foot on its heel edge to its planned pitch, lest the sole slaps down"
     )
-    striking_damping: float = number(60.0, "1/s", "damping of the same")
+    striking_damping: float = number(100.0, "1/s", "damping of the same")
 
     def __post_init__(self) -> None:
         check(self, "wbc", "contact")
@@ -151,6 +151,22 @@ class ContactParameters:
 
     def __post_init__(self) -> None:
         check(self, "wbc", "schedule")
+
+
+@dataclass(frozen=True, slots=True)
+class StraightKnees:
+    """The task that straightens the knees of the legs that carry; without a weight there is none.
+
+    Raises:
+        ParameterError: a number is negative or not finite.
+    """
+
+    weight: float = number(0.0, "s^4", "acceleration of the knee of a leg that carries all of the weight, 0: no task")
+    flexion: float = number(0.2, "rad", "flexion that it is brought to")
+    gains: tuple[float, float] = number((40.0, 12.0), "1/s^2, 1/s", "stiffness and damping of the same")
+
+    def __post_init__(self) -> None:
+        check(self, "wbc", "knees")
 
 
 @dataclass(frozen=True, slots=True)
@@ -184,6 +200,7 @@ class WbcParameters:
         balance: gains of the CoM law.
         contact: gains of the rigid contacts.
         schedule: thresholds of the contact schedule.
+        knees: how straight those of the legs that carry are.
         separation: when limbs keep away from each other.
         solver: the solver tried first, chosen by ``python -m benchmarks solvers``.
         second_solver: the one tried when the first fails.
@@ -199,6 +216,7 @@ class WbcParameters:
     balance: BalanceGains = field(default_factory=BalanceGains)
     contact: ContactGains = field(default_factory=ContactGains)
     schedule: ContactParameters = field(default_factory=ContactParameters)
+    knees: StraightKnees = field(default_factory=StraightKnees)
     separation: SeparationParameters = field(default_factory=SeparationParameters)
     solver: str = choice("equality-first", SOLVER_NAMES, "QP solver that is tried first")
     second_solver: str = choice("proxqp", SOLVER_NAMES, "QP solver that is tried when the first fails")

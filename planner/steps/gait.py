@@ -45,7 +45,7 @@ The ZMP rests for the first of them, so that the DCM is consistent when the weig
 """
 
 _POSITIVE = ("step_width", "single_support", "double_support", "com_height", "swing_height")
-_NOT_NEGATIVE = ("initial_stand", "apex_ss", "apex_ds", "heel_off", "heel_strike")
+_NOT_NEGATIVE = ("initial_stand", "apex_ss", "apex_ds", "heel_off", "heel_strike", "ramp")
 
 
 @dataclass(frozen=True, slots=True)
@@ -73,6 +73,7 @@ class GaitParameters:
         apex_ds: rise of the CoM in the middle of double support (A_ds) [m].
         heel_off: greatest pitch of a foot about its toe edge after its stance, 0 keeps the feet level [rad].
         heel_strike: greatest pitch of a foot about its heel edge as it lands, 0 lands it flat [rad].
+        ramp: shorter steps at the begin and at the end of equal steps, whose lengths grow evenly to step_length.
         bouts: the walk stride by stride; empty for equal strides. Feet alternate throughout, across stops too.
 
     Raises:
@@ -94,6 +95,7 @@ class GaitParameters:
     apex_ds: float = 0.00135
     heel_off: float = 0.0
     heel_strike: float = 0.0
+    ramp: int = 0
     bouts: tuple[Bout, ...] = ()
 
     def __post_init__(self) -> None:
@@ -120,9 +122,13 @@ class GaitParameters:
         """The walk stride by stride; () when it only stands."""
         if self.bouts or self.steps == 0:
             return self.bouts
-        stride = Twist(self.step_length, self.lateral_step, self.turn, self.step_width)
         closing = Twist(width=self.step_width)
-        return (Bout(self.initial_stand, (stride,) * (self.steps - 1) + (closing,)),)
+        return (Bout(self.initial_stand, (*map(self._stride, range(1, self.steps)), closing)),)
+
+    def _stride(self, number: int) -> Twist:
+        """An equal stride, or a shorter one of the ramps at both ends."""
+        share = min(number, self.steps - number, self.ramp + 1) / (self.ramp + 1)
+        return Twist(share * self.step_length, self.lateral_step, self.turn, self.step_width)
 
     @property
     def strides(self) -> tuple[Twist, ...]:

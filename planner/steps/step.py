@@ -150,7 +150,8 @@ class Step:
             stop = stop.retimed(double)
         lift_off = lift_off_after(before, stop)
         if leaving is not None and now < leaving.start:
-            leaving = rolling.toe_off(leaving.foot, ramp_before(before, stop), lift_off, single, leaving.angle)
+            ramp, on_heel = ramp_before(before, stop), lands_on_heel(before, stop)
+            leaving = rolling.toe_off(leaving.foot, ramp, lift_off, single, leaving.angle, on_heel)
         elif leaving is not None:
             single = max(single, (leaving.end - lift_off) / rolling.LEVEL_AGAIN)
         swing = unit_swing(single, self.climb, self.course, parameters)
@@ -187,6 +188,11 @@ def lift_off_after(before: Step, stop: Stop | None) -> float:
 def ramp_before(before: Step, stop: Stop | None) -> float:
     """Time that the weight takes to leave a foot after a step and a stop [samples]."""
     return before.double_support if stop is None else stop.shift - stop.rest
+
+
+def lands_on_heel(before: Step, stop: Stop | None) -> bool:
+    """Return true if a foot leaves the ground just after the other one's landing on its heel."""
+    return stop is None and before.heel_strike is not None
 
 
 def start_step(number: int, place: Footstep, path: Path, gait: GaitParameters, ground: Ground) -> Step:
@@ -259,7 +265,11 @@ def make_step(
         lift_off=lift_off,
         single_support=single,
         double_support=double,
-        toe_off=rolling.toe_off(foot, ramp_before(last, stop), lift_off, single, gait.heel_off) if leaves else None,
+        toe_off=(
+            rolling.toe_off(foot, ramp_before(last, stop), lift_off, single, gait.heel_off, lands_on_heel(last, stop))
+            if leaves
+            else None
+        ),
         heel_strike=(
             rolling.heel_strike(foot, lift_off + single, single, double, gait.heel_strike) if strikes else None
         ),

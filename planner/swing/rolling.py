@@ -20,7 +20,10 @@ from surefoot.planner.model.time_scaling import TimeScaling
 from surefoot.planner.types import Array, Edge, Foot, Footstep
 
 _BEGIN = 0.25
-"""Share of the weight shift after which the heel leaves the ground at toe-off [-]."""
+"""Share of the weight shift after which the heel leaves the ground at toe-off [-].
+
+With a front foot that lands on its heel it is none: at 0.8 m/s the rear leg is straight then, and a heel that waits
+costs a tenth more energy."""
 
 _END = 0.7
 """Share of single support after which the foot is level again after toe-off [-].
@@ -31,12 +34,13 @@ is left."""
 LEVEL_AGAIN = 0.9
 """The same at most, of a swing that is shortened when its foot has begun to roll [-]."""
 
-BRAKING, LEAD, SINKING = 6.0, 0.25, 0.1
+BRAKING, LEAD, SINKING = 12.0, 0.25, 0.1
 """The arrival of a foot that lands on its heel, see `SwingCourse` [-, -, m/s].
 
-A foot that comes to rest smoothly and early waits for the ground while the hip comes nearer: at 0.8 m/s the knee bends
-by 10 degrees more until the foot carries, and the walk costs a seventh more. One that sinks no faster than others then
-grazes the ground on its way, and slips by a centimetre."""
+A foot that is ahead early is farther from its hip than its leg is long, which straightens the knee against its end
+and pulls the body down. Then it waits for the ground while the hip comes nearer: at 0.8 m/s the knee bends by 7 degrees
+more until the foot carries than with this braking. Beyond 20 a foot would go too far and come back. One that sinks no
+faster than others then grazes the ground on its way, and slips by a centimetre."""
 
 _FLAT = 0.8
 """Share of double support after which the sole is flat on the ground after heel strike [-].
@@ -167,7 +171,7 @@ def strides(behind: Footstep, ahead: Footstep, half_length: float) -> bool:
     return bool(way[0] > _LEAST_STEP * half_length)
 
 
-def toe_off(foot: Foot, ramp: float, lift_off: float, single: float, angle: float) -> RollSpan:
+def toe_off(foot: Foot, ramp: float, lift_off: float, single: float, angle: float, on_heel: bool) -> RollSpan:
     """The roll of a foot that leaves the ground.
 
     Args:
@@ -176,8 +180,10 @@ def toe_off(foot: Foot, ramp: float, lift_off: float, single: float, angle: floa
         lift_off: when it leaves the ground [samples].
         single: duration of its single support [samples].
         angle: greatest pitch [rad].
+        on_heel: whether the other foot has just landed on its heel.
     """
-    return RollSpan(foot, lift_off - (1.0 - _BEGIN) * ramp, lift_off + _END * single, angle)
+    waits = 0.0 if on_heel else _BEGIN
+    return RollSpan(foot, lift_off - (1.0 - waits) * ramp, lift_off + _END * single, angle)
 
 
 def heel_strike(foot: Foot, touchdown: float, single: float, double: float, angle: float) -> RollSpan:

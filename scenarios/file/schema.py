@@ -251,6 +251,14 @@ class Gait(Group):
     heel_strike: Annotated[float, Field(ge=0, le=0.6), RADIAN] = key(
         0.0, "greatest pitch of a foot about its heel as it lands, toes up, 0: feet land flat"
     )
+    speed: Annotated[float, Field(gt=0, le=5), Unit("m/s")] | None = key(
+        None,
+        "speed of steady walking ahead, of which the length and durations of the steps, CoM height, roll of the feet, "
+        "planner.knee and two weights of wbc follow that are not given, null: they are as they are",
+    )
+    ramp: Annotated[int, Field(ge=0, le=20), WHOLE] = key(
+        0, "shorter steps at the begin and at the end of equal steps, whose lengths grow evenly to step_length [-]"
+    )
 
 
 class PlannerSettings(LawSettings):
@@ -269,7 +277,11 @@ class PlannerSettings(LawSettings):
     step_adaptation: Literal["none", "location", "timing", "crossing"] = key(
         "crossing", "what of the next footsteps a push may change: where, when, beyond the stance foot"
     )
-    knee: Literal["stretched", "bent"] = key("stretched", "CoM height: the paper's rises, or constant and 0.08 m lower")
+    knee: Literal["stretched", "bent", "straight"] = key(
+        "stretched",
+        "CoM height: the paper's rises, or constant and 0.08 m lower, or one wave of gait.apex_single for each step, "
+        "as straight legs carry it",
+    )
     rise: Literal["single", "double"] | None = key(
         None, "support phase in which the CoM climbs, null: double on a pendulum, single for legs"
     )

@@ -9,6 +9,7 @@ import numpy as np
 from pydantic import ValidationError
 
 from surefoot.errors import ParameterError
+from surefoot.models.facts import knee_turn
 from surefoot.models.pinocchio import limb_shapes
 from surefoot.models.types import RobotDescription
 from surefoot.parts.guard import Guard, MisfitError, shown
@@ -25,6 +26,7 @@ from surefoot.scenarios.setup.walk import Walk, resolve
 from surefoot.wbc.contact.cone import Sole
 from surefoot.wbc.controller import WholeBodyController
 from surefoot.wbc.tasks import TASKS, Task, TaskFactory
+from surefoot.wbc.tasks.knees import Knees
 from surefoot.wbc.types import Array
 
 if TYPE_CHECKING:
@@ -107,6 +109,14 @@ def _tasks(walk: Walk, body: Body, parts: Parts) -> Iterator[Task]:
         yield task
 
 
+def knees_of(robot: RobotDescription) -> Knees:
+    """The knees of a robot."""
+    left, right = robot.joint_indices(robot.roles.knees)
+    straight = robot.straight_joint_positions
+    one, other = (bend / knee_turn(robot, foot) for foot, bend in enumerate(robot.roles.knee_bend))
+    return Knees((left, right), (float(straight[left]), float(straight[right])), (one, other))
+
+
 def whole_body_of(walk: Walk, body: Body, posture: Array, parts: Parts) -> WholeBodyController:
     """The whole-body controller of a walk.
 
@@ -138,5 +148,6 @@ def whole_body_of(walk: Walk, body: Body, posture: Array, parts: Parts) -> Whole
         arm_joints=(shoulders[0], shoulders[1]) if shoulders else None,
         arm_back=robot.roles.arm_back,
         tasks=tuple(_tasks(walk, body, parts)),
+        knees=knees_of(robot),
         **({} if driven is None else {"driven": driven}),
     )

@@ -28,6 +28,7 @@ from surefoot.scenarios.file.source import Overrides, Source, apply_overrides
 from surefoot.scenarios.file.units import Unit, is_number, unit_of
 from surefoot.scenarios.judge.metric import Metric
 from surefoot.scenarios.judge.metrics import known
+from surefoot.scenarios.setup.groups.speed import with_speed
 from surefoot.scenarios.setup.robot.robots import POSTURE, Robots, Rule, is_known, nearer_landings, rules
 from surefoot.scenarios.setup.walk import Walk
 from surefoot.similarity import REFERENCE, REFERENCE_SIZE, Similarity
@@ -53,9 +54,17 @@ def sized_walk(scenario: Scenario, robots: Robots) -> Walk:
     """The walk of a scenario, with the defaults of its robot."""
     facts = None if scenario.robot == REFERENCE else _facts(scenario.robot, RobotSettings(), robots)
     if facts is None or facts.size == REFERENCE_SIZE:
-        return Walk(scenario)
-    size = facts.size
-    return Walk(with_defaults(scenario, size, robots), size, stance_widening(facts, size), facts.foot_length)
+        return Walk(_with_speed(scenario, scenario, robots))
+    size, sized = facts.size, with_defaults(scenario, facts.size, robots)
+    return Walk(_with_speed(sized, scenario, robots), size, stance_widening(facts, size), facts.foot_length)
+
+
+def _with_speed(sized: Scenario, written: Scenario, robots: Robots) -> Scenario:
+    """The scenario with what follows from its speed, and is not written in it; as it is without one."""
+    facts = None if sized.gait.speed is None else _facts(sized.robot, RobotSettings(), robots)
+    if facts is None:
+        return sized
+    return with_speed(sized, facts, facts.size, frozenset(written.gait.model_fields_set))
 
 
 def _facts(name: Any, options: RobotSettings, robots: Robots) -> RobotFacts | None:

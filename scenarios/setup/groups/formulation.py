@@ -18,6 +18,7 @@ from surefoot.planner.references.com_height import (
     Rise,
     SmoothHeight,
 )
+from surefoot.planner.references.stride_height import StrideHeight
 from surefoot.planner.rules import Rule, rule_name
 from surefoot.planner.swing.leg_reach import LegReach
 from surefoot.planner.swing.step_region import StepRegion
@@ -90,6 +91,8 @@ class Formulation:
         if own is not None and not lower:
             return own
         rise = Rise(self.keys.rise) if self.keys.rise else self.usual_rise
+        if self.keys.knee == "straight":
+            return StrideHeight(rise)
         return BentKneeHeight(rise, lower) if lower else SmoothHeight(rise)
 
     @cached_property

@@ -61,6 +61,7 @@ def gait_of(keys: schema.Gait) -> GaitParameters:
         apex_ds=keys.apex_double,
         heel_off=keys.heel_off,
         heel_strike=keys.heel_strike,
+        ramp=keys.ramp,
     )
     if keys.velocity:
         bouts = velocity_bouts(velocities_of(keys.velocity), plain)

@@ -1,0 +1,128 @@
+"""A whole gait from one number: its speed, with the length of the legs; for robots that walk with straight legs."""
+
+import math
+from dataclasses import dataclass
+
+from surefoot.errors import ParameterError
+from surefoot.planner.types import GRAVITY
+
+_WALK_RATIO = 0.89
+"""Step length over step rate, over leg length and its time √(l / g) [-].
+
+People keep it at all speeds (Sekiya and Nagasaki, Reproducibility of the walking patterns of normal young adults,
+Gait & Posture 1998): 0.0042 m per step and minute, 0.85 for legs of 0.94 m."""
+
+_DOUBLE = 0.24
+"""Share of a step in which both feet carry [-]; of people 0.3 when they stroll and 0.2 when they walk fast."""
+
+_HEEL_OFF, _HEEL_STRIKE = 1.08, 0.95
+"""Pitch of a foot at toe-off over step length per leg length, and at heel strike over its square [rad].
+
+With both the ankles are as much higher between two feet as knees are bent there by 15 degrees."""
+
+_RISING = 1.7
+"""Greatest vertical acceleration of the CoM, whatever the arc of a straight leg asks for [m/s^2]."""
+
+_LONG, _LOWER = 0.53, 0.15
+"""Step length beyond which knees are bent more, over the leg length, and by how much lower hips then are [-].
+
+At 1.17 m/s on a ground with a friction of 0.5 it lost its balance without, and at 1.4 m/s it landed with 2.3 body
+weights in place of 1.6."""
+
+_EASY = 0.62
+"""Change of the step length that one step makes, over the leg length [-]."""
+
+
+@dataclass(frozen=True, slots=True)
+class SpeedGait:
+    """The numbers of a gait that follow from its speed.
+
+    Attributes:
+        step_length: from one footstep to the next [m].
+        single_support: duration of single support [s].
+        double_support: duration of double support [s].
+        com_height: of the CoM over the soles, in the middle of double support [m].
+        rise: of the CoM from there to the middle of single support [m].
+        heel_off: greatest pitch of a foot after its stance [rad].
+        heel_strike: greatest pitch of a foot as it lands, toes up [rad].
+        ramp: steps over which the walk comes to its length, and from it to a stop [-].
+    """
+
+    step_length: float
+    single_support: float
+    double_support: float
+    com_height: float
+    rise: float
+    heel_off: float
+    heel_strike: float
+    ramp: int
+
+
+def speed_gait(
+    speed: float,
+    leg_length: float,
+    com_above_hip: float,
+    step_length: float | None = None,
+    single_support: float | None = None,
+    double_support: float | None = None,
+) -> SpeedGait:
+    """The gait of a speed, with those of its numbers that are given.
+
+    Args:
+        speed: of steady walking [m/s].
+        leg_length: hip centre to sole, with a straight knee [m].
+        com_above_hip: CoM over the hip centres [m].
+        step_length: asked for [m].
+        single_support: asked for [s].
+        double_support: asked for [s].
+
+    Raises:
+        ParameterError: length and durations are given, and make another speed.
+    """
+    length, single, double = _stride(speed, leg_length, step_length, single_support, double_support)
+    per_leg, step = abs(length) / leg_length, single + double
+    # Both legs straight on flat soles in the middle of double support: feet that roll leave their knees room.
+    hip = leg_length * math.sqrt(max(1.0 - 0.25 * per_leg * per_leg, 0.25))
+    hip -= _LOWER * leg_length * max(0.0, per_leg - _LONG)
+    arc, most = leg_length - hip, 2.0 * _RISING * (step / (2.0 * math.pi)) ** 2
+    return SpeedGait(
+        step_length=length,
+        single_support=single,
+        double_support=double,
+        com_height=hip + com_above_hip,
+        rise=min(arc, most),
+        heel_off=min(_HEEL_OFF * per_leg, 1.0),
+        heel_strike=min(_HEEL_STRIKE * per_leg * per_leg, 0.6),
+        ramp=max(0, math.ceil(per_leg / _EASY) - 1),
+    )
+
+
+def _stride(
+    speed: float, leg_length: float, length: float | None, single: float | None, double: float | None
+) -> tuple[float, float, float]:
+    """Step length [m], single and double support [s] of a speed, see `speed_gait`."""
+    step = None if single is None or double is None else single + double
+    if length is not None and step is not None and not math.isclose(length, speed * step, rel_tol=_ROUNDED):
+        what = f"speed {speed:g} m/s beside steps of {length:g} m in {step:g} s, which is {length / step:g} m/s"
+        raise ParameterError(("gait", "speed"), what, "leave out the speed, or one of the others")
+    if step is None:
+        step = math.sqrt(_WALK_RATIO * leg_length * math.sqrt(leg_length / GRAVITY) / speed)
+        if length is not None:
+            step = abs(length) / speed
+        elif single is not None:
+            step = single / (1.0 - _DOUBLE)
+        elif double is not None:
+            step = double / _DOUBLE
+    if single is None:
+        single = (1.0 - _DOUBLE) * step if double is None else step - double
+    if double is None:
+        double = step - single
+    for name, left in (("single_support", double), ("double_support", single)):
+        if left <= 0.0:
+            what = f"speed {speed:g} m/s with steps of {step:g} s, of which {name} takes all"
+            raise ParameterError(("gait", name), what, f"use less than {step:g} s")
+    return speed * step if length is None else length, single, double
+
+
+_ROUNDED = 1e-3
+"""Share by which given numbers may make another speed, since they are written with few digits [-]."""

@@ -1,0 +1,72 @@
+"""The keys of a walk that follow from `gait.speed`; each that is given stays as it is."""
+
+from typing import Any, TypeVar
+
+from pydantic import BaseModel
+
+from surefoot.models.facts import RobotFacts
+from surefoot.planner.steps.speed import speed_gait
+from surefoot.scenarios.file.group import ControllerSettings
+from surefoot.scenarios.file.schema import Scenario
+from surefoot.similarity import Similarity
+from surefoot.wbc.parameters import StraightKnees, TaskWeights, WbcParameters
+
+G = TypeVar("G", bound=BaseModel)
+
+_STRAIGHT = WbcParameters(weights=TaskWeights(com_vertical=1.2), knees=StraightKnees(weight=0.006))
+"""The controller of legs that are nearly straight: the knees say as much as the plan does how high the CoM is."""
+
+
+def with_speed(scenario: Scenario, facts: RobotFacts, size: Similarity, given: frozenset[str]) -> Scenario:
+    """The scenario with all that follows from the speed of its gait.
+
+    Args:
+        scenario: with the defaults of its robot.
+        facts: of that robot.
+        size: of that robot.
+        given: keys of the gait that the user gives.
+
+    Raises:
+        ParameterError: the user gives more than fits together.
+    """
+    gait = scenario.gait
+    if gait.speed is None:
+        return scenario
+    asked = {name: getattr(gait, name) for name in ("step_length", "single_support", "double_support") if name in given}
+    derived = speed_gait(gait.speed, facts.leg_length, facts.com_above_hip, **asked)
+    wanted = {
+        "step_length": derived.step_length,
+        "single_support": derived.single_support,
+        "double_support": derived.double_support,
+        "com_height": derived.com_height,
+        "apex_single": derived.rise,
+        "apex_double": 0.0,
+        "heel_off": derived.heel_off,
+        "heel_strike": derived.heel_strike,
+        "ramp": derived.ramp,
+    }
+    update: dict[str, Any] = {"gait": _with(gait, wanted, given)}
+    if "knee" not in scenario.planner.model_fields_set:
+        update["planner"] = scenario.planner.model_copy(update={"knee": "straight"})
+    update["wbc"] = _controller(scenario.wbc, size.scaled(_STRAIGHT))
+    return scenario.model_copy(update=update)
+
+
+def _with(group: G, wanted: dict[str, Any], given: frozenset[str]) -> G:
+    """The group with what is wanted and not given."""
+    return group.model_copy(update={name: value for name, value in wanted.items() if name not in given})
+
+
+def _controller(settings: ControllerSettings | None, straight: WbcParameters) -> ControllerSettings:
+    """The group ``wbc`` with the numbers of straight legs where it has none."""
+    keys = ControllerSettings() if settings is None else settings
+    values = keys.model_dump()
+    for group, name, value in (
+        ("weights", "com_vertical", straight.weights.com_vertical),
+        ("knees", "weight", straight.knees.weight),
+    ):
+        inner = dict(values.get(group) or {})
+        if inner.get(name) is None:
+            inner[name] = value
+        values[group] = inner
+    return ControllerSettings.model_validate(values)

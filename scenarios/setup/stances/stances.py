@@ -251,7 +251,8 @@ def _stance(
     com = np.append(middle + (-off if landing else off), low + gait.com_height)
     span = None
     if strides(stands, lands, toe):
-        span = _strike(walk, stands, lands) if landing else _leave(gait, stands.foot)
+        strike = _strike(walk, stands, lands)
+        span = strike if landing else _leave(gait, stands.foot, strike is not None)
     poses = {step.foot: sole_pose(step.position, step.yaw, step.normal) for step in (stands, lands)}
     heading = float(np.mean([pose[3] for pose in poses.values()]))
     if span is not None:
@@ -262,11 +263,11 @@ def _stance(
     )
 
 
-def _leave(gait: GaitParameters, foot: Foot) -> RollSpan | None:
-    """The roll of a foot that leaves the ground now; None of one that stays level [s]."""
+def _leave(gait: GaitParameters, foot: Foot, on_heel: bool) -> RollSpan | None:
+    """The roll of a foot that leaves the ground now, after a landing on the heel; None of one that stays level [s]."""
     if not gait.heel_off:
         return None
-    return toe_off(foot, gait.double_support, 0.0, gait.single_support, gait.heel_off)
+    return toe_off(foot, gait.double_support, 0.0, gait.single_support, gait.heel_off, on_heel)
 
 
 def _strike(walk: Walk, stands: Footstep, lands: Footstep) -> RollSpan | None:

@@ -12,6 +12,7 @@ cdef class Phase:
     cdef readonly Py_ssize_t support
     cdef readonly double rest
     cdef readonly tuple rolls
+    cdef readonly bint starts
 
 cdef class PhaseTable:
     cdef readonly tuple phases

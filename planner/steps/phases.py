@@ -30,6 +30,7 @@ class Phase:
         support: support point on which the ZMP reference stands, or which it leaves.
         rest: part of a double support before it leaves [samples].
         rolls: of the foot that leaves the ground in it or after it, and of that which lands in it or before it.
+        starts: whether it is a double support that begins with the robot at rest.
     """
 
     kind: PhaseKind
@@ -40,6 +41,7 @@ class Phase:
     support: int
     rest: float = 0.0
     rolls: tuple[RollSpan, ...] = ()
+    starts: bool = False
 
     @property
     def end(self) -> float:
@@ -85,7 +87,7 @@ def phases_of(steps: Sequence[Step], stands: bool) -> tuple[Phase, ...]:
                 phases.append(Phase(PhaseKind.STAND, step.end, stop.stand, step.number, None, between))
             start = step.end + stop.stand
             shift, rolls = stop.shift, _rolls(leaving)
-            phases.append(Phase(PhaseKind.DOUBLE, start, shift, step.number, None, between, stop.rest, rolls))
+            phases.append(Phase(PhaseKind.DOUBLE, start, shift, step.number, None, between, stop.rest, rolls, True))
         elif following is None and stands:
             phases.append(Phase(PhaseKind.STAND, step.end, np.inf, step.number, None, between))
     return tuple(phases)

@@ -29,6 +29,9 @@ _LONG, _LOWER = 0.53, 0.15
 At 1.17 m/s on a ground with a friction of 0.5 it lost its balance without, and at 1.4 m/s it landed with 2.3 body
 weights in place of 1.6."""
 
+_FLAT = 0.02
+"""Height by which hips are lower over feet that land flat, which leave knees less room, over the leg length [-]."""
+
 _EASY = 0.62
 """Change of the step length that one step makes, over the leg length [-]."""
 
@@ -65,6 +68,7 @@ def speed_gait(
     step_length: float | None = None,
     single_support: float | None = None,
     double_support: float | None = None,
+    heel_strike: float | None = None,
 ) -> SpeedGait:
     """The gait of a speed, with those of its numbers that are given.
 
@@ -75,6 +79,7 @@ def speed_gait(
         step_length: asked for [m].
         single_support: asked for [s].
         double_support: asked for [s].
+        heel_strike: asked for [rad].
 
     Raises:
         ParameterError: length and durations are given, and make another speed.
@@ -82,8 +87,10 @@ def speed_gait(
     length, single, double = _stride(speed, leg_length, step_length, single_support, double_support)
     per_leg, step = abs(length) / leg_length, single + double
     # Both legs straight on flat soles in the middle of double support: feet that roll leave their knees room.
+    usual = min(_HEEL_STRIKE * per_leg * per_leg, 0.6)
+    strike = usual if heel_strike is None else heel_strike
     hip = leg_length * math.sqrt(max(1.0 - 0.25 * per_leg * per_leg, 0.25))
-    hip -= _LOWER * leg_length * max(0.0, per_leg - _LONG)
+    hip -= leg_length * (_LOWER * max(0.0, per_leg - _LONG) + _FLAT * max(0.0, 1.0 - strike / usual))
     arc, most = leg_length - hip, 2.0 * _RISING * (step / (2.0 * math.pi)) ** 2
     return SpeedGait(
         step_length=length,
@@ -92,7 +99,7 @@ def speed_gait(
         com_height=hip + com_above_hip,
         rise=min(arc, most),
         heel_off=min(_HEEL_OFF * per_leg, 1.0),
-        heel_strike=min(_HEEL_STRIKE * per_leg * per_leg, 0.6),
+        heel_strike=strike,
         ramp=max(0, math.ceil(per_leg / _EASY) - 1),
     )
 

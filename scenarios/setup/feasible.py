@@ -198,7 +198,7 @@ class _Calm:
         found: Proposal = {} if ground or self.steps == 1.0 else _shorter(keys, self.steps)
         if self.ground < 1.0:
             found |= _times(keys.terrain, "terrain", ground, self.ground)
-        if self.time > 1.0:
+        if self.time > 1.0 and keys.gait.speed is None:
             found |= _times(keys.gait, "gait", ("single_support",), self.time)
         if self.posture:
             height = robot.com_height * _HEIGHTS[(self.posture - 1) % len(_HEIGHTS)]
@@ -213,7 +213,9 @@ def _ground(keys: Scenario) -> tuple[str, ...]:
 
 
 def _shorter(keys: Scenario, share: float) -> Proposal:
-    """The walk with steps of a share of their size, or with a share of its velocities."""
+    """The walk with steps of a share of their size, or with a share of its speed or its velocities."""
+    if keys.gait.speed is not None:
+        return _times(keys.gait, "gait", ("speed",), share)
     if not keys.gait.velocity:
         return _times(keys.gait, "gait", _STRIDE, share)
     slower = ({name: _rounded(share * value) for name, value in velocity} for velocity in keys.gait.velocity)

@@ -29,6 +29,7 @@ from surefoot.scenarios.log.encoding import MAGIC
 from surefoot.scenarios.record import provenance
 from surefoot.scenarios.setup.checks.checks import check
 from surefoot.scenarios.setup.checks.criteria import criteria_problems
+from surefoot.scenarios.setup.groups.speed import FOLLOWING
 from surefoot.scenarios.setup.keys import scenario_problem
 from surefoot.scenarios.setup.robot.robots import Robots
 from surefoot.scenarios.setup.sized import say_for, sized_walk
@@ -256,6 +257,7 @@ def _source(written: Written, overrides: Overrides, robots: Robots) -> Source:
     _size(source, overrides, robots)
     own, written_for_it = source.value.get("criteria"), _seat(source.value) is not None
     asked = list(own) if isinstance(own, dict) else []
+    _follow_speed(source, overrides, robots)
     apply_overrides(source, overrides)
     _place_files(source, Path.cwd())
     if _seat(source.value) is not None:
@@ -267,7 +269,7 @@ def _source(written: Written, overrides: Overrides, robots: Robots) -> Source:
 
 def _size(source: Source, overrides: Overrides, robots: Robots) -> None:
     """Translate a file for the robot that it is run with, whose knees are to be bent as the other one's."""
-    given = overrides if isinstance(overrides, Mapping) else [one.partition("=")[0].strip() for one in overrides]
+    given = _names(overrides)
     if "sized_for" not in source.value and "sized_for" not in given:
         return
     before = copy.deepcopy(source.value)
@@ -282,6 +284,40 @@ def _size(source: Source, overrides: Overrides, robots: Robots) -> None:
     with suppress(ParameterError):
         source.value["gait"]["com_height"] = bent_once(of, walk, robots)
         source.written["gait", "com_height"] = f"{of.gait.com_height:g} in the file, for {names[0]}"
+
+
+def _follow_speed(source: Source, overrides: Overrides, robots: Robots) -> None:
+    """Let what follows from a speed in the text follow from the one that is set over it.
+
+    A log has all numbers of its scenario. Those that are not as the speed has them were given, and stay.
+    """
+    gait = source.value.get("gait")
+    if "gait.speed" not in _names(overrides) or not isinstance(gait, dict) or gait.get("speed") is None:
+        return
+    bare = copy.deepcopy(source.value)
+    for key in FOLLOWING:
+        _drop(bare, key)
+    derived = _sound(bare, robots)
+    values = {} if derived is None else derived.model_dump(mode="json")
+    for key in FOLLOWING:
+        with suppress(LookupError, TypeError):
+            if value_at(source.value, ".".join(key)) == value_at(values, ".".join(key)):
+                _drop(source.value, key)
+
+
+def _names(overrides: Overrides) -> list[str]:
+    """The dotted keys of overrides."""
+    given = overrides if isinstance(overrides, Mapping) else [one.partition("=")[0].strip() for one in overrides]
+    return [str(name) for name in given]
+
+
+def _drop(values: Any, key: Key) -> None:
+    """Take a key out of nested groups, if it is there."""
+    *groups, last = key
+    for name in groups:
+        values = values.get(name) if isinstance(values, dict) else None
+    if isinstance(values, dict):
+        values.pop(last, None)
 
 
 def _sound(values: dict[str, Any], robots: Robots) -> Scenario | None:

@@ -17,6 +17,7 @@ from surefoot.wbc.parameters import WbcParameters
 from surefoot.wbc.qp.data import QpData
 from surefoot.wbc.reference import WbcReference
 from surefoot.wbc.tasks import Task
+from surefoot.wbc.tasks.knees import Knees
 from surefoot.wbc.types import FootSensing, RobotState
 
 PERIOD = 0.002
@@ -57,11 +58,12 @@ class Robot:
         arm_back: tuple[float, float] = (1.0, 1.0),
         driven: np.ndarray | None = None,
         kind: type[WholeBodyController] = WholeBodyController,
+        knees: Knees | None = None,
     ) -> WholeBodyController:
         return kind(
             self.model, self.frames, Sole(HALF_SOLE, HALF_SOLE, 0.8), self.limits, self.standing[7:], self.leg_joints,
             PERIOD, parameters or WbcParameters(), limbs, self.shoulders, tasks,
-            arm_back=arm_back, driven=driven,
+            arm_back=arm_back, driven=driven, knees=knees,
         )  # fmt: skip
 
     def moved(self, rng: np.random.Generator, offset: float = 0.05, speed: float = 0.3) -> RobotState:

@@ -17,7 +17,7 @@ from surefoot.planner.swing.step_region import StepRegion
 from surefoot.planner.types import Array, Foot, Footstep, PhaseInfo, PhaseKind, Twist
 from surefoot.scenarios.file import schema
 
-EQUAL_STEPS = ("steps", "step_length", "lateral_step", "turn")
+EQUAL_STEPS = ("steps", "step_length", "lateral_step", "turn", "ramp")
 """Keys of a gait of equal steps, which say nothing beside a velocity or footsteps."""
 
 _STOPPING = 3.0

@@ -6,12 +6,36 @@ from pydantic import BaseModel
 
 from surefoot.models.facts import RobotFacts
 from surefoot.planner.steps.speed import speed_gait
+from surefoot.scenarios.errors import Key
 from surefoot.scenarios.file.group import ControllerSettings
 from surefoot.scenarios.file.schema import Scenario
 from surefoot.similarity import Similarity
 from surefoot.wbc.parameters import StraightKnees, TaskWeights, WbcParameters
 
 G = TypeVar("G", bound=BaseModel)
+
+_OF_STEPS = (
+    "step_length",
+    "single_support",
+    "double_support",
+    "com_height",
+    "apex_single",
+    "apex_double",
+    "heel_off",
+    "heel_strike",
+    "ramp",
+)
+
+_ASKED = ("step_length", "single_support", "double_support", "heel_strike")
+"""Of these, those on which others depend."""
+
+FOLLOWING: tuple[Key, ...] = (
+    *(("gait", name) for name in _OF_STEPS),
+    ("planner", "knee"),
+    ("wbc", "weights", "com_vertical"),
+    ("wbc", "knees", "weight"),
+)
+"""Keys that follow from the speed where they are not given."""
 
 _STRAIGHT = WbcParameters(weights=TaskWeights(com_vertical=1.2), knees=StraightKnees(weight=0.006))
 """The controller of legs that are nearly straight: the knees say as much as the plan does how high the CoM is."""
@@ -32,23 +56,24 @@ def with_speed(scenario: Scenario, facts: RobotFacts, size: Similarity, given: f
     gait = scenario.gait
     if gait.speed is None:
         return scenario
-    asked = {name: getattr(gait, name) for name in ("step_length", "single_support", "double_support") if name in given}
+    asked = {name: getattr(gait, name) for name in _ASKED if name in given}
     derived = speed_gait(gait.speed, facts.leg_length, facts.com_above_hip, **asked)
-    wanted = {
-        "step_length": derived.step_length,
-        "single_support": derived.single_support,
-        "double_support": derived.double_support,
-        "com_height": derived.com_height,
-        "apex_single": derived.rise,
-        "apex_double": 0.0,
-        "heel_off": derived.heel_off,
-        "heel_strike": derived.heel_strike,
-        "ramp": derived.ramp,
-    }
-    update: dict[str, Any] = {"gait": _with(gait, wanted, given)}
+    numbers = (
+        derived.step_length,
+        derived.single_support,
+        derived.double_support,
+        derived.com_height,
+        derived.rise,
+        0.0,
+        derived.heel_off,
+        derived.heel_strike,
+        derived.ramp,
+    )
+    update: dict[str, Any] = {"gait": _with(gait, dict(zip(_OF_STEPS, numbers, strict=True)), given)}
     if "knee" not in scenario.planner.model_fields_set:
         update["planner"] = scenario.planner.model_copy(update={"knee": "straight"})
-    update["wbc"] = _controller(scenario.wbc, size.scaled(_STRAIGHT))
+    if scenario.walker == "full":
+        update["wbc"] = _controller(scenario.wbc, size.scaled(_STRAIGHT))
     return scenario.model_copy(update=update)
 
 

@@ -1,0 +1,76 @@
+"""Walks of one number in full physics, from sensors: straight legs, and what they save."""
+
+import pytest
+
+from surefoot.scenarios.run.run import run_scenario
+from surefoot.scenarios.setup.load import load
+
+SOUND = {
+    "fell": False,
+    "steps_taken": "steps_planned",
+    "wbc_fallbacks": {"max": 0},
+    "self_contact_time": {"max": 0},
+    "standing_time_final": {"min": 1.0},
+}
+
+
+def walked(tmp_path, speed, steps=16, criteria=None, **overrides):
+    gait = {"speed": speed, "steps": steps}
+    keys = {"gait": gait, "criteria": {**SOUND, **(criteria or {})}, **overrides}
+    return run_scenario(load("walk", keys), tmp_path).verdict
+
+
+@pytest.mark.physics
+def test_a_walk_of_one_number_has_straight_knees_and_costs_less_than_a_bent_one(tmp_path):
+    straight = walked(tmp_path / "straight", 0.8)
+    assert straight.reasons == ()
+    length, single, double = 0.461, 0.438, 0.138
+    bent = {"steps": 16, "step_length": length, "single_support": single, "double_support": double}
+    flat = run_scenario(
+        load("walk", {"gait": {**bent, "com_height": 0.98, "heel_off": 0.5}, "criteria": SOUND}), tmp_path / "bent"
+    ).verdict
+    assert flat.reasons == ()
+    assert straight.metrics["knee_stance_mean"] < 0.36 < 0.6 < flat.metrics["knee_stance_mean"]
+    assert straight.metrics["knee_heel_strike"] < 0.31
+    assert straight.metrics["landing_peak"] < 1.7
+    assert straight.metrics["cost_of_transport"] < 0.9 * flat.metrics["cost_of_transport"]
+    assert straight.metrics["heel_strike_pitch"] > 0.19
+
+
+@pytest.mark.physics
+def test_the_knee_task_straightens_what_is_held_softly(tmp_path):
+    """Of a CoM that is held softly alone knees bend more; the height law alone costs more."""
+    both, soft, stiff = (
+        walked(tmp_path / name, 0.8, 12, wbc={"weights": {"com_vertical": height}, "knees": {"weight": knee}}).metrics
+        for name, height, knee in (("both", 1.2, 0.02), ("soft", 1.2, 0.0), ("stiff", 2.5, 0.0))
+    )
+    assert both["knee_midstance"] < soft["knee_midstance"]
+    assert both["cost_of_transport"] < stiff["cost_of_transport"]
+
+
+@pytest.mark.physics
+def test_another_robot_walks_by_its_speed(tmp_path):
+    verdict = walked(tmp_path, 0.8, 14, robot="g1")
+    assert verdict.reasons == ()
+    assert verdict.metrics["knee_stance_mean"] < 0.45
+
+
+ROWS = {
+    0.5: {"knee_stance_mean": 0.32, "knee_heel_strike": 0.30, "cost_of_transport": 0.38, "landing_peak": 1.5},
+    0.8: {"knee_stance_mean": 0.36, "knee_heel_strike": 0.29, "cost_of_transport": 0.40, "landing_peak": 1.7},
+    1.06: {"knee_stance_mean": 0.47, "knee_heel_strike": 0.38, "cost_of_transport": 0.57, "landing_peak": 1.9},
+}
+
+
+@pytest.mark.long
+@pytest.mark.parametrize("friction", [0.8, 0.5])
+@pytest.mark.parametrize("share", [0.9, 1.0, 1.1])
+@pytest.mark.parametrize("speed", ROWS)
+def test_the_table_of_speeds_and_its_neighbours(tmp_path, speed, share, friction):
+    looser = 1.0 if share == 1.0 else 1.1
+    bounds = {name: {"max": looser * most} for name, most in ROWS[speed].items()}
+    criteria = {**bounds, "foot_slip_max": {"max": 0.005}, "torque_at_limit_fraction": {"max": 0.01}}
+    for seed in (1, 2, 3):
+        given = {"terrain.friction": friction, "seed": seed}
+        verdict = walked(tmp_path / str(seed), share * speed, 24, criteria, **given)
+        assert verdict.reasons == (), (speed, share, friction, seed)

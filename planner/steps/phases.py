@@ -76,7 +76,9 @@ def phases_of(steps: Sequence[Step], stands: bool) -> tuple[Phase, ...]:
             stance = step.place.foot.other
             single, double = step.single_support, step.double_support
             number, point = step.number, step.support
-            swung = _rolls(step.toe_off, step.heel_strike)
+            # A heel that leaves as the other one lands does so between two ticks.
+            soon = leaving if stop is None and step.heel_strike is not None else None
+            swung = _rolls(step.toe_off, step.heel_strike, soon)
             swing = Phase(PhaseKind.SINGLE, step.lift_off, single, number, stance, point, rolls=swung)
             stood = _rolls(step.heel_strike, leaving if stop is None else None)
             after = Phase(PhaseKind.DOUBLE, step.touchdown, double, number, None, point, rolls=stood)

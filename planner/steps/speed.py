@@ -20,6 +20,9 @@ _HEEL_OFF, _HEEL_STRIKE = 1.08, 0.95
 
 With both the ankles are as much higher between two feet as knees are bent there by 15 degrees."""
 
+_MOST_OFF, _MOST_STRIKE = 1.0, 0.6
+"""Greatest of both pitches, as far as ankles go at all [rad]."""
+
 _RISING = 1.7
 """Greatest vertical acceleration of the CoM, whatever the arc of a straight leg asks for [m/s^2]."""
 
@@ -87,9 +90,9 @@ def speed_gait(
     length, single, double = _stride(speed, leg_length, step_length, single_support, double_support)
     per_leg, step = abs(length) / leg_length, single + double
     # Both legs straight on flat soles in the middle of double support: feet that roll leave their knees room.
-    usual = min(_HEEL_STRIKE * per_leg * per_leg, 0.6)
+    usual = min(_HEEL_STRIKE * per_leg * per_leg, _MOST_STRIKE)
     strike = usual if heel_strike is None else heel_strike
-    hip = leg_length * math.sqrt(max(1.0 - 0.25 * per_leg * per_leg, 0.25))
+    hip = leg_length * math.sqrt(max(1.0 - (0.5 * per_leg) ** 2, 0.0))
     hip -= leg_length * (_LOWER * max(0.0, per_leg - _LONG) + _FLAT * max(0.0, 1.0 - strike / usual))
     arc, most = leg_length - hip, 2.0 * _RISING * (step / (2.0 * math.pi)) ** 2
     return SpeedGait(
@@ -98,7 +101,7 @@ def speed_gait(
         double_support=double,
         com_height=hip + com_above_hip,
         rise=min(arc, most),
-        heel_off=min(_HEEL_OFF * per_leg, 1.0),
+        heel_off=min(_HEEL_OFF * per_leg, _MOST_OFF),
         heel_strike=strike,
         ramp=max(0, math.ceil(per_leg / _EASY) - 1),
     )

@@ -130,7 +130,7 @@ def test_the_edge_rests_and_the_foot_pitches_as_planned(rolled, side):
     terms = controller.terms
     motion = terms.sole_jacobian[1] @ report.acceleration + terms.sole_bias[1]
     expected = np.zeros(6)
-    expected[4] = (20.0 if side > 0 else 60.0) * roll[1] + roll[2]
+    expected[4] = (20.0 if side > 0 else 100.0) * roll[1] + roll[2]
     np.testing.assert_allclose(motion, expected, atol=1e-5)
 
 

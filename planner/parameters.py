@@ -307,6 +307,7 @@ class PlannerParameters:
         moves: first sample of each block of constant jerk (see `planner.model.jerk`).
         leg: inertia of the legs; the default is the paper's point mass without any.
         step_adaptation: what a disturbance may change about the footsteps.
+        toes_bear: whether ankles bear the robot with its weight on the toe edge of one foot, so that heels leave early.
         search: speed of the swing foot at the planned touchdown, and how it goes on while it feels no ground.
         recovery: numbers of step adjustment, capture margin and what belongs to them.
         solvers: QP solvers of qpsolvers, in the order in which they are tried (see `planner.laws.law` for the choice).
@@ -350,6 +351,7 @@ class PlannerParameters:
         "how far from the sole's centre, forward and sideways, the ankles' torques let the CoP go",
         endless=True,
     )
+    toes_bear: bool = True
     cop_authority: tuple[float, float] = number(
         (math.inf, math.inf),
         "m",

@@ -7,7 +7,7 @@ import numpy as np
 
 from surefoot.planner.geometry.plane import frame_rotation
 from surefoot.planner.steps.schedule import Schedule
-from surefoot.planner.steps.step import Step, Stop, lands_on_heel
+from surefoot.planner.steps.step import Step, Stop, leaves_early
 from surefoot.planner.swing import rolling
 from surefoot.planner.swing.leg_reach import LegReach
 from surefoot.planner.swing.rolling import RollSpan
@@ -124,8 +124,9 @@ def with_heel_lifted(schedule: Schedule, number: int, radius: float) -> Schedule
     angle = rolling.stretched(ahead, radius, schedule.ground.parameters.size.length)
     if angle <= (step.toe_off.angle if step.toe_off else 0.0):
         return schedule
-    foot, double, on_heel = step.place.foot, stance.double_support, lands_on_heel(stance, None)
-    roll = rolling.toe_off(foot, double, step.lift_off, step.single_support, angle, on_heel)
+    foot, double = step.place.foot, stance.double_support
+    early = leaves_early(stance, None, schedule.ground.parameters)
+    roll = rolling.toe_off(foot, double, step.lift_off, step.single_support, angle, early)
     step = replace(step, toe_off=roll)
     return schedule.with_steps((*schedule.steps[:at], step, *schedule.steps[at + 1 :]))
 

@@ -150,8 +150,8 @@ class Step:
             stop = stop.retimed(double)
         lift_off = lift_off_after(before, stop)
         if leaving is not None and now < leaving.start:
-            ramp, on_heel = ramp_before(before, stop), lands_on_heel(before, stop)
-            leaving = rolling.toe_off(leaving.foot, ramp, lift_off, single, leaving.angle, on_heel)
+            ramp, early = ramp_before(before, stop), leaves_early(before, stop, parameters)
+            leaving = rolling.toe_off(leaving.foot, ramp, lift_off, single, leaving.angle, early)
         elif leaving is not None:
             single = max(single, (leaving.end - lift_off) / rolling.LEVEL_AGAIN)
         swing = unit_swing(single, self.climb, self.course, parameters)
@@ -190,9 +190,9 @@ def ramp_before(before: Step, stop: Stop | None) -> float:
     return before.double_support if stop is None else stop.shift - stop.rest
 
 
-def lands_on_heel(before: Step, stop: Stop | None) -> bool:
-    """Return true if a foot leaves the ground just after the other one's landing on its heel."""
-    return stop is None and before.heel_strike is not None
+def leaves_early(before: Step, stop: Stop | None, parameters: PlannerParameters) -> bool:
+    """Return true if a foot rolls as soon as the other one lands: on its heel, with ankles that bear it on its toes."""
+    return stop is None and before.heel_strike is not None and parameters.toes_bear
 
 
 def start_step(number: int, place: Footstep, path: Path, gait: GaitParameters, ground: Ground) -> Step:
@@ -266,7 +266,9 @@ def make_step(
         single_support=single,
         double_support=double,
         toe_off=(
-            rolling.toe_off(foot, ramp_before(last, stop), lift_off, single, gait.heel_off, lands_on_heel(last, stop))
+            rolling.toe_off(
+                foot, ramp_before(last, stop), lift_off, single, gait.heel_off, leaves_early(last, stop, parameters)
+            )
             if leaves
             else None
         ),

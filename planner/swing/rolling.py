@@ -22,8 +22,8 @@ from surefoot.planner.types import Array, Edge, Foot, Footstep
 _BEGIN = 0.25
 """Share of the weight shift after which the heel leaves the ground at toe-off [-].
 
-With a front foot that lands on its heel it is none: at 0.8 m/s the rear leg is straight then, and a heel that waits
-costs a tenth more energy."""
+Where the front foot lands on its heel and ankles bear the robot on its toes it is none: at 0.8 m/s the rear leg is
+straight then, and a heel that waits costs a tenth more energy."""
 
 _END = 0.7
 """Share of single support after which the foot is level again after toe-off [-].
@@ -34,7 +34,7 @@ is left."""
 LEVEL_AGAIN = 0.9
 """The same at most, of a swing that is shortened when its foot has begun to roll [-]."""
 
-BRAKING, LEAD, SINKING = 12.0, 0.25, 0.1
+BRAKING, LEAD, SINKING = 12.0, 0.25, 0.15
 """The arrival of a foot that lands on its heel, see `SwingCourse` [-, -, m/s].
 
 A foot that is ahead early is farther from its hip than its leg is long, which straightens the knee against its end
@@ -171,7 +171,7 @@ def strides(behind: Footstep, ahead: Footstep, half_length: float) -> bool:
     return bool(way[0] > _LEAST_STEP * half_length)
 
 
-def toe_off(foot: Foot, ramp: float, lift_off: float, single: float, angle: float, on_heel: bool) -> RollSpan:
+def toe_off(foot: Foot, ramp: float, lift_off: float, single: float, angle: float, early: bool) -> RollSpan:
     """The roll of a foot that leaves the ground.
 
     Args:
@@ -180,9 +180,9 @@ def toe_off(foot: Foot, ramp: float, lift_off: float, single: float, angle: floa
         lift_off: when it leaves the ground [samples].
         single: duration of its single support [samples].
         angle: greatest pitch [rad].
-        on_heel: whether the other foot has just landed on its heel.
+        early: whether it does so as soon as the other foot lands.
     """
-    waits = 0.0 if on_heel else _BEGIN
+    waits = 0.0 if early else _BEGIN
     return RollSpan(foot, lift_off - (1.0 - waits) * ramp, lift_off + _END * single, angle)
 
 

@@ -278,7 +278,8 @@ class Walk:
         """
         authority = math.inf, 0.0 if self.robot.roles.feet_lean else math.inf
         room = cop_room(leg, self.facts, self.robot.mass)
-        parameters = replace(self.parameters, leg=leg, cop_room=room, cop_authority=authority)
+        toes = room[0] >= 0.5 * self.robot.sole_length
+        parameters = replace(self.parameters, leg=leg, cop_room=room, cop_authority=authority, toes_bear=toes)
         given = (self.gait, feet, *self.sole, self.ground.terrain, parameters, self.formulation.heights)
         profile = guarded_law(self.formulation.profile, self.formulation.guard)
         if profile.planner is not None:

@@ -48,6 +48,10 @@ _ZMP = tuple(f"zmp_error_rms.{axis}" for axis in (0, 1))
 SENSED = (*(f"velocity_estimation_error_rms.{axis}" for axis in (0, 1)), *_ZMP)
 _PLANNED = ("planner_infeasible_fraction", *_ZMP, "zmp_inside_fraction")
 HEEL_OFF = ("speed_mean", "cost_of_transport", "knee_angle_mean", "knee_torque_rms", "torque_ratio_max")
+SPEEDS = (
+    *("speed_mean", "knee_stance_mean", "knee_heel_strike", "cost_of_transport", "landing_peak"),
+    *("foot_slip_max", "torque_at_limit_fraction"),
+)
 HIDDEN = ("cop_ratio_p99", "step_shift", "ghost_force_max")
 WITHOUT = (*(f"com_estimation_error_rms.{axis}" for axis in range(3)), "estimation_drift", "ghost_force_max")
 ROUGH = ("speed_mean", "cop_ratio_p99", "torque_ratio_max")
@@ -77,6 +81,7 @@ MADE = {
     "rules": Made("docs/campaigns/rules.yaml"),
     "profiles": _of_page("profiles", "profile", "fidelity", *_PLANNED),
     "profiles-on-stairs": _of_page("profiles-on-stairs", "terrain.riser", "planner.profile", *_ZMP),
+    "speeds": _of_page("speeds", "terrain.friction", "gait.speed", *SPEEDS),
     "heel-off": _of_page("heel-off", "gait.heel_off", *HEEL_OFF),
     "rough-ground": _of_page("rough-ground", "ground", *ROUGH),
     "sensor-faults": Made("sensor-faults", columns=("fault", "status", *SENSED, *HIDDEN)),

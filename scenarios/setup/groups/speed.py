@@ -27,7 +27,7 @@ _OF_STEPS = (
 )
 
 _ASKED = ("step_length", "single_support", "double_support", "heel_strike")
-"""Of these, those on which others depend."""
+"""Keys on which others of these depend."""
 
 FOLLOWING: tuple[Key, ...] = (
     *(("gait", name) for name in _OF_STEPS),

@@ -46,7 +46,7 @@ def test_the_arc_of_a_straight_leg_is_flattened_where_it_would_shake_the_body():
 
 @pytest.mark.parametrize("scale", [0.5, 0.72, 1.3])
 def test_robots_of_another_size_walk_alike(scale):
-    """By Froude's number: lengths as the legs, times as their root, angles as they are."""
+    """Lengths go as the legs, times as their root; angles stay (Froude's number)."""
     one, other = speed_gait(0.8, LEG, ABOVE), speed_gait(0.8 * math.sqrt(scale), scale * LEG, scale * ABOVE)
     factors = (scale, math.sqrt(scale), math.sqrt(scale), scale, scale, 1.0, 1.0, 1.0)
     expected = [value * factor for value, factor in zip(astuple(one), factors, strict=True)]

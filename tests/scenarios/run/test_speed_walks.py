@@ -39,7 +39,7 @@ def test_a_walk_of_one_number_has_straight_knees_and_costs_less_than_a_bent_one(
 
 @pytest.mark.physics
 def test_the_knee_task_straightens_what_is_held_softly(tmp_path):
-    """Of a CoM that is held softly alone knees bend more; the height law alone costs more."""
+    """Knees bend more under a CoM that is held softly alone, and a height that is held stiffly costs more."""
     both, soft, stiff = (
         walked(tmp_path / name, 0.8, 12, wbc={"weights": {"com_vertical": height}, "knees": {"weight": knee}}).metrics
         for name, height, knee in (("both", 1.2, 0.02), ("soft", 1.2, 0.0), ("stiff", 2.5, 0.0))

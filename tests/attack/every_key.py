@@ -48,6 +48,11 @@ TEXTS = {
                   jerk_weight: 1.0e-5, step_adaptation: none, knee: bent, rise: double, filter: kalman}
         sensing: {source: truth, zmp_noise: 0.001, com_noise: 0.001, force_estimate: false}
         """,
+    "speed": """
+        duration: 0.06
+        robot_options: {foot_length: 0.22, foot_width: 0.11}
+        gait: {steps: 4, speed: 0.4}
+        """,
     "velocity": """
         duration: 0.06
         gait: {velocity: [{time: 0, v_x: 0.1, v_y: 0.02, yaw_rate: 0.05}, {time: 6}]}

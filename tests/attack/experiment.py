@@ -82,6 +82,7 @@ BODIES = {
 """Bases in full physics."""
 
 VALUES: dict[str, tuple[Any, ...]] = {
+    "gait.speed": (0.4,),
     "robot": ("g1",),
     "sized_for": ("g1",),
     "requirements": (["REQ-7"],),

@@ -112,6 +112,11 @@ def experiments(tmp_path_factory):
         ("body-stand", "sensing.options", {"covariance_rate": 20.0}, "refused"),
         ("body-stand", "instruments", [{"name": "altimeter"}], "felt"),
         ("stand", "gait.single_support", 0.5, "noted"),
+        ("stand", "gait.ramp", 1, "noted"),
+        ("stand", "planner.knee", "straight", "noted"),
+        ("paper", "planner.knee", "straight", "noted"),
+        ("body-stand", "wbc.knees", {"flexion": 0.3}, "noted"),
+        ("body-stand", "wbc.knees.weight", 0.01, "felt"),
         ("stand", "commands", [{"time": 0.3, "single_support": 0.5}], "failed"),
     ],
 )

@@ -128,6 +128,7 @@ _STEPPING = (
     "apex_double",
     "heel_off",
     "heel_strike",
+    "ramp",
 )
 """Keys of a gait that say how steps are taken."""
 
@@ -138,7 +139,10 @@ _TIMES = ("single_support", "double_support", "initial_stand")
 def _without_steps(walk: Walk) -> Iterator[str]:
     """Note what a robot that takes no step has no use for."""
     names = (*_STEPPING, *(() if walk.keys.duration is None else _TIMES))
-    yield from (f"{key} has no effect on a robot that takes no step" for key in _given(walk, "gait", names))
+    unused = list(_given(walk, "gait", names))
+    if walk.keys.planner.knee == "straight":
+        unused.append("planner.knee straight")
+    yield from (f"{key} has no effect on a robot that takes no step" for key in unused)
 
 
 def _without_occasion(walk: Walk) -> Iterator[str]:
@@ -148,10 +152,22 @@ def _without_occasion(walk: Walk) -> Iterator[str]:
         yield "planner.rise has no effect on level ground"
     if keys.robot_options.payload_body is not None and keys.robot_options.payload_mass == 0.0:
         yield "robot_options.payload_body has no effect without robot_options.payload_mass"
+    if keys.planner.knee == "straight" and walk.formulation.profile.height is not None:
+        profile = keys.planner.profile
+        yield f"planner.knee straight has no effect with planner.profile {profile}, which has its own height"
+    yield from _without_weight(walk)
     if load is not None and load.mass == 0.0:
         yield "errors.payload has no effect without a mass"
     if walk.walker.has_body and keys.sensing.preset is not None and keys.sensing.source == DEFAULTS["sensing"]:
         yield f"sensing.preset has no effect beside sensing.source {keys.sensing.source}, which reads no sensor"
+
+
+def _without_weight(walk: Walk) -> Iterator[str]:
+    """Note numbers of the task of the knees where that has no weight."""
+    knees = getattr(walk.keys.wbc, "knees", None)
+    given = {} if knees is None else knees.model_dump(exclude_none=True)
+    if walk.walker.has_body and not walk.controller.knees.weight:
+        yield from (f"wbc.knees.{name} has no effect without wbc.knees.weight" for name in given if name != "weight")
 
 
 def _unshaped(walk: Walk) -> Iterator[str]:

@@ -300,8 +300,9 @@ def _follow_speed(source: Source, overrides: Overrides, robots: Robots) -> None:
     derived = _sound(bare, robots)
     values = {} if derived is None else derived.model_dump(mode="json")
     for key in FOLLOWING:
+        name = ".".join(map(str, key))
         with suppress(LookupError, TypeError):
-            if value_at(source.value, ".".join(key)) == value_at(values, ".".join(key)):
+            if value_at(source.value, name) == value_at(values, name):
                 _drop(source.value, key)
 
 

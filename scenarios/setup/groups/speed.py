@@ -84,8 +84,7 @@ def _with(group: G, wanted: dict[str, Any], given: frozenset[str]) -> G:
 
 def _controller(settings: ControllerSettings | None, straight: WbcParameters) -> ControllerSettings:
     """The group ``wbc`` with the numbers of straight legs where it has none."""
-    keys = ControllerSettings() if settings is None else settings
-    values = keys.model_dump()
+    values: dict[str, Any] = {} if settings is None else settings.model_dump()
     for group, name, value in (
         ("weights", "com_vertical", straight.weights.com_vertical),
         ("knees", "weight", straight.knees.weight),

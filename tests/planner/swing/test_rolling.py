@@ -18,6 +18,7 @@ from surefoot.planner.references.com_height import SmoothHeight
 from surefoot.planner.references.nominal_feet import NominalFeet
 from surefoot.planner.state import WalkState
 from surefoot.planner.steps.gait import GaitParameters
+from surefoot.planner.steps.schedule import Schedule
 from surefoot.planner.swing.course import Ground
 from surefoot.planner.swing.leg_reach import LegReach
 from surefoot.planner.swing.rolling import FootRoll, bump
@@ -199,6 +200,17 @@ def test_a_heel_leaves_the_ground_as_the_other_one_lands(schedule):
     touchdowns = {phase.end for phase in schedule(ROLLING).phases if phase.kind is PhaseKind.SINGLE}
     assert {span.start for span in flat_spans}.isdisjoint(touchdowns)
     assert spans and {span.start for span in spans} <= touchdowns
+
+
+def test_a_heel_waits_where_ankles_do_not_bear_the_robot_on_its_toes(stand):
+    starts = []
+    for bear in (True, False):
+        parameters = PlannerParameters(reach_length=0.8, toes_bear=bear)
+        ground = Ground(flat(), np.array([0.11, 0.055]), parameters)
+        schedule = Schedule.start(ROLLING, stand(ROLLING.step_width), ground).extended(np.inf)
+        starts.append([step.toe_off.start for step in schedule.steps if step.toe_off])
+    early, late = np.array(starts)
+    np.testing.assert_allclose(late - early, 0.25 * ROLLING.double_support / 0.02)
 
 
 def test_a_step_that_is_moved_back_lands_flat_unless_its_toes_are_on_their_way_up(stand):

@@ -20,26 +20,33 @@ pytestmark = pytest.mark.unit
 STEP = 0.01
 
 
-def cop_room(body, share=1.0):
-    """Room of the CoP in a walk of a robot with this share of its torques, as its planner is given it."""
+def parameters_of(body, share=1.0):
+    """A walk of a robot with this share of its torques, its ankle, and the parameters that its planner is given."""
     walk = resolve(surefoot.load("walk"))
     walk = replace(walk, described=replace(walk.robot, torque_limit=share * walk.robot.torque_limit))
     posture = start_posture(walk, body)
     leg = leg_inertia(body.model, body.frames, posture, body.leg_joints)
-    return walk, leg.chain.ankle, walk.planner(feet_at(body, posture), leg).parameters.cop_room
+    return walk, leg.chain.ankle, walk.planner(feet_at(body, posture), leg).parameters
 
 
 @pytest.mark.parametrize("share", [1.0, 0.5])
 def test_at_the_edge_of_its_room_the_cop_takes_its_share_of_the_ankles_torques(body, share):
-    walk, ankle, room = cop_room(body, share)
+    walk, ankle, parameters = parameters_of(body, share)
+    room = parameters.cop_room
     for name, side, off in zip(("left_ankle_pitch", "left_ankle_roll"), room, ankle, strict=False):
         limit = walk.robot.torque_limit[walk.robot.joint_names.index(name)]
         assert walk.robot.mass * 9.81 * (side + abs(off)) == pytest.approx(ANKLE_SHARE * limit, rel=1e-3)
 
 
 def test_an_ankle_without_torque_leaves_a_little_room(body):
-    walk, _, room = cop_room(body, 0.01)
-    np.testing.assert_allclose(room, LEAST_ROOM * np.array(walk.sole))
+    walk, _, parameters = parameters_of(body, 0.01)
+    np.testing.assert_allclose(parameters.cop_room, LEAST_ROOM * np.array(walk.sole))
+
+
+@pytest.mark.parametrize(("share", "bear"), [(1.0, True), (0.6, False)])
+def test_toes_bear_the_robot_where_the_ankles_have_the_torque_for_its_edge(body, share, bear):
+    walk, _, parameters = parameters_of(body, share)
+    assert parameters.toes_bear is bear is (parameters.cop_room[0] >= 0.5 * walk.sole[0])
 
 
 @pytest.fixture(scope="module")

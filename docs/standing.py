@@ -27,7 +27,7 @@ class Row(NamedTuple):
 
 
 OF_BASELINES: tuple[tuple[str, str, str], ...] = (
-    ("steady walk", "walk-fast", "speed_mean"),
+    ("steady walk", "walk-brisk", "speed_mean"),
     ("stairs of the tallest risers, edge under the sole", "stairs-tall", "stair_edge_margin_min"),
     ("stairs of the tallest risers, worst torque", "stairs-tall", "torque_ratio_max"),
     ("natural walk, ZMP against its reference", "walk", "zmp_error_rms"),

@@ -52,12 +52,12 @@ class Bare:
 
 def test_it_is_one_physics_step_before_the_message(tmp_path):
     """Physics at 1000 Hz, control at 500 Hz; by how much the message's own state would be off the page says."""
-    log = read(run_scenario(load("walk-fast"), tmp_path).log)
+    log = read(run_scenario(load("walk-brisk"), tmp_path).log)
     bare, zmp = Bare(log), log["/contact"].field("zmp")[:, :2]
     off = {
         steps: np.array([bare.zmp_after(tick, steps) - zmp[tick] for tick in range(1, len(zmp))]) for steps in (1, 0)
     }
     before, at = (1e3 * float(np.nanmax(np.abs(off[steps]))) for steps in (1, 0))
     assert before < 1.0
-    (said,) = re.findall(r"up to (\d+) mm at touchdowns of\s`walk-fast`", PAGE.read_text(encoding="utf-8"))
+    (said,) = re.findall(r"up to (\d+) mm at touchdowns of\s`walk-brisk`", PAGE.read_text(encoding="utf-8"))
     assert round(at) == int(said)

@@ -1,4 +1,4 @@
-"""Around `walk-fast`: other steps, timings, grounds and starts, with the same margins but for the speed."""
+"""Around `walk-brisk`: other steps, timings, grounds and starts, with the same margins but for the speed."""
 
 import math
 
@@ -24,7 +24,7 @@ VARIED = (
 @pytest.mark.parametrize("overrides", [*((v,) for v in VARIED), *((*NOISE, f"seed={v}") for v in range(4))], ids=str)
 def test_neighbours_walk(tmp_path, overrides):
     criteria = (SOUND.replace("footstep_error_max: {max: 0.01}, ", ""), "criteria.speed_mean={min: 0.8}")
-    verdict = run_scenario(load_scenario("walk-fast", [*overrides, *criteria]), tmp_path).verdict
+    verdict = run_scenario(load_scenario("walk-brisk", [*overrides, *criteria]), tmp_path).verdict
     assert verdict.reasons == ()
 
 
@@ -47,7 +47,7 @@ def test_heel_off_saves_work_and_torque(tmp_path, from_sensors):
 
 def _walked(override, folder):
     overrides = ("gait.steps=7", "gait.initial_stand=0.2", "criteria.speed_mean={min: 0.8}", override)
-    result = run_scenario(load_scenario("walk-fast", overrides), folder)
+    result = run_scenario(load_scenario("walk-brisk", overrides), folder)
     return result.verdict, read(result.log)
 
 

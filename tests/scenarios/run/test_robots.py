@@ -52,7 +52,7 @@ def test_a_robot_walks_fast(
     if from_sensors and robot == "g1":
         keys |= {f"criteria.{metric}": {"max": bound} for metric, bound in UNSURE.items()}
     settings = {"robot": robot, "criteria.speed_mean": {"min": speed}, **keys}
-    verdict = run_scenario(surefoot.load("walk-fast", settings), tmp_path).verdict
+    verdict = run_scenario(surefoot.load("walk-brisk", settings), tmp_path).verdict
     assert verdict.passed, verdict.reasons
 
 
@@ -69,7 +69,7 @@ def test_talos_stands_a_push_in_mid_single_support(tmp_path: Path, direction: fl
     ("robot", "scenario", "reason"),
     [
         ("talos", "stairs-tall", "shank"),
-        ("talos", "walk-fast", "no-load speed"),
+        ("talos", "walk-brisk", "no-load speed"),
         ("g1", "stairs-down", "right_ankle_pitch_joint"),
     ],
 )

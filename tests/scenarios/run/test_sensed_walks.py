@@ -254,12 +254,12 @@ PUSH = {"step": 3, "phase": "single", "fraction": 0.5, "duration": 0.1, "impulse
 
 
 @pytest.mark.physics
-@pytest.mark.parametrize("name", ["walk", pytest.param("walk-fast", marks=pytest.mark.long)])
+@pytest.mark.parametrize("name", ["walk", pytest.param("walk-brisk", marks=pytest.mark.long)])
 def test_walks_pass_from_good_sensors(name, tmp_path):
     verdict = surefoot.run(surefoot.load(name, {"seed": 1, **GOOD_SENSORS}), out=tmp_path).verdict
     assert verdict.passed, verdict.reasons
     assert max(verdict["com_estimation_error_rms"]) < 0.0025
-    assert max(verdict["velocity_estimation_error_rms"]) < (0.004 if name == "walk-fast" else 0.002)
+    assert max(verdict["velocity_estimation_error_rms"]) < (0.004 if name == "walk-brisk" else 0.002)
     assert verdict["tilt_estimation_error_rms"] < np.radians(0.2) and verdict["estimation_drift"] < 0.002
     assert verdict["step_shift"] < 1e-3
 

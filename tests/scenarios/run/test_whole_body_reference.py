@@ -37,7 +37,7 @@ def test_a_foot_is_unloaded_only_before_it_lifts():
         assert lifting[tick] == (after.stance.other if steps else -1)
 
 
-@pytest.fixture(scope="module", params=[("walk-fast", 2.4), ("walk-curve", 2.0)], ids=lambda case: case[0])
+@pytest.fixture(scope="module", params=[("walk-brisk", 2.4), ("walk-curve", 2.0)], ids=lambda case: case[0])
 def plans(request):
     """The plans of a walk; the feet of the fast one roll."""
     (name, seconds), found = request.param, []

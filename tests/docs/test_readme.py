@@ -90,7 +90,7 @@ def test_what_walks_has_the_numbers_of_the_scenarios_and_tests():
     up, tall, blocks = (catalogue(name) for name in ("stairs-up", "stairs-tall", "blocks"))
     step = up["gait"]["single_support"] + up["gait"]["double_support"]
     angles = [math.degrees(one["terrain"]["angle"]) for one in (catalogue("slope"), blocks)]
-    assert told["flat ground"] == [catalogue("walk-brisk")["criteria"]["speed_mean"]["min"]]
+    assert told["flat ground"] == [catalogue("walk-fast")["criteria"]["speed_mean"]["min"]]
     assert told["stairs"] == [2.0]
     assert "def test_treads_two_centimetres_off_are_found" in stairs
     feet = 100.0 * catalogue("stair-climbing")["robot_options"]["foot_length"]

@@ -21,9 +21,6 @@ if TYPE_CHECKING:
 
 Array = NDArray[np.float64]
 
-HIP_SHARE = 0.67
-"""Share of a hip's torque that swings a leg; the rest is for gravity and for a knee that is bent [-]."""
-
 PITCH, ROLL, YAW = 1, 0, 2
 """Axes of the world about which an upright leg swings forward and sideways, and turns."""
 
@@ -232,7 +229,10 @@ def com_height(robot: RobotDescription) -> float:
 
 
 def swing_acceleration(robot: RobotDescription) -> tuple[float, float]:
-    """Acceleration of the left leg's sole with the share of its hip's torque, forward and sideways [m/s^2]."""
+    """Acceleration of the left leg's sole by the torque of its hip, forward and sideways [m/s^2].
+
+    That of a straight leg. A leg that is bent as in a gait has less inertia, which makes up for what gravity takes.
+    """
     from surefoot.engines.windowless import mujoco
 
     model, data = _upright(robot)
@@ -245,7 +245,7 @@ def swing_acceleration(robot: RobotDescription) -> tuple[float, float]:
         unit[dof] = 1.0
         mujoco.mj_mulM(model, data, inertia, unit)
         limit = float(robot.torque_limit[robot.joint_names.index(name)])
-        reached.append(HIP_SHARE * robot.leg_length * limit / float(inertia[dof]))
+        reached.append(robot.leg_length * limit / float(inertia[dof]))
     return reached[0], reached[1]
 
 

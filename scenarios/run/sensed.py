@@ -61,6 +61,9 @@ class Senses:
             raise ParameterError(("readings",), f"a {type(readings).__name__} for this estimator", f"give {wanted}")
         if isinstance(readings, Measurement):
             state, wrench, last = self._estimate(readings), readings.wrench, self._last
+            if isinstance(state, Estimate):
+                # Of an estimator that says more than the state.
+                return state if state.wrench is not None else replace(state, wrench=wrench)
             # A world that measures into the same arrays, and a state of these, make the same estimate.
             if last is None or last.state is not state or last.wrench is not wrench:
                 self._last = last = Estimate(state, wrench)

@@ -35,8 +35,8 @@ class Estimator(Protocol):
 
     is_truth: bool
 
-    def estimate(self, measurement: Measurement) -> RobotState:
-        """The state now.
+    def estimate(self, measurement: Measurement) -> RobotState | Estimate:
+        """The state now, or that with what else the estimator knows.
 
         Args:
             measurement: of this tick; its arrays are overwritten by the next, and `q` and `v` are the truth, which an

@@ -74,11 +74,12 @@ def plan(answer: WalkPlan, *_: Any) -> WalkPlan:
     return answer
 
 
-def _state(answer: "RobotState", measurement: "Measurement") -> "RobotState":
-    """The state of an estimator, checked."""
-    fit(answer.q, measurement.q.shape, "q")
-    fit(answer.v, measurement.v.shape, "v")
-    return answer
+def _state(answer: "RobotState | Estimate", measurement: "Measurement") -> "RobotState | Estimate":
+    """The state of an estimator, or its estimate, checked."""
+    state = answer.state if isinstance(answer, Estimate) else answer
+    fit(state.q, measurement.q.shape, "q")
+    fit(state.v, measurement.v.shape, "v")
+    return _complete(answer) if isinstance(answer, Estimate) else answer
 
 
 def _estimate(answer: Estimate, readings: "Readings") -> Estimate:
@@ -87,10 +88,15 @@ def _estimate(answer: Estimate, readings: "Readings") -> Estimate:
     joints = len(readings.joint_position.values)
     fit(answer.state.q, (7 + joints,), "q", finite=False)
     fit(answer.state.v, (6 + joints,), "v", finite=False)
+    if answer.wrench is None and readings.wrench is None:
+        raise MisfitError("gave no wrench, and the feet have no force sensors")
+    return _complete(answer)
+
+
+def _complete(answer: Estimate) -> Estimate:
+    """An estimate, checked but for its state."""
     if answer.wrench is not None:
         fit(answer.wrench, (2, 6), "wrench")
-    elif readings.wrench is None:
-        raise MisfitError("gave no wrench, and the feet have no force sensors")
     if not 0.0 <= answer.wrench_age < math.inf:
         raise MisfitError(f"gave a wrench_age of {answer.wrench_age}, which should be a time")
     if answer.contact is not None:

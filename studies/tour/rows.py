@@ -14,7 +14,7 @@ from surefoot.scenarios.file.schema import Scenario
 from surefoot.scenarios.run.assembly import Parts
 from surefoot.scenarios.run.controller import Controller
 from surefoot.scenarios.setup.load import load
-from surefoot.studies.tour.odometry import LegOdometry
+from surefoot.studies.tour.odometry import ContractOdometry
 from surefoot.studies.tour.robot import robot_file
 from surefoot.studies.tour.walker import Goal
 from surefoot.studies.tour.world import TourWorld
@@ -58,7 +58,7 @@ class Row:
             ScenarioError: the walk cannot be walked by the robot of the tour.
         """
         scenario = scenario_of(self.keys)
-        parts = Parts(estimator=LegOdometry) if self.contract else None
+        parts = Parts(estimator=ContractOdometry) if self.contract else None
         return Controller(scenario.robot, scenario, parts=parts)
 
     def digest(self) -> str:

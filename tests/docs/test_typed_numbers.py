@@ -167,6 +167,7 @@ TYPED = {
     ("docs/benchmark-g1.md", "The rules"): (2, "what the benchmark of others gives: its robot and its drives"),
     ("docs/decisions/blocked-moves-and-slack.md", "What else was considered"): (4, "a record of its time"),
     ("docs/decisions/compiled-values.md", "What else was considered"): (4, "a record of its time"),
+    ("docs/decisions/feet-that-may-slide.md", "What else was considered"): (3, "a record of its time"),
     ("docs/decisions/kept-values.md", "What else was considered"): (18, "a record of its time"),
     ("docs/decisions/compiled-values.md", "Why"): (3, "a record of its time"),
     ("docs/decisions/legs-as-links.md", "What else was considered"): (3, "a record of its time"),

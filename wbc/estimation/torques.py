@@ -50,6 +50,8 @@ class TorqueWrench:
         held: whether a torque acted all the while since the call before, and the states are those at both ends, as
             under commanded torques. Else the mean of it and the torque of the call before counts. It suits velocities
             in the middle between two calls, and a torque that changes evenly.
+        base: changes of the base's velocities in a tick that nobody knows, linear and angular [m/s, rad/s]. By a linear
+            one of 0.3 m/s the base's velocity says nothing of the wrenches, as where it is to be found by them.
 
     Attributes:
         wrench: as of the last call, shape (2, 6) [N, N·m]; not finite where the state was not.
@@ -59,7 +61,13 @@ class TorqueWrench:
     """
 
     def __init__(
-        self, model: pin.Model, soles: tuple[str, str], period: float, sensors: SensorNoise, held: bool = True
+        self,
+        model: pin.Model,
+        soles: tuple[str, str],
+        period: float,
+        sensors: SensorNoise,
+        held: bool = True,
+        base: tuple[float, float] = BASE,
     ) -> None:
         self._model = model
         self._data = model.createData()
@@ -75,8 +83,8 @@ class TorqueWrench:
         # White noise of a velocity, differenced and low-passed, and that of a torque.
         differenced, passed = 2.0 * gain**2 / (2.0 - gain) / period**2, gain / (2.0 - gain)
         rate = max(sensors.encoder, 1e-7) * math.sqrt(2.0) / period
-        base = np.repeat(np.square(BASE), 3) * differenced
-        self._velocity_noise = np.concatenate((base, np.full(model.nv - 6, rate**2 * differenced)))
+        moved = np.repeat(np.square(base), 3) * differenced
+        self._velocity_noise = np.concatenate((moved, np.full(model.nv - 6, rate**2 * differenced)))
         self._torque_noise = (sensors.joint_torque**2 + 0.05**2) * passed
         self._begun, self.residual = False, np.zeros(model.nv)
         self._residual = self.residual

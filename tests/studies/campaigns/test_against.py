@@ -126,7 +126,8 @@ def test_the_stored_table_is_of_a_robot_that_survives_something(name):
 
     path = next((against.Path(against.__file__).parent / "baselines").glob(f"{name}.csv"))
     with path.open(encoding="utf-8", newline="") as file:
-        values = [float(row["threshold [N·s/kg]"] or 0.0) for row in csv.DictReader(file)]
+        highest = {"above": read_campaign(name).spec.bisect.high}
+        values = [float(row["threshold [N·s/kg]"] or highest.get(row["side"], 0.0)) for row in csv.DictReader(file)]
     mean = sum(values) / len(values)
     assert 0.2 < mean < 1.25
     page = (against.Path(__file__).parents[3] / "docs" / "campaigns.md").read_text(encoding="utf-8")

@@ -6,7 +6,7 @@ import pytest
 
 from surefoot.models.pinocchio import pinocchio_model
 from surefoot.sim.measurement import Measurement
-from surefoot.studies.tour.odometry import LegOdometry
+from surefoot.studies.tour.odometry import ContractOdometry
 from surefoot.studies.tour.ride import Ride
 from surefoot.studies.tour.rows import ROWS
 
@@ -41,7 +41,7 @@ def test_the_speed_of_the_base_is_that_against_the_sole_that_stands(walk, foot):
     rng = np.random.default_rng(foot)
     for _ in range(10):
         q, v = standing(walk, rng, foot)
-        state = LegOdometry(walk).estimate(Measurement.of_state(0.0, q, v))
+        state = ContractOdometry(walk).estimate(Measurement.of_state(0.0, q, v)).state
         assert state.v[:3] == pytest.approx(v[:3], abs=1e-6)
         assert state.q[2] == pytest.approx(q[2], abs=1e-6)
         assert np.array_equal(state.q[3:], q[3:]) and np.array_equal(state.v[3:], v[3:])
@@ -49,22 +49,22 @@ def test_the_speed_of_the_base_is_that_against_the_sole_that_stands(walk, foot):
 
 def test_the_place_goes_on_with_the_base_and_knows_not_where_it_began(walk):
     q, v = standing(walk, np.random.default_rng(5), 0)
-    odometry, model = LegOdometry(walk), pinocchio_model(walk.robot)
-    first = odometry.estimate(Measurement.of_state(0.0, q, v)).q[:3].copy()
+    odometry, model = ContractOdometry(walk), pinocchio_model(walk.robot)
+    first = odometry.estimate(Measurement.of_state(0.0, q, v)).state.q[:3].copy()
     told = q.copy()
     for _ in range(50):
         told = pin.integrate(model, told, 0.001 * v)
         blind = told.copy()
         blind[:3] = np.nan
-        last = odometry.estimate(Measurement.of_state(0.0, blind, v)).q[:3]
+        last = odometry.estimate(Measurement.of_state(0.0, blind, v)).state.q[:3]
     assert last - first == pytest.approx(told[:3] - q[:3], abs=0.003)
     assert np.linalg.norm(last - first) > 0.005
 
 
 def test_it_follows_a_robot_that_marches():
     ride, errors = Ride(ROWS["arms"], 2), []
-    odometry = LegOdometry(ride.walker.controller.walk)
+    odometry = ContractOdometry(ride.walker.controller.walk)
     while ride.world.time < 2.0:
         ride.step()
-        errors.append(odometry.estimate(ride.world.contracted()).v[:3] - ride.world.measure().v[:3])
+        errors.append(odometry.estimate(ride.world.contracted()).state.v[:3] - ride.world.measure().v[:3])
     assert np.sqrt(np.mean(np.square(errors))) < 0.03

@@ -58,6 +58,14 @@ class Phase:
         """Number of the step whose foot swings, or leaves the ground next; the other foot stands where it landed."""
         return self.step + (self.kind is not PhaseKind.SINGLE)
 
+    def edges(self, clock: float) -> tuple[int, int]:
+        """Edges on which the left and the right foot stand at an instant [samples], as `Edge` has them."""
+        found = [0, 0]
+        for roll in self.rolls:
+            if roll.foot is not self.swing_foot and roll.start < clock < roll.end:
+                found[roll.foot] = int(roll.edge)
+        return found[0], found[1]
+
 
 def phases_of(steps: Sequence[Step], stands: bool) -> tuple[Phase, ...]:
     """The phases of steps in turn: a single and a double support each, and before some of them a stop.

@@ -70,6 +70,11 @@ class RollSpan(NamedTuple):
     end: float
     angle: float
 
+    @property
+    def edge(self) -> Edge:
+        """The edge about which it turns."""
+        return Edge.TOE if self.angle > 0.0 else Edge.HEEL
+
 
 @dataclass(frozen=True)
 class FootRoll:

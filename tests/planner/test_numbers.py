@@ -78,6 +78,7 @@ UNNOTICED = {
     "check._AT_ONCE",
     "check._DISTINCT",
     "ground.blocks.LEVEL_STEPS",
+    "references.zmp_reference._STRIP",
     "ground.terrain.DEEPER",
     "ground.terrain._ABOVE",
     "ground.terrain.HALF_WIDTH",

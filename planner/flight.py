@@ -8,9 +8,9 @@ import numpy as np
 from surefoot.planner.geometry.plane import greatest, sole_pose, wrap_angle
 from surefoot.planner.measured import Measured
 from surefoot.planner.state import Swing, WalkState
-from surefoot.planner.steps.adaptation import with_foot_flat
+from surefoot.planner.steps.adaptation import with_roll
 from surefoot.planner.swing.leg_reach import around_stance_leg
-from surefoot.planner.swing.rolling import strides
+from surefoot.planner.swing.rolling import landing_pitch
 from surefoot.planner.swing.trajectory import LEAST_GLIDE, SwingTrajectory, start_swing
 from surefoot.planner.types import Array, FeetState, Footstep
 
@@ -19,6 +19,9 @@ _SAME_GROUND = 1e-3
 
 _SAME_TARGET = 1e-4
 """Difference of touchdown pose that is not worth a new swing trajectory, of the reference robot [m, rad]."""
+
+_SAME_PITCH = 0.01
+"""Difference of a landing's pitch that is not worth another roll [rad]."""
 
 _IN_PLAN = 3
 """Footsteps to come that a plan tells [-]."""
@@ -83,15 +86,18 @@ def swinging_to(state: WalkState, landing: Footstep, measured: Measured, held: b
         lowering = model.legs.lowering(math.dist(landing.position, stance.position)) if state.catching else 0.0
         swing = around_stance_leg(swing, stance, model.legs, time, state.clock.sample_time)
     flown = Swing(state.swing.stage, swing, state.swing.waited, state.swing.again)
-    return replace(_landing_flat(state, landing, stance), swing=flown, astray=astray, lowering=lowering)
+    return replace(_pitched(state, landing, stance), swing=flown, astray=astray, lowering=lowering)
 
 
-def _landing_flat(state: WalkState, landing: Footstep, stance: Footstep) -> WalkState:
-    """The state whose swing foot lands flat where it does not land ahead, unless its toes are on their way up."""
-    span = state.schedule.step(state.phase.step).heel_strike
-    if span is None or state.clock.now >= span.start or strides(stance, landing, float(state.model.half_size[0])):
+def _pitched(state: WalkState, landing: Footstep, stance: Footstep) -> WalkState:
+    """The state whose swing foot lands on its heel as its way asks, unless its toes are on their way up."""
+    span, gait = state.schedule.step(state.phase.step).heel_strike, state.model.gait
+    if span is None or state.clock.now >= span.start:
         return state
-    return state.on(with_foot_flat(state.schedule, span))
+    pitch = landing_pitch(stance, landing, float(state.model.half_size[0]), gait.step_length, gait.heel_strike)
+    if abs(pitch + span.angle) <= _SAME_PITCH:
+        return state
+    return state.on(with_roll(state.schedule, span, -pitch))
 
 
 def _begun(state: WalkState, landing: Footstep, time: float, feet: FeetState, astray: float) -> SwingTrajectory:

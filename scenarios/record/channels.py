@@ -181,10 +181,14 @@ def contact(_: Sizes) -> ChannelSpec:
         _real("normal_force", 2, "N", "", f"left, right; of a body {_STEP}"),
         _int("planned", "contact by the gait: left, right", 2),
         _int("active", "contact in the whole-body QP: left, right", 2),
-        _int("edge", "edge on which it holds each foot: 1 toe, -1 heel, 0 none, the whole sole: left, right", 2),
         _int("felt", "contact by force: left, right", 2),
         _real("cop_left", 2, "m", "left sole", "centre of pressure; NaN when unloaded"),
         _real("cop_right", 2, "m", "right sole", "centre of pressure; NaN when unloaded"),
+        _int(
+            "edge",
+            "edge on which the whole-body QP holds each foot: 1 toe, -1 heel, 0 none, the whole sole: left, right",
+            2,
+        ),
     )
     return ChannelSpec("/contact", "Contact", fields, doc_of(contact))
 

@@ -114,6 +114,7 @@ UNNOTICED = {
     "steps.commands._SAME_TIME",
     "steps.gait.WEIGHT_SHIFT",
     "flight._SAME_GROUND",
+    "flight._LEAST_LEFT",
     "flight._SAME_PITCH",
     "flight._SAME_TARGET",
     "flight._IN_PLAN",

@@ -256,6 +256,30 @@ def test_a_step_that_is_moved_back_lands_flat_unless_its_toes_are_on_their_way_u
     assert swinging_to(state, short, measured, False).schedule.step(1).heel_strike == strike
 
 
+@pytest.mark.parametrize("begun", [False, True])
+def test_a_step_that_catches_lands_flat_and_arrives_as_feet_that_do(stand, begun):
+    """Whether its swing has begun or not; what is left of the swing is then sooner over."""
+    ground = Ground(flat(), np.array([0.11, 0.055]), PlannerParameters(reach_length=0.8))
+    feet = stand(GAIT.step_width)
+    measured = Measured(CentroidalState(0.0, np.array([0.0, 0.0, GAIT.com_height]), np.zeros(3)), feet)
+
+    def swung(gait, catches):
+        state = WalkState.start(WalkModel.of(gait, ground, SmoothHeight(), None), feet)
+        while state.phase.kind is not PhaseKind.SINGLE:
+            state = advanced(state, measured)
+        (landing,) = upcoming(state, 0.0, np.zeros((2, 2)))[:1]
+        if begun:
+            state = swinging_to(state, landing, measured, False)
+        return swinging_to(replace(state, adapted=catches), landing, measured, False)
+
+    flatly, heels, caught = swung(GAIT, True), swung(ROLLING, False), swung(ROLLING, True)
+    assert heels.schedule.step(1).heel_strike is not None is caught.schedule.step(1).heel_strike
+    arrivals = [state.swing.trajectory.touchdown_time for state in (flatly, heels, caught)]
+    speeds = [state.swing.trajectory.search.touchdown_speed for state in (flatly, heels, caught)]
+    assert arrivals[2] == pytest.approx(arrivals[0]) and arrivals[1] > arrivals[0] + 0.01
+    assert speeds[2] == pytest.approx(speeds[0]) and speeds[1] > speeds[0] + 0.05
+
+
 def test_a_rolling_foot_turns_about_its_toe_edge_and_lifts_the_ankle():
     chain = LegChain(
         0.1, (0.0, 0.0, 0.3), Link(0.43, 0.1, 0.33, 1.7e-3), Link(0.43, 0.04, 0.4, 6e-4), 0.02, (0.0, 0.0, -0.04),

@@ -44,6 +44,30 @@ def test_robots_land_on_their_heels_and_know_where_their_soles_are(robot, tmp_pa
         assert metrics["estimation_nees"]["sole_height"] < 5.0
 
 
+BRISK = {
+    "gait.steps": 9, "gait.step_length": 0.46, "gait.single_support": 0.42, "gait.double_support": 0.12,
+    "gait.heel_off": 0.5, "gait.initial_stand": 0.4, "gait.com_height": 1.0, "gait.heel_strike": 0.2, "duration": 12.0,
+    "criteria": {"fell": False, "steps_taken": "steps_planned"},
+}  # fmt: skip
+FORWARD, BACKWARD = 0.0, 3.1416
+
+
+@pytest.mark.parametrize(
+    ("phase", "fraction", "direction", "impulse"),
+    [
+        ("double", 0.5, FORWARD, 0.7), ("single", 0.2, FORWARD, 0.85), ("single", 0.5, FORWARD, 0.98),
+        ("double", 0.5, BACKWARD, 1.2),
+    ],
+)  # fmt: skip
+def test_steps_that_catch_the_body_catch_as_much_as_those_of_feet_that_land_flat(
+    phase, fraction, direction, impulse, tmp_path
+):
+    """At 0.8 m/s. All but the third felled the robot when such steps landed on their heels, too."""
+    push = {"step": 5, "phase": phase, "fraction": fraction, "duration": 0.1}
+    pushes = [{**push, "impulse": impulse, "direction": direction}]
+    assert surefoot.run(surefoot.load("walk", {**BRISK, "pushes": pushes}), out=tmp_path).verdict.reasons == ()
+
+
 def command(folder, *words):
     """What a command in a process of its own says."""
     asked = [sys.executable, "-m", "surefoot", *words]

@@ -20,6 +20,8 @@ cdef void _refer(PhaseSamples samples, const double[:, :, ::1] table, double[:, 
 cdef void _share_load(PhaseSamples samples, const double[:] on_left, double[::1] load)
 @cython.locals(which=Py_ssize_t[::1], clock=double[::1], k=Py_ssize_t, share=double)
 cdef void _roll(PhaseSamples samples, Py_ssize_t phase, double start, double end, const double[:] load, bint on_left, double along, double aside, const double[:, ::1] whole, double[:, ::1] half_size, double[:, ::1] middle)
+@cython.locals(k=Py_ssize_t, axis=Py_ssize_t, beyond=double)
+cdef void _reach(double[:, ::1] middle, double[:, ::1] half_size)
 
 cdef class ZmpReference:
     cdef readonly object point, gain, half_size, height, middle

@@ -287,7 +287,8 @@ def on_edges(reference: ZmpReference, samples: PhaseSamples, support: Support, c
 
     A foot that rolls stands on an edge of its half length a ahead or behind, with no length. So its box is around
     ±a, without a length. A convex combination of the boxes of two feet lies in the hull of both: with a share of
-    the weight s on a foot that rolls, the middle is at ±s a, and the length is less by s.
+    the weight s on a foot that rolls, the middle is at ±s a, and the length is less by s. The reference goes evenly
+    from foot to foot meanwhile; where it is not in that box, the box reaches to it.
 
     Args:
         reference: of a window, for flat feet.
@@ -320,6 +321,7 @@ def on_edges(reference: ZmpReference, samples: PhaseSamples, support: Support, c
                 half_size,
                 middle,
             )
+    _reach(middle, half_size)
     return ZmpReference(reference.point, reference.gain, half_size, reference.height, middle)
 
 
@@ -335,6 +337,16 @@ def _roll(
             middle[k, 0] += share * along
             middle[k, 1] += share * aside
             half_size[k, 0] = max(0.0, half_size[k, 0] - share * whole[k, 0])
+
+
+def _reach(middle: Array, half_size: Array) -> None:
+    """Let boxes reach to their references."""
+    for k in range(middle.shape[0]):
+        for axis in range(2):
+            beyond = abs(middle[k, axis]) - half_size[k, axis]
+            if beyond > 0.0:
+                half_size[k, axis] += 0.5 * beyond
+                middle[k, axis] -= math.copysign(0.5 * beyond, middle[k, axis])
 
 
 def _increments(schedule: Schedule, landed: int, rotation: Array) -> Array:

@@ -156,7 +156,7 @@ def _box(reference, k, yaw, origin):
 
 
 def test_the_box_lies_in_the_hull_of_what_is_down_of_rolling_feet(schedule):
-    """A box of flat feet does not."""
+    """A box of flat feet does not. Where the reference is outside of it, the box reaches from there to the reference."""
     walk = schedule(ROLLING)
     steps, support = (
         walk.schedule,
@@ -164,7 +164,7 @@ def test_the_box_lies_in_the_hull_of_what_is_down_of_rolling_feet(schedule):
     )
     count = len(walk.samples.clock)
     flat_feet = zmp_reference(walk.samples, support.table)
-    edges, rolled, beyond, seen = on_edges(flat_feet, walk.samples, support, count), 0, 0, set()
+    edges, rolled, beyond, reaching, seen = on_edges(flat_feet, walk.samples, support, count), 0, 0, 0, set()
     for k, clock in enumerate(walk.samples.clock.tolist()):
         phase = walk.samples.phases[walk.samples.which[k]]
         if phase.edges(clock) == (0, 0) or phase.step < 1:
@@ -178,9 +178,16 @@ def test_the_box_lies_in_the_hull_of_what_is_down_of_rolling_feet(schedule):
             min(signed_distance(hull, corner) for corner in _box(each, k, 0.0, support.origin))
             for each in (edges, flat_feet)
         ]
-        assert outside[0] > -1e-9
+        middle, half = edges.middle[k, 0], edges.half_size[k, 0]
+        assert abs(middle) <= half + 1e-12
+        if abs(middle) < half - 1e-9:
+            assert outside[0] > -1e-9
+        else:
+            far = support.origin + edges.point[k] + (2.0 * middle, edges.middle[k, 1])
+            assert signed_distance(hull, far) > -1e-9
+            reaching += 1
         rolled, beyond = rolled + 1, beyond + (outside[1] < -0.01)
-    assert beyond > 0.8 * rolled > 20
+    assert beyond > 0.8 * rolled > 20 and 0 < reaching < rolled
     assert seen == {(-1, 0), (0, 1), (-1, 1)}
 
 
@@ -211,8 +218,8 @@ def test_a_stance_foot_that_rolls_alone_has_its_box_on_its_edge(schedule):
         support,
         19,
     )
-    np.testing.assert_allclose(reference.middle[:9, 0], HALF[0])
-    np.testing.assert_allclose(reference.half_size[:9, 0], 0.0, atol=1e-15)
+    np.testing.assert_allclose(reference.middle[:9, 0], 0.5 * HALF[0])
+    np.testing.assert_allclose(reference.half_size[:9, 0], 0.5 * HALF[0])
     assert reference.half_size[0, 1] > 0.04 and not reference.middle[9:].any()
     # The polygon that is planned is a strip at its toes.
     ahead = (support.outer - support.origin) @ support.rotation[:, 0]

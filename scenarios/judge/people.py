@@ -10,6 +10,7 @@ from itertools import pairwise, product
 from typing import NamedTuple
 
 import numpy as np
+from numpy.typing import NDArray
 
 from surefoot.planner.geometry.plane import rotations
 from surefoot.scenarios.judge.body import leg
@@ -71,7 +72,7 @@ def leg_angles(run: RunView) -> Array:
     return np.column_stack((*pitches, position))
 
 
-def _hip(run: RunView, foot: int, ticks: Array) -> Array | None:
+def _hip(run: RunView, foot: int, ticks: NDArray[np.intp]) -> Array | None:
     """Flexion of a hip at some ticks, but for where it is zero, shape (k,) [rad]; None where no joint fits.
 
     With the knee's K and the sole's pitch θ against the base, hip and ankle flex by H + D = K - θ. Of the joints before
@@ -96,7 +97,7 @@ def curves(run: RunView) -> Curves | None:
         begins = [int(stance.ticks[0]) for stance in run.once(steady) if stance.foot == foot]
         if len(begins) < 2:
             continue
-        ticks = np.arange(begins[0], begins[-1] + 1)
+        ticks = np.arange(begins[0], begins[-1] + 1, dtype=np.intp)
         hip, knee = _hip(run, foot, ticks), run.reduced(knee_bends)[ticks, foot]
         if hip is None:
             return None
@@ -120,7 +121,8 @@ def human_share(run: RunView) -> list[float] | None:
     found = run.once(curves)
     if found is None:
         return None
-    return np.asarray((np.abs(found.robot - found.people) <= DEVIATIONS * found.deviation).mean(axis=1)).tolist()
+    alike = np.abs(found.robot - found.people) <= DEVIATIONS * found.deviation
+    return [float(np.mean(joint)) for joint in alike]
 
 
 @metric(

@@ -7,10 +7,10 @@ from itertools import pairwise
 
 import numpy as np
 
-from surefoot.planner.geometry.plane import rotations
+from surefoot.planner.geometry.plane import corners, rotations
 from surefoot.planner.types import GRAVITY
 from surefoot.scenarios.judge.digest import Array, RunView
-from surefoot.scenarios.judge.feet import STANCE_READS, Stance, corners, stances, terrain_of
+from surefoot.scenarios.judge.feet import STANCE_READS, Stance, stances, terrain_of
 from surefoot.scenarios.judge.metric import DEG, MM, metric, reduction
 
 UNSTEADY = 3

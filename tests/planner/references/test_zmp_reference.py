@@ -156,7 +156,7 @@ def _box(reference, k, yaw, origin):
 
 
 def test_the_box_lies_in_the_hull_of_what_is_down_of_rolling_feet(schedule):
-    """A box of flat feet does not. Where the reference is outside of it, the box reaches from there to the reference."""
+    """A box of flat feet does not. Where the reference is outside, the box reaches from there to the reference."""
     walk = schedule(ROLLING)
     steps, support = (
         walk.schedule,

@@ -159,7 +159,7 @@ class FootstepQps:
             self._box[axis, n] = self._terminal_margin * half_size[n, axis]
 
     def _box_around(self, middle: Array) -> None:
-        """Where the middle of the box of samples 1..N is, from their references."""
+        """Take the middles of the boxes of samples 1..N, from their references."""
         for k in range(1, self._horizon + 1):
             for axis in range(2):
                 self._middle[axis, k - 1] = middle[k, axis]

@@ -180,7 +180,7 @@ def strides(behind: Footstep, ahead: Footstep, half_length: float) -> bool:
 
 
 def _way(behind: Footstep, ahead: Footstep) -> float:
-    """How far one foot stands ahead of the other, along its own heading [m]."""
+    """Way by which one foot stands ahead of the other, along its own heading [m]."""
     return float(((ahead.position - behind.position)[:2] @ frame_rotation(ahead.yaw))[0])
 
 

@@ -60,7 +60,8 @@ class SensedState:
         self._every = max(1, round(1.0 / (parameters.covariance_rate * period)))
         self._torques: TorqueWrench | None = None
         self._torques_at, self._encoders = 0, np.zeros(0)
-        self._begun, self._lost, self._still, self._edge = False, False, [True, True], (0, 0)
+        self._begun, self._lost, self._still = False, False, [True, True]
+        self._edge = (0, 0)
         self._tick, self._imu_at, self._from = -1, 0, 0.0
         self._accelerations, self._accelerated = np.zeros((KEPT, 6)), 0
         self._gained, self._turned, self._unmoved = np.zeros(6), np.zeros(3), np.zeros(self._count)

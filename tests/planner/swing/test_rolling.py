@@ -258,7 +258,7 @@ def test_a_step_that_is_moved_back_lands_flat_unless_its_toes_are_on_their_way_u
 
 @pytest.mark.parametrize("begun", [False, True])
 def test_a_step_that_catches_lands_flat_and_arrives_as_feet_that_do(stand, begun):
-    """Whether its swing has begun or not; what is left of the swing is then sooner over."""
+    """It does so before its swing has begun, and after it: what is left of the swing is then sooner over."""
     ground = Ground(flat(), np.array([0.11, 0.055]), PlannerParameters(reach_length=0.8))
     feet = stand(GAIT.step_width)
     measured = Measured(CentroidalState(0.0, np.array([0.0, 0.0, GAIT.com_height]), np.zeros(3)), feet)

@@ -69,7 +69,7 @@ def test_steps_that_catch_the_body_catch_as_much_as_those_of_feet_that_land_flat
 
 
 def command(folder, *words):
-    """What a command in a process of its own says."""
+    """Give a command in a process of its own; returns what it says."""
     asked = [sys.executable, "-m", "surefoot", *words]
     done = subprocess.run(asked, cwd=folder, capture_output=True, text=True, check=False)
     assert done.returncode == 0, done.stdout + done.stderr

@@ -401,7 +401,7 @@ def test_a_sole_that_rolls_tells_how_it_is_turned_but_for_about_its_edge(rolls):
 
 
 def test_a_foot_that_is_seen_by_another_point_has_the_error_of_that_point():
-    """By the linear map of small errors, which the covariance follows; the sole's other point moves otherwise."""
+    """The covariance follows the linear map of small errors."""
     rng, ahead, step = np.random.default_rng(11), 0.11, 1e-6
     believed = somewhere(rng)
     T = np.empty((COUNT, COUNT))

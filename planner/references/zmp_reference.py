@@ -370,7 +370,9 @@ def present_support(key: SupportKey, phase: PhaseKind, margin: float, room: tupl
     schedule, landed, ground = key.schedule, key.landed, key.schedule.ground
     latest, before = schedule.step(landed).place, schedule.step(landed - 1).place
     standing = (latest,) if phase is PhaseKind.SINGLE else (latest, before)
-    outer, inner = hulls_of([sole_of(place, ground.half_size, margin, key.edges[place.foot]) for place in standing])
+    # Between two feet the reference leaves a sole and comes to one over its edge, a moment before it rolls or after.
+    edges = key.edges if phase is PhaseKind.SINGLE else (0, 0)
+    outer, inner = hulls_of([sole_of(place, ground.half_size, margin, edges[place.foot]) for place in standing])
     rotation, stay = frame_rotation(latest.yaw), not ground.terrain.footholds.follow
     table = support_table(schedule, landed, key.free, np.minimum(margin * ground.half_size, room), stay)
     return Support(

@@ -275,9 +275,7 @@ def make_step(
             if leaves
             else None
         ),
-        heel_strike=(
-            rolling.heel_strike(foot, lift_off + single, single, double, pitch) if strikes else None
-        ),
+        heel_strike=(rolling.heel_strike(foot, lift_off + single, single, double, pitch) if strikes else None),
     )
     check_reach(number, seen_from(stance, place), parameters)
     return step

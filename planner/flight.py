@@ -8,9 +8,9 @@ import numpy as np
 from surefoot.planner.geometry.plane import greatest, sole_pose, wrap_angle
 from surefoot.planner.measured import Measured
 from surefoot.planner.state import Swing, WalkState
-from surefoot.planner.steps.adaptation import with_foot_flat
+from surefoot.planner.steps.adaptation import with_roll
 from surefoot.planner.swing.leg_reach import around_stance_leg
-from surefoot.planner.swing.rolling import strides
+from surefoot.planner.swing.rolling import landing_pitch
 from surefoot.planner.swing.trajectory import LEAST_GLIDE, SwingTrajectory, start_swing
 from surefoot.planner.types import Array, FeetState, Footstep
 
@@ -19,6 +19,12 @@ _SAME_GROUND = 1e-3
 
 _SAME_TARGET = 1e-4
 """Difference of touchdown pose that is not worth a new swing trajectory, of the reference robot [m, rad]."""
+
+_SAME_PITCH = 0.01
+"""Difference of a landing's pitch that is not worth another roll [rad]."""
+
+_LEAST_LEFT = 4.0
+"""Time left of a swing, over that by which it arrives sooner, below which it goes on as it is [-]."""
 
 _IN_PLAN = 3
 """Footsteps to come that a plan tells [-]."""
@@ -82,16 +88,38 @@ def swinging_to(state: WalkState, landing: Footstep, measured: Measured, held: b
     if model.legs is not None:
         lowering = model.legs.lowering(math.dist(landing.position, stance.position)) if state.catching else 0.0
         swing = around_stance_leg(swing, stance, model.legs, time, state.clock.sample_time)
+    pitched = _pitched(state, landing, stance)
+    if state.adapted and pitched is not state and state.swing.trajectory is not None:
+        swing = _arriving_flat(state, swing, time)
     flown = Swing(state.swing.stage, swing, state.swing.waited, state.swing.again)
-    return replace(_landing_flat(state, landing, stance), swing=flown, astray=astray, lowering=lowering)
+    return replace(pitched, swing=flown, astray=astray, lowering=lowering)
 
 
-def _landing_flat(state: WalkState, landing: Footstep, stance: Footstep) -> WalkState:
-    """The state whose swing foot lands flat where it does not land ahead, unless its toes are on their way up."""
-    span = state.schedule.step(state.phase.step).heel_strike
-    if span is None or state.clock.now >= span.start or strides(stance, landing, float(state.model.half_size[0])):
+def _pitched(state: WalkState, landing: Footstep, stance: Footstep) -> WalkState:
+    """The state whose swing foot lands on its heel as its way asks, unless its toes are on their way up.
+
+    One that catches the body lands flat: its double support is cut short, and the sole would slap down.
+    """
+    step, gait = state.schedule.step(state.phase.step), state.model.gait
+    span = step.heel_strike
+    if span is None or state.clock.now >= span.start:
         return state
-    return state.on(with_foot_flat(state.schedule, span))
+    most = 0.0 if state.adapted else gait.heel_strike
+    pitch = landing_pitch(stance, landing, float(state.model.half_size[0]), gait.step_length, most)
+    if abs(pitch + span.angle) <= _SAME_PITCH:
+        return state
+    return state.on(with_roll(state.schedule, span, -pitch))
+
+
+def _arriving_flat(state: WalkState, swing: SwingTrajectory, time: float) -> SwingTrajectory:
+    """The swing of a foot that was to land on its heel, which arrives as one that lands flat from now on."""
+    course, parameters = state.schedule.step(state.phase.step).course, state.model.parameters
+    sooner, left = (1.0 - course.lead) * parameters.touchdown_lead, swing.touchdown_time - time
+    if left <= _LEAST_LEFT * sooner:
+        return swing
+    speed = swing.search.touchdown_speed - course.sinking * parameters.size.factor("m/s")
+    softer = replace(swing, search=replace(swing.search, touchdown_speed=speed))
+    return softer.retimed(time, -sooner, state.clock.sample_time)
 
 
 def _begun(state: WalkState, landing: Footstep, time: float, feet: FeetState, astray: float) -> SwingTrajectory:
@@ -102,6 +130,8 @@ def _begun(state: WalkState, landing: Footstep, time: float, feet: FeetState, as
     pose = sole_pose(feet.position[foot], yaw, leaving.normal)
     doubt, course = (feet.height_deviation, astray), state.schedule.step(state.phase.step).course
     model = state.model
+    if state.adapted:
+        course = replace(course, braking=0.0, lead=1.0, sinking=0.0)
     return start_swing(foot, (pose, target), (time, state.left), course, model.parameters, doubt, model.hardest)
 
 

@@ -18,8 +18,8 @@ from surefoot.planner.references.window import Window, lean
 from surefoot.planner.references.zmp_reference import (
     Support,
     SupportKey,
-    ZmpReference,
     load_left,
+    on_edges,
     present_support,
     zmp_reference,
 )
@@ -93,7 +93,8 @@ def look(state: WalkState, measured: Measured) -> View:
     """
     model = state.model
     margin, room = model.parameters.foot_margin, model.parameters.cop_room
-    key = SupportKey(state.schedule, state.landed, state.phase.start, state.free)
+    edges = state.phase.edges(state.clock.now) if state.phase.rolls else (0, 0)
+    key = SupportKey(state.schedule, state.landed, state.phase.start, state.free, edges)
     last = state.memory.support
     kept = last is not None and last.key == key
     support = last if last is not None and kept else present_support(key, state.phase.kind, margin, room)
@@ -123,7 +124,8 @@ def references(
     model = state.model
     samples, count = state.samples(model.reach), model.count
     # The paper's ZMP planner, and its vertical motion planner with the varying dynamics.
-    whole = zmp_reference(samples, support.table).part(slice(1, model.reach + 1))
+    flat = zmp_reference(samples, support.table)
+    whole = on_edges(flat, samples, support, model.parameters.horizon + 1).part(slice(1, model.reach + 1))
 
     law = law_height(model.heights, model.gait, samples, support.heights)
     course, transition, seen_height = _transferred(state, law)
@@ -136,7 +138,7 @@ def references(
         offset = offset + lean(lasting, support.rotation, height)
     seen = Window(
         reference=reference,
-        driving=ZmpReference(reference.point - offset, reference.gain, reference.half_size, reference.height),
+        driving=reference.less(offset),
         offset=offset,
         height=height,
         stiffness=stiffness,

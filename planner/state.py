@@ -277,7 +277,7 @@ class WalkState:
         spans = [span for span in self.phase.rolls if clock.now < span.end]
         for span, roll in zip(spans, state.rolls(time), strict=True):
             if roll.lifts_harder(self.model.hardest, time, time + state.time_left):
-                schedule = adaptation.with_foot_flat(schedule, span)
+                schedule = adaptation.with_roll(schedule, span, 0.0)
         return state.on(schedule).swing_put_off(time, before)
 
     def swing_put_off(self, time: float, left: float) -> "WalkState":

@@ -129,7 +129,7 @@ class _Loop:
         out["truth"].append(ns, np.zeros(11), np.zeros(10), com, velocity, zero3, *soles, 0.01, 0, 0)
         out["estimate"].append(ns, com + np.array([0.001, 0, 0]), velocity, com[:2], zero3, zero6, zero3, zero3, 100.0)
         zmp = np.array([*(center + offset), 0.0])
-        out["contact"].append(ns, zmp, 490.0 * np.array(loaded), loaded, loaded, loaded, cop, cop)
+        out["contact"].append(ns, zmp, 490.0 * np.array(loaded), loaded, loaded, loaded, cop, cop, (0, 0))
         out["reference"].append(
             ns,
             *(com, velocity, zero3, center, com[:2], 3.13, center, zero3, zero3),

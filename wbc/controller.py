@@ -185,7 +185,7 @@ class WholeBodyController:
             iterations, violation, dual = solution.iterations, solution.violation, solution.dual_residual
         return WbcReport(
             answer.torque, status, iterations, violation, dual, answer.acceleration, answer.wrench, contacts.active,
-            contacts.felt, answer.task_error, built - start, time.perf_counter() - built, terms.load,
+            contacts.felt, contacts.edge, answer.task_error, built - start, time.perf_counter() - built, terms.load,
         )  # fmt: skip
 
     def build(self, terms: RobotTerms, reference: WbcReference, contacts: ContactState) -> QpData:

@@ -14,6 +14,7 @@ cdef class WbcReport:
     cdef readonly double primal_residual, dual_residual
     cdef readonly object acceleration, wrench
     cdef readonly (bint, bint) active, felt
+    cdef readonly (Py_ssize_t, Py_ssize_t) edge
     cdef readonly object task_error
     cdef readonly double build_time, solve_time
     cdef readonly object load

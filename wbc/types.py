@@ -86,6 +86,7 @@ class WbcReport:
         wrench: planned contact wrenches, shape (2, 6) [N, N·m].
         active: contacts held by the QP, (left, right).
         felt: contacts felt by the feet, (left, right).
+        edge: of each foot that of which alone it stands: 1 the toe edge, -1 the heel edge, 0 none, all of its sole [-].
         task_error: residuals of all tasks before weighting, shape (rows,) [m/s^2, rad/s^2, N, N m]; names and sizes of
             the tasks are ``WholeBodyController.task_layout``.
         build_time: wall-clock time of load, contacts and assembly [s].
@@ -102,6 +103,7 @@ class WbcReport:
     wrench: Array
     active: tuple[bool, bool]
     felt: tuple[bool, bool]
+    edge: tuple[int, int]
     task_error: Array
     build_time: float
     solve_time: float

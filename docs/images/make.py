@@ -122,6 +122,7 @@ PICTURES: dict[str, Callable[[], None]] = {
     "tour.webp": by("tour"),
     "drive.webp": by("drive"),
     "courses.png": by("courses"),
+    "strides.png": by("strides"),
     "gait-map.png": by("gait_map"),
     **{f"{name}.png": by("campaigns", name) for name in ("push-map", "push-map-pendulum", "ladder-beside")},
 }

@@ -44,6 +44,7 @@ SOURCES: dict[str, tuple[str, ...]] = {
         PALETTE,
         f"{_OWN}/courses.py",
     ),
+    "strides.png": (PALETTE, f"{_OWN}/strides.py", f"{_OWN}/poses.py", "scenarios/judge/people.py"),
     "gait-map.png": (PALETTE, f"{_OWN}/gait_map.py", f"{_RESULTS}/gait-map.csv"),
     "push-map.png": (*_MAPS, f"{_RESULTS}/push-map.csv"),
     "push-map-pendulum.png": (*_MAPS, f"{_RESULTS}/push-map-pendulum.csv"),

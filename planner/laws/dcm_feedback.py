@@ -52,7 +52,8 @@ class DcmFeedback:
         """Jerks after which y = offset + gain ξ, or y is at the edge of its box; in plain numbers, which are fast."""
         p, n = self._parameters, self._parameters.horizon
         t = p.sample_time
-        center, half = problem.reference.point[1 : n + 1, axis], problem.reference.half_size[1 : n + 1, axis]
+        reference = problem.reference.part(slice(1, n + 1))
+        center, half = reference.point[:, axis] + reference.middle[:, axis], reference.half_size[:, axis]
         inverse = 1.0 / problem.stiffness[1 : n + 1]
         period = 1.0 / problem.omega[1 : n + 1]
         zmp_rate = t**3 / 6.0 - inverse * t

@@ -16,7 +16,7 @@ cdef class FootstepQps:
     cdef double _zmp_slack, _zmp_price, _end_slack, _end_price
     cdef const int64_t[::1] _ends
     cdef const double[:, :, ::1] _response
-    cdef double[:, ::1] _S, _WS, _s, _box, _beside, _aim
+    cdef double[:, ::1] _S, _WS, _s, _box, _beside, _middle, _aim
     cdef double[::1] _Ws, _decay, _weights
     cdef NominalMotion _nominal
 
@@ -32,6 +32,8 @@ cdef class FootstepQps:
     cdef void _zmp_errors(self, const double[:] stiffness, const double[:, :] gain, const double[:, :] half_size) noexcept nogil
     @cython.locals(n=Py_ssize_t, m=Py_ssize_t, j=Py_ssize_t, step=Py_ssize_t, axis=Py_ssize_t, x=double, v=double, _=double)
     cdef void _end_errors(self, double omega, const double[:, :] gain, const double[:, :] half_size) noexcept nogil
+    @cython.locals(k=Py_ssize_t, axis=Py_ssize_t)
+    cdef void _box_around(self, const double[:, :] middle) noexcept
     @cython.locals(j=Py_ssize_t)
     cdef double _ahead(self, const double[:, :] values, Py_ssize_t column) noexcept nogil
     @cython.locals(n=Py_ssize_t, m=Py_ssize_t, i=Py_ssize_t, j=Py_ssize_t, k=Py_ssize_t, axis=Py_ssize_t, weight=double)

@@ -15,7 +15,8 @@ constant ZMP error of millimetres.
 
 All constraints on the motion are soft (the paper's hard ones are infeasible under noise), so that the problem always
 has a solution. The paper's box (eq. (9)) is printed as an equality that is not centred on the foot; here it is
-± foot_margin / 2 of the foot around the moving reference, at samples 1..N (sample 0 has no feed-through).
+± foot_margin / 2 of the foot around the moving reference, at samples 1..N (sample 0 has no feed-through). Where a foot
+rolls, it is around what of the foot is down.
 """
 
 import math
@@ -68,7 +69,7 @@ class FootstepQps:
         self.rows = 2 * n + 2 + (2 * self._moves if self._limits_rate else 0)
         self._S, self._WS = np.zeros((n + 1, self._moves + SHIFTS)), np.zeros((n + 1, self._moves + SHIFTS))
         self._s, self._Ws, self._box = np.zeros((2, n + 1)), np.zeros(n + 1), np.zeros((2, n + 1))
-        self._beside = np.zeros((2, 3))
+        self._beside, self._middle = np.zeros((2, 3)), np.zeros((2, n + 1))
         self._look(n + p.preview + 1)
 
     def _look(self, count: int) -> None:
@@ -94,6 +95,7 @@ class FootstepQps:
         self._predict(
             problem.state, problem.stiffness, problem.omega, reference.point, reference.gain, reference.half_size
         )
+        self._box_around(reference.middle)
         self._cost(P, q)
         self._inequalities(G, h)
         if self._limits_rate:
@@ -156,6 +158,12 @@ class FootstepQps:
             self._s[axis, n] = x + period * v - self._ahead(self._aim, axis)
             self._box[axis, n] = self._terminal_margin * half_size[n, axis]
 
+    def _box_around(self, middle: Array) -> None:
+        """Take the middles of the boxes of samples 1..N, from their references."""
+        for k in range(1, self._horizon + 1):
+            for axis in range(2):
+                self._middle[axis, k - 1] = middle[k, axis]
+
     def _ahead(self, values: Array, column: int) -> float:
         """Σ w_j of a column of values over the window, from the end of the horizon on."""
         total = 0.0
@@ -191,8 +199,8 @@ class FootstepQps:
             for j in range(m + SHIFTS):
                 G[above, j], G[below, j] = self._S[k, j], -self._S[k, j]
             for axis in range(2):
-                h[axis, above] = self._box[axis, k] - self._s[axis, k]
-                h[axis, below] = self._box[axis, k] + self._s[axis, k]
+                h[axis, above] = self._box[axis, k] + (self._middle[axis, k] - self._s[axis, k])
+                h[axis, below] = self._box[axis, k] - (self._middle[axis, k] - self._s[axis, k])
 
     def _rate_limits(self, G: Array, h: Array, last_jerk: Array) -> None:
         """Bound the change of the jerk from the last tick and from block to block (the paper's ±0.1, per sample)."""

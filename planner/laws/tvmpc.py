@@ -118,8 +118,11 @@ def build_hard_problem(
     q = 2.0 * (error.T @ S_u)
     sums = np.tri(moves)
     limits = np.full((moves, 2), p.jerk_limit)
-    box = problem.reference.half_size[1 : n + 1]
-    rows, bounds = [S_u, -S_u, sums, -sums], [box - error, box + error, limits - last, limits + last]
+    box, middle = problem.reference.half_size[1 : n + 1], problem.reference.middle[1 : n + 1]
+    rows, bounds = (
+        [S_u, -S_u, sums, -sums],
+        [box - (error - middle), box + (error - middle), limits - last, limits + last],
+    )
     if terminal:
         row, end, half = _terminal(p, response, problem, point, last)
         rows += [row, -row]

@@ -8,7 +8,7 @@ cdef class Outlook:
     cdef double sample_time, _foot_margin
     cdef Py_ssize_t count
     cdef const double[:] stiffness, omega
-    cdef const double[:, :] point, gain, half_size
+    cdef const double[:, :] point, gain, half_size, middle
     cdef double[::1] decay, _ahead, _next
     cdef double[:, ::1] bounded
 

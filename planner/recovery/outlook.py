@@ -39,12 +39,13 @@ class Outlook:
         driving = window.driving
         self.stiffness, self.omega = window.stiffness, window.omega
         self.point, self.gain, self.half_size = driving.point, driving.gain, driving.half_size
+        self.middle = driving.middle
         if len(self.stiffness) != self.count:
             self._resize(len(self.stiffness))
         law.fade(self.stiffness, self.omega, self.sample_time, self.decay)
 
     def margin(self, dcm: Array, window: Window) -> float:
-        """Margin of the DCM in what the CoP captures with the steps as planned: Σ w (p ± a) of all in sight.
+        """Margin of the DCM in what the CoP captures with the steps as planned: Σ w (p + m ± a) of all in sight.
 
         Args:
             dcm: now in the plan frame, shape (2,) [m].
@@ -56,7 +57,7 @@ class Outlook:
             point, half = 0.0, 0.0
             for k in range(self.count):
                 weight = law.weight(self.decay, k)
-                point += weight * self.point[k, axis]
+                point += weight * (self.point[k, axis] + self.middle[k, axis])
                 half += weight * self.half_size[k, axis]
             margin = min(margin, half / self._foot_margin - abs(dcm[axis] - point))
         return float(margin)

@@ -18,9 +18,13 @@ cdef box2 joint_box(box2 box, double x, double y) noexcept nogil
 cdef void _refer(PhaseSamples samples, const double[:, :, ::1] table, double[:, ::1] point, double[:, ::1] gain, double[:, ::1] half_size, double[::1] height)
 @cython.locals(index=Py_ssize_t[::1], fraction=double[::1], k=Py_ssize_t, i=Py_ssize_t, last=Py_ssize_t)
 cdef void _share_load(PhaseSamples samples, const double[:] on_left, double[::1] load)
+@cython.locals(which=Py_ssize_t[::1], clock=double[::1], k=Py_ssize_t, share=double)
+cdef void _roll(PhaseSamples samples, Py_ssize_t phase, double start, double end, const double[:] load, bint on_left, double along, double aside, const double[:, ::1] whole, double[:, ::1] half_size, double[:, ::1] middle)
+@cython.locals(k=Py_ssize_t, axis=Py_ssize_t, beyond=double)
+cdef void _reach(double[:, ::1] middle, double[:, ::1] half_size)
 
 cdef class ZmpReference:
-    cdef readonly object point, gain, half_size, height
+    cdef readonly object point, gain, half_size, height, middle
 
 cdef class Support:
     cdef readonly object key, rotation, origin, table, heights, on_left, outer, inner, footholds, increment

@@ -24,18 +24,30 @@ class ZmpReference:
     Attributes:
         point: reference with nominal footsteps, shape (n, 2) [m].
         gain: sensitivity to the two shifts, the same on both axes, shape (n, 2) [-].
-        half_size: half extents of the box around the reference that lies in the support polygon, shape (n, 2) [m].
+        half_size: half extents of the box, which lies in the support polygon, shape (n, 2) [m].
         height: ground height under the reference, shape (n,) [m].
+        middle: of the box, from the reference, shape (n, 2) [m]; zero where no foot rolls.
     """
 
     point: Array
     gain: Array
     half_size: Array
     height: Array
+    middle: Array
 
     def part(self, samples: slice) -> "ZmpReference":
         """The reference over some of its samples."""
-        return ZmpReference(self.point[samples], self.gain[samples], self.half_size[samples], self.height[samples])
+        return ZmpReference(
+            self.point[samples],
+            self.gain[samples],
+            self.half_size[samples],
+            self.height[samples],
+            self.middle[samples],
+        )
+
+    def less(self, offset: Array) -> "ZmpReference":
+        """The reference and its box less an offset at each sample, shape (n, 2) [m]."""
+        return ZmpReference(self.point - offset, self.gain, self.half_size, self.height, self.middle)
 
 
 Box = tuple[float, float]
@@ -150,7 +162,7 @@ def zmp_reference(samples: PhaseSamples, table: Array) -> ZmpReference:
         table: support points in sight, made by `support_table`.
     """
     n = len(samples.clock)
-    reference = ZmpReference(np.empty((n, 2)), np.empty((n, 2)), np.empty((n, 2)), np.empty(n))
+    reference = ZmpReference(np.empty((n, 2)), np.empty((n, 2)), np.empty((n, 2)), np.empty(n), np.zeros((n, 2)))
     _refer(samples, table, reference.point, reference.gain, reference.half_size, reference.height)
     return reference
 
@@ -174,21 +186,31 @@ class SupportKey(NamedTuple):
         landed: number of the step that landed last.
         phase_start: begin of the phase on the clock [samples].
         free: whether the next two footsteps may be shifted.
+        edges: on which the feet stand, left first; see `Phase.edges`.
     """
 
     schedule: Schedule
     landed: int
     phase_start: float
     free: tuple[bool, bool]
+    edges: tuple[int, int] = (0, 0)
 
 
 Sole = tuple[Array, Array]
 """Corners of a foot that stands, and of its sole shrunk to the ZMP margin, anticlockwise, shape (4, 2) each [m]."""
 
 
-def sole_of(place: Footstep, half_size: Array, margin: float) -> Sole:
-    """The sole of a foot that carries the robot."""
-    corners = points_of_sole(place, np.concatenate((CORNERS * half_size, CORNERS * (margin * half_size))))
+_STRIP = 0.02
+"""Share of the sole's length that stands for an edge of it, which has none [-]."""
+
+
+def sole_of(place: Footstep, half_size: Array, margin: float, edge: int = 0) -> Sole:
+    """The sole of a foot that carries the robot, or its edge alone, see `Edge`."""
+    outer, inner = CORNERS * half_size, CORNERS * (margin * half_size)
+    if edge:
+        ahead = edge * (1.0 - _STRIP) * half_size[0]
+        outer, inner = (each * (_STRIP, 1.0) + (ahead, 0.0) for each in (outer, inner))
+    corners = points_of_sole(place, np.concatenate((outer, inner)))
     return corners[:4], corners[4:]
 
 
@@ -260,6 +282,73 @@ def _share_load(samples: PhaseSamples, on_left: Array, load: Array) -> None:
         load[k] = (1.0 - share) * on_left[i] + share * on_left[min(i + 1, last)]
 
 
+def on_edges(reference: ZmpReference, samples: PhaseSamples, support: Support, count: int) -> ZmpReference:
+    """The reference with its box on what is down of feet that roll; the same one where none does.
+
+    A foot that rolls stands on an edge of its half length a ahead or behind, with no length. So its box is around
+    ±a, without a length. A convex combination of the boxes of two feet lies in the hull of both: with a share of
+    the weight s on a foot that rolls, the middle is at ±s a, and the length is less by s. The reference goes evenly
+    from foot to foot meanwhile; where it is not in that box, the box reaches to it.
+
+    Args:
+        reference: of a window, for flat feet.
+        samples: the phases over the window.
+        support: what carries the robot, whose table the reference was made by.
+        count: samples in which a ZMP is planned; later boxes tell what feet can do at all.
+    """
+    if not any([phase.rolls for phase in samples.phases]):
+        return reference
+    half_size, middle = reference.half_size.copy(), np.zeros_like(reference.point)
+    load, schedule = load_left(samples, support.on_left)[:count], support.key.schedule
+    ahead, heading = float(schedule.ground.half_size[0]), schedule.step(support.key.landed).place.yaw
+    for number, phase in enumerate(samples.phases):
+        for roll in phase.rolls:
+            step = schedule.step(phase.step)
+            if step.place.foot is not roll.foot:
+                step = schedule.step(phase.step - 1)
+            turned, edge = step.place.yaw - heading, math.copysign(ahead, roll.angle)
+            along, aside, on_left = edge * math.cos(turned), edge * math.sin(turned), roll.foot is Foot.LEFT
+            _roll(
+                samples,
+                number,
+                roll.start,
+                roll.end,
+                load,
+                on_left,
+                along,
+                aside,
+                reference.half_size,
+                half_size,
+                middle,
+            )
+    _reach(middle, half_size)
+    return ZmpReference(reference.point, reference.gain, half_size, reference.height, middle)
+
+
+def _roll(
+    samples: PhaseSamples, phase: int, start: float, end: float, load: Array, on_left: bool, along: float, aside: float,
+    whole: Array, half_size: Array, middle: Array,
+) -> None:  # fmt: skip
+    """Take a foot that rolls in a phase, from a start to an end [samples], to its edge so far along and aside [m]."""
+    which, clock = samples.which, samples.clock
+    for k in range(load.shape[0]):
+        if which[k] == phase and start < clock[k] < end:
+            share = load[k] if on_left else 1.0 - load[k]
+            middle[k, 0] += share * along
+            middle[k, 1] += share * aside
+            half_size[k, 0] = max(0.0, half_size[k, 0] - share * whole[k, 0])
+
+
+def _reach(middle: Array, half_size: Array) -> None:
+    """Let boxes reach to their references."""
+    for k in range(middle.shape[0]):
+        for axis in range(2):
+            beyond = abs(middle[k, axis]) - half_size[k, axis]
+            if beyond > 0.0:
+                half_size[k, axis] += 0.5 * beyond
+                middle[k, axis] -= math.copysign(0.5 * beyond, middle[k, axis])
+
+
 def _increments(schedule: Schedule, landed: int, rotation: Array) -> Array:
     """Increments of a `Support`, by the plan frame's rotation to the world."""
     increment, before = np.zeros((2, 2)), schedule.step(landed).place.position
@@ -281,7 +370,9 @@ def present_support(key: SupportKey, phase: PhaseKind, margin: float, room: tupl
     schedule, landed, ground = key.schedule, key.landed, key.schedule.ground
     latest, before = schedule.step(landed).place, schedule.step(landed - 1).place
     standing = (latest,) if phase is PhaseKind.SINGLE else (latest, before)
-    outer, inner = hulls_of([sole_of(place, ground.half_size, margin) for place in standing])
+    # Between two feet the reference leaves a sole and comes to one over its edge, a moment before it rolls or after.
+    edges = key.edges if phase is PhaseKind.SINGLE else (0, 0)
+    outer, inner = hulls_of([sole_of(place, ground.half_size, margin, edges[place.foot]) for place in standing])
     rotation, stay = frame_rotation(latest.yaw), not ground.terrain.footholds.follow
     table = support_table(schedule, landed, key.free, np.minimum(margin * ground.half_size, room), stay)
     return Support(

@@ -131,16 +131,17 @@ def with_heel_lifted(schedule: Schedule, number: int, radius: float) -> Schedule
     return schedule.with_steps((*schedule.steps[:at], step, *schedule.steps[at + 1 :]))
 
 
-def with_foot_flat(schedule: Schedule, span: RollSpan) -> Schedule:
-    """A roll of a step in sight is left out."""
-    return schedule.with_steps(tuple(_without(step, span) for step in schedule.steps))
+def with_roll(schedule: Schedule, span: RollSpan, angle: float) -> Schedule:
+    """A roll of a step in sight has another greatest pitch [rad]; without any it is left out."""
+    changed = span._replace(angle=angle) if angle else None
+    return schedule.with_steps(tuple(_rolled(step, span, changed) for step in schedule.steps))
 
 
-def _without(step: Step, span: RollSpan) -> Step:
-    """The step without a roll, the same one where it has not got it."""
+def _rolled(step: Step, span: RollSpan, changed: RollSpan | None) -> Step:
+    """The step with another roll in place of one, the same one where it has not got it."""
     if step.toe_off == span:
-        return replace(step, toe_off=None)
-    return replace(step, heel_strike=None) if step.heel_strike == span else step
+        return replace(step, toe_off=changed)
+    return replace(step, heel_strike=changed) if step.heel_strike == span else step
 
 
 def lands_short(schedule: Schedule, number: int, feet: FeetState, dcm: Dcm | None, legs: LegReach | None) -> bool:

@@ -29,7 +29,8 @@ class Phase:
         stance: the only supporting foot of a single support, otherwise None.
         support: support point on which the ZMP reference stands, or which it leaves.
         rest: part of a double support before it leaves [samples].
-        rolls: of the foot that leaves the ground in it or after it, and of that which lands in it or before it.
+        rolls: of the foot that leaves the ground in it or after it, and of that which lands in it or before it; of a
+            foot that leaves the ground after its end, if it rolls before that.
         starts: whether it is a double support that begins with the robot at rest.
     """
 
@@ -58,6 +59,14 @@ class Phase:
         """Number of the step whose foot swings, or leaves the ground next; the other foot stands where it landed."""
         return self.step + (self.kind is not PhaseKind.SINGLE)
 
+    def edges(self, clock: float) -> tuple[int, int]:
+        """Edges on which the left and the right foot stand at an instant [samples], as `Edge` has them."""
+        found = [0, 0]
+        for roll in self.rolls:
+            if roll.foot is not self.swing_foot and roll.start < clock < roll.end:
+                found[roll.foot] = int(roll.edge)
+        return found[0], found[1]
+
 
 def phases_of(steps: Sequence[Step], stands: bool) -> tuple[Phase, ...]:
     """The phases of steps in turn: a single and a double support each, and before some of them a stop.
@@ -76,9 +85,9 @@ def phases_of(steps: Sequence[Step], stands: bool) -> tuple[Phase, ...]:
             stance = step.place.foot.other
             single, double = step.single_support, step.double_support
             number, point = step.number, step.support
-            # A heel that leaves as the other one lands does so between two ticks.
-            soon = leaving if stop is None and step.heel_strike is not None else None
-            swung = _rolls(step.toe_off, step.heel_strike, soon)
+            # A heel that leaves as the other one lands does so between two ticks; it may leave before that, too.
+            early = leaving is not None and (step.heel_strike is not None or leaving.start < step.touchdown)
+            swung = _rolls(step.toe_off, step.heel_strike, leaving if stop is None and early else None)
             swing = Phase(PhaseKind.SINGLE, step.lift_off, single, number, stance, point, rolls=swung)
             stood = _rolls(step.heel_strike, leaving if stop is None else None)
             after = Phase(PhaseKind.DOUBLE, step.touchdown, double, number, None, point, rolls=stood)

@@ -239,7 +239,10 @@ def make_step(
     climb, lift = round(to - off, _MEASURED), round(min(to, other) - min(other, off), _MEASURED)
     half_length, edged = float(ground.half_size[0]), terrain.footholds.edged(climb)
     leaves = gait.heel_off != 0.0 and rolling.strides(start, stance, half_length)
-    strikes = gait.heel_strike != 0.0 and not edged and rolling.strides(stance, place, half_length)
+    pitch = 0.0
+    if gait.heel_strike != 0.0 and not edged:
+        pitch = rolling.landing_pitch(stance, place, half_length, gait.step_length, gait.heel_strike)
+    strikes = pitch > 0.0
     course = swing_course(number, start, place, single, gait.swing_height, ground)
     course = replace(course, braking=rolling.BRAKING, lead=rolling.LEAD, sinking=rolling.SINKING) if strikes else course
     alike = [one.swing for one in before if (one.single_support, one.climb, one.course) == (single, climb, course)]
@@ -272,9 +275,7 @@ def make_step(
             if leaves
             else None
         ),
-        heel_strike=(
-            rolling.heel_strike(foot, lift_off + single, single, double, gait.heel_strike) if strikes else None
-        ),
+        heel_strike=(rolling.heel_strike(foot, lift_off + single, single, double, pitch) if strikes else None),
     )
     check_reach(number, seen_from(stance, place), parameters)
     return step

@@ -55,6 +55,10 @@ _LEAST_STEP = 1.5
 """Feet nearer to each other than so many half soles along the foot do not roll [-]."""
 
 
+_SAME_WAY, _DECIMALS = 1e-6, 6
+"""Ways below this are none, and decimals to which their shares are rounded, lest usual steps differ [m, -]."""
+
+
 class RollSpan(NamedTuple):
     """The time and the angle of a foot's roll about an edge of its sole.
 
@@ -69,6 +73,11 @@ class RollSpan(NamedTuple):
     start: float
     end: float
     angle: float
+
+    @property
+    def edge(self) -> Edge:
+        """The edge about which it turns."""
+        return Edge.TOE if self.angle > 0.0 else Edge.HEEL
 
 
 @dataclass(frozen=True)
@@ -167,8 +176,32 @@ _PER_WAY, _SHORT, _MOST = 3.0, 1.1, 0.5
 
 def strides(behind: Footstep, ahead: Footstep, half_length: float) -> bool:
     """Return true if a foot, half a sole's length given [m], stands so far ahead of the other one that feet roll."""
-    way = (ahead.position - behind.position)[:2] @ frame_rotation(ahead.yaw)
-    return bool(way[0] > _LEAST_STEP * half_length)
+    return _way(behind, ahead) > _LEAST_STEP * half_length
+
+
+def _way(behind: Footstep, ahead: Footstep) -> float:
+    """Way by which one foot stands ahead of the other, along its own heading [m]."""
+    return float(((ahead.position - behind.position)[:2] @ frame_rotation(ahead.yaw))[0])
+
+
+def landing_pitch(stance: Footstep, landing: Footstep, half_length: float, usual: float, most: float) -> float:
+    """Pitch that a foot lands with, toes up, by how far ahead of the other one it lands [rad].
+
+    A leg leans back by as much as its foot is ahead, and its sole with it. A foot that lands beside or behind the other
+    one lands flat.
+
+    Args:
+        stance: the other foot.
+        landing: where it lands.
+        half_length: half of the sole's length [m].
+        usual: way of the gait's steps, from which on the pitch is the greatest [m].
+        most: that pitch [rad].
+    """
+    least = _LEAST_STEP * half_length
+    beyond = _way(stance, landing) - least
+    if beyond <= 0.0:
+        return 0.0
+    return most * min(1.0, round(beyond / max(usual - least, _SAME_WAY), _DECIMALS))
 
 
 def toe_off(foot: Foot, ramp: float, lift_off: float, single: float, angle: float, early: bool) -> RollSpan:

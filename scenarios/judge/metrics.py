@@ -23,6 +23,7 @@ from surefoot.scenarios.judge import (
     following,
     health,
     linked,
+    people,
     pushed,
     sensed,
     strides,
@@ -51,7 +52,9 @@ def gathered(*modules: ModuleType) -> dict[str, Metric[Any]]:
     return found
 
 
-OWN: Mapping[str, Metric[Any]] = gathered(walking, following, balance, feet, strides, effort, computing, sensed, linked)
+OWN: Mapping[str, Metric[Any]] = gathered(
+    walking, following, balance, feet, strides, people, effort, computing, sensed, linked
+)
 """Ours, in the order in which they are shown."""
 
 

@@ -7,11 +7,11 @@ from itertools import pairwise
 
 import numpy as np
 
-from surefoot.planner.geometry.plane import rotations
+from surefoot.planner.geometry.plane import corners, rotations
 from surefoot.planner.types import GRAVITY
 from surefoot.scenarios.judge.digest import Array, RunView
 from surefoot.scenarios.judge.feet import STANCE_READS, Stance, stances, terrain_of
-from surefoot.scenarios.judge.metric import DEG, metric, reduction
+from surefoot.scenarios.judge.metric import DEG, MM, metric, reduction
 
 UNSTEADY = 3
 """Steps at the begin and at the end of a walk that are not steady [-]."""
@@ -24,6 +24,9 @@ RISING = 0.01
 
 MIDSTANCE = 0.3
 """Share of a stride, from one landing of a foot to its next, at which its leg is in the middle of its stance [-]."""
+
+_AHEAD = (0, 3)
+"""Corners of a sole at its toe edge, see `corners` [-]."""
 
 
 @reduction("/measurement")
@@ -112,3 +115,18 @@ def heel_strike_pitch(run: RunView) -> float | None:
 def toe_off_pitch(run: RunView) -> float | None:
     """Pitch of a sole over the ground as it last carries load, heel up positive, mean of the steady steps [rad]."""
     return _mean([_pitch(run, stance, -1) for stance in run.once(steady)])
+
+
+@metric(unit="m", shown=MM, reads=STANCE_READS, body=True, tolerance=(0.001, 0.0))
+def toe_clearance_min(run: RunView) -> float | None:
+    """Least height of a toe edge over the ground in the middle half of a swing, of the steady steps [m]."""
+    least, steps = [], run.once(steady)
+    for foot in range(2):
+        own = [stance for stance in steps if stance.foot == foot]
+        for before, after in pairwise(own):
+            leaves, lands = int(before.ticks[-1]), int(after.ticks[0])
+            quarter = (lands - leaves) // 4
+            poses = run.sole(foot)[leaves + quarter : lands - quarter + 1]
+            toes = corners(poses, run.constants.foot_length, run.constants.foot_width)[:, _AHEAD].reshape(-1, 3)
+            least.append(float((toes[:, 2] - run.once(terrain_of).heights(toes[:, :2])).min()))
+    return min(least, default=None)

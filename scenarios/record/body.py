@@ -54,7 +54,7 @@ class Recorder:
         numbers = (
             (truth, ("nonfoot_contact", "self_contact")),
             (estimate, ("mass",)),
-            (contact, ("planned", "active", "felt")),
+            (contact, ("planned", "active", "edge", "felt")),
             (wbc, ("status", "iterations", "primal_residual", "dual_residual")),
         )
         derived = (
@@ -91,7 +91,7 @@ class Recorder:
         m, r, load = measurement, report, report.load
         numbers = (
             m.nonfoot_contact, m.self_contact, load.mass_scale * terms.model_mass,
-            *planned.contacts, *r.active, *r.felt, r.status, r.iterations, r.primal_residual, r.dual_residual,
+            *planned.contacts, *r.active, *r.edge, *r.felt, r.status, r.iterations, r.primal_residual, r.dual_residual,
             planned.omega, truth.torso_rotation.item(8),
         )  # fmt: skip
         self._row.append(

@@ -184,6 +184,11 @@ def contact(_: Sizes) -> ChannelSpec:
         _int("felt", "contact by force: left, right", 2),
         _real("cop_left", 2, "m", "left sole", "centre of pressure; NaN when unloaded"),
         _real("cop_right", 2, "m", "right sole", "centre of pressure; NaN when unloaded"),
+        _int(
+            "edge",
+            "edge on which the whole-body QP holds each foot: 1 toe, -1 heel, 0 none, the whole sole: left, right",
+            2,
+        ),
     )
     return ChannelSpec("/contact", "Contact", fields, doc_of(contact))
 

@@ -232,7 +232,7 @@ class PendulumRecorder:
             cops[foot] = tuple((zmp - feet.position[foot, :2]) @ frame_rotation(float(feet.yaw[foot])))
         self._contact.put(
             time_ns, zmp=(*zmp, height), normal_force=(share * weight, (1.0 - share) * weight), planned=contacts,
-            active=contacts, felt=contacts, cop_left=cops[0], cop_right=cops[1],
+            active=contacts, edge=(0, 0), felt=contacts, cop_left=cops[0], cop_right=cops[1],
         )  # fmt: skip
 
 

@@ -154,7 +154,7 @@ def drawn(rng):
     half, stand = np.array([0.1, 0.05]) * rng.choice([1.0, 0.35]), np.array([0.1, 0.15])
     sizes = half + (0.1 * up if lift else 0.0 * up)[:, None] * SIDEWAYS
     sizes[-1] = stand
-    reference = ZmpReference(point, np.column_stack((share, 0.0 * share)), sizes, np.zeros(count))
+    reference = ZmpReference(point, np.column_stack((share, 0.0 * share)), sizes, np.zeros(count), np.zeros((count, 2)))
     stiffness, omega = np.full(count, OMEGA**2), np.full(count, OMEGA)
     height = HeightPreview(np.ones((3, count)), stiffness)
     window = Window(reference, reference, point, height, stiffness, omega, omega, point > 0.0)

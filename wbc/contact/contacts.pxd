@@ -2,6 +2,8 @@ cimport cython
 from surefoot.wbc.reference cimport WbcReference
 from surefoot.wbc.types cimport FootSensing
 
+cdef Py_ssize_t _NONE
+
 cdef class ContactState:
     cdef readonly (bint, bint) active, felt
     cdef readonly (double, double) force_cap

@@ -6,6 +6,9 @@ from surefoot.wbc.parameters import ContactParameters
 from surefoot.wbc.reference import WbcReference
 from surefoot.wbc.types import FootSensing
 
+_NONE = 0
+"""Edge of a foot that stands on none [-]."""
+
 
 @dataclass(frozen=True)
 class ContactState:
@@ -36,7 +39,7 @@ class ContactSchedule:
     - A foot that comes to the ground before the next tick counts as one that feels it, lest a command swings on a foot
       that stands. So does one with which the planner has ended a single support.
     - A foot is released when the plan lifts it, unless it would be the last contact.
-    - A foot that the plan rolls keeps an edge on the ground, while the other foot carries as well.
+    - A foot that the plan rolls keeps an edge on the ground.
     - Allowed loads grow after touchdown and shrink before lift-off, so that no contact appears or ends with a jump in
       force. A foot that counts as landed before it is felt bears nothing yet, or the robot would fall onto it.
 
@@ -70,7 +73,10 @@ class ContactSchedule:
         if self._active[0] and self._active[1]:
             caps, awaited = (self._cap(0, reference), self._cap(1, reference)), (self._awaited[0], self._awaited[1])
             return self._contacts(caps, reference.edge, awaited)
-        return self._contacts((most, 0.0) if self._active[0] else (0.0, most), (0, 0), (False, False))
+        # An edge of a foot in the air is none of a contact.
+        if self._active[0]:
+            return self._contacts((most, 0.0), (reference.edge[0], _NONE), (False, False))
+        return self._contacts((0.0, most), (_NONE, reference.edge[1]), (False, False))
 
     def _feel(self, k: int, force: float, contact: tuple[bool, bool] | None, touches: bool) -> None:
         """Note whether a foot counts as loaded, and whether it does so before anything is felt of it."""

@@ -19,13 +19,13 @@ cdef class SoleContact:
     cdef double[::1] _slow, _tared
     cdef Py_ssize_t[::1] _count
 
-    cpdef update(self, Reading reading, still, const double[:] above)
+    cpdef update(self, Reading reading, still, const double[:] above, (int, int) edge=*)
     @cython.locals(k=Py_ssize_t, i=Py_ssize_t)
     cdef void _filter(self, const double[:, :] reading, double share) noexcept
     cdef double _force(self, Py_ssize_t k) noexcept
     @cython.locals(more=double, force=double, touches=cython.bint)
     cdef void _feel(self, Py_ssize_t k)
-    @cython.locals(load=double, reach=double)
-    cdef bint _flat(self, Py_ssize_t k)
+    @cython.locals(load=double, reach=double, pitch=double, roll=double)
+    cdef bint _settled_on(self, Py_ssize_t k, int edge)
     @cython.locals(left=double, i=Py_ssize_t)
     cdef void _tare_foot(self, Py_ssize_t k, double above)

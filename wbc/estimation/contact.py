@@ -26,6 +26,9 @@ UNLIKELY = 4.0
 FIRM_EDGE = 1.05
 """Share of the half sole within which its CoP is where it stands still on [-]."""
 
+_ON_EDGE = (2.0, 0.0, 2.0)
+"""Roll, pitch and rise of an edge over those of a sole [-]."""
+
 _SPRUNG = (3, 4, 2)
 """Components of a wrench by which a sole on springs rolls, pitches and rises."""
 
@@ -47,7 +50,7 @@ class SoleContact:
     Attributes:
         wrench: filtered and tared, shape (2, 6) [N, N·m].
         felt: which soles the ground carries, left first.
-        firm: which of these stand still: loaded, with the CoP well inside the sole.
+        firm: which of these stand still: loaded, with the CoP well inside the sole, or on the edge on which it rolls.
         tare: by how much the sensors are taken to be off, shape (2, 6) [N, N·m].
         tared: how long each sensor was tared [s].
         deviation: of a force and of a moment, both soles together, in the mean of a span of the load observer [N, N·m].
@@ -97,13 +100,14 @@ class SoleContact:
         tared = min(self._tared[0], self._tared[1])
         return math.hypot(self._bias * math.exp(-tared / self._tare_time), self._settled)
 
-    def update(self, reading: Reading, still: Sequence[bool], above: Array) -> None:
+    def update(self, reading: Reading, still: Sequence[bool], above: Array, edge: tuple[int, int] = (0, 0)) -> None:
         """Take the wrenches of a tick.
 
         Args:
             reading: of the sensors in the feet.
-            still: soles that the controller means to stand still.
+            still: soles that the controller means to stand still, on an edge or flat.
             above: how far each sole is over the ground, shape (2,) [m].
+            edge: on which each rolls: 1 the toe edge, -1 the heel edge, 0 none [-].
         """
         share = self._share if reading.fresh else 0.0
         if not self._begun:
@@ -117,7 +121,7 @@ class SoleContact:
         if not (self.felt[0] or self.felt[1]) and self._force(carrying) > self.threshold:
             self.felt[carrying] = True
         for k in (0, 1):
-            self.firm[k] = bool(self.felt[k] and self._flat(k) and still[k])
+            self.firm[k] = bool(self.felt[k] and self._settled_on(k, edge[1] if k else edge[0]) and still[k])
         if not (self.firm[0] or self.firm[1]):
             self.firm[carrying] = self.felt[carrying]
         self.wrench = self._wrenches.copy()
@@ -148,15 +152,19 @@ class SoleContact:
         if self._count[k] >= self._ticks:
             self.felt[k], self._count[k] = bool(touches), 0
 
-    def _flat(self, k: int) -> bool:
-        """Return true if a sole that is felt lies flat: its CoP is well inside it, or it is all that carries."""
+    def _settled_on(self, k: int, edge: int) -> bool:
+        """Return true if a sole that is felt is settled: its CoP is well inside it, or it is all that carries.
+
+        A sole that rolls turns about its edge, wherever the CoP is, if that is not at the other edge.
+        """
         load = self._force(k)
         if self._force(1 - k) < self.threshold:
             return True
         if not load > self._anchored * (0.5 if self.firm[k] else 1.0):
             return False
         reach = FIRM_EDGE if self.firm[k] else self._edge
-        pitch, roll = abs(self._wrench[k, 4]), abs(self._wrench[k, 3])
+        # The CoP is behind the centre where the moment is positive.
+        pitch, roll = self._wrench[k, 4] * edge if edge else abs(self._wrench[k, 4]), abs(self._wrench[k, 3])
         inside: bool = pitch < reach * self._half_length * load and roll < reach * self._half_width * load
         return inside
 
@@ -173,24 +181,28 @@ class SoleContact:
                 self._tare[k, i] += self._tare_share * self._wrench[k, i]
 
 
-def sprung(changed: Array, half_size: tuple[float, float], give: float) -> Array:
+def sprung(changed: Array, half_size: tuple[float, float], give: float, edge: tuple[int, int] = (0, 0)) -> Array:
     """Motion of soles on springs under their corners under a change of their wrenches.
 
     Springs that give by a depth g under a force of 1 N turn under a moment M by M g / h², with h the half size across
-    its axis: the corners are at plus and minus h.
+    its axis: the corners are at plus and minus h. An edge has half of them, and turns about itself at will.
 
     Args:
         changed: wrenches now less those before, of the ground on the soles in their axes, shape (2, 6) [N, N·m].
         half_size: half of the sole's length and width [m].
         give: g, of a sole [m/N].
+        edge: on which each rolls, 0 none [-].
 
     Returns:
-        roll and pitch of each sole, and how far it rises, shape (2, 3) [rad, rad, m].
+        roll and pitch of each sole, and how far it or its edge rises, shape (2, 3) [rad, rad, m].
     """
     length, width = half_size
     moved = changed.take(_SPRUNG, axis=1)
     # Where the ground presses more, the sole sinks.
     moved *= (-give / width**2, -give / length**2, -give)
+    for k in (0, 1):
+        if edge[k]:
+            moved[k] *= _ON_EDGE
     return moved
 
 

@@ -11,7 +11,8 @@ cdef class Covariance:
     cdef Stand _state
     cdef Py_ssize_t _encoders
     cdef double _gyro, _speed, _gyro_walk, _force_walk, _encoder, _place, _turning
-    cdef double _creep, _sinking, _rocking, _light, _unsure, _leaning
+    cdef double _creep, _sinking, _rocking, _light, _unsure, _free
+    cdef bint _leaning
     cdef double[:, ::1] _P, _gain, _weights
     cdef double[:, ::1] _fall, _B, _BR, _BB, _before, _turned, _fallen, _pushed, _RJ, _PH, _HP, _apart, _S, _U
     cdef double[::1] _noise
@@ -25,8 +26,9 @@ cdef class Covariance:
     @cython.locals(i=Py_ssize_t, way=double)
     cdef void add_standing(self, Py_ssize_t k, double t, double load) noexcept nogil
     cdef void add_springs(self, Py_ssize_t k, algebra.vector3 turned, double risen) noexcept nogil
+    cdef void add_turning(self, Py_ssize_t k, double t, bint rolls) noexcept nogil
     @cython.locals(i=Py_ssize_t, j=Py_ssize_t)
-    cdef void add_leaning(self, Py_ssize_t k, double t) noexcept nogil
+    cdef void _add_turn(self, Py_ssize_t k, double t, Py_ssize_t axis) noexcept nogil
     @cython.locals(i=Py_ssize_t, HP=double[:, :])
     cdef bint weigh(self, const Py_ssize_t[:] feet, const double[:, :, :] J, double ticks) noexcept nogil
     @cython.locals(i=Py_ssize_t, RJ=double[:, :])

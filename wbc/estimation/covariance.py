@@ -22,8 +22,8 @@ from surefoot.wbc.estimation.parameters import GroundNoise, SensorNoise
 from surefoot.wbc.estimation.stand import AXES, Stand
 from surefoot.wbc.types import Array
 
-LEANING = 3.0
-"""Deviation of a second's turn of a sole that leans, about its line, which says nothing of its attitude [rad/√s]."""
+FREE = 3.0
+"""Deviation of a second's turn of a sole about a line on which it stands [rad/√s]: nothing is known of it."""
 
 UNSURE = 0.5
 """Deviation of what springs under a sole do, over what they are believed to do [-]."""
@@ -79,7 +79,7 @@ class Covariance:
         self._creep, self._sinking = ground.creep, (2.0 if leaning else 1.0) * ground.sinking
         self._rocking, self._light = ground.rocking, ground.light
         self._unsure = UNSURE
-        self._leaning = algebra.square(LEANING if leaning else 0.0)
+        self._free, self._leaning = algebra.square(FREE), leaning
 
     def advance(self, t: float, x: Array) -> None:
         """Errors after a time, in place: F x.
@@ -138,12 +138,19 @@ class Covariance:
         P[sole + 1, sole + 1] += algebra.square(self._unsure * turned[1])
         P[sole + 2, sole + 2] += algebra.square(self._unsure * turned[2])
 
-    def add_leaning(self, k: int, t: float) -> None:
-        """Add what a sole that leans turns about its line in a time [s]."""
+    def add_turning(self, k: int, t: float, rolls: bool) -> None:
+        """Add what a sole turns freely in a time [s]: one that leans about its line, one that rolls about its edge."""
+        if self._leaning:
+            self._add_turn(k, t, 0)
+        if rolls:
+            self._add_turn(k, t, 1)
+
+    def _add_turn(self, k: int, t: float, axis: int) -> None:
+        """Add a sole's free turn about one of its own axes."""
         P, Z, sole = self._P, self._state._Z[k], stand.SOLE_AT + 3 * k
         for i in range(3):
             for j in range(3):
-                P[sole + i, sole + j] += self._leaning * t * Z[i, 0] * Z[j, 0]
+                P[sole + i, sole + j] += self._free * t * Z[i, axis] * Z[j, axis]
 
     def weigh(self, feet: NDArray[np.intp], J: Array, ticks: float) -> bool:
         """Gain of a tick, and covariance after some.

@@ -20,6 +20,7 @@ cdef class SensedState:
     cdef bint _begun, _lost
     cdef list _still
     cdef tuple _shapes
+    cdef (int, int) _edge
     cdef SensedBody _body
     cdef JointObserver _joints
     cdef RateFilter _rate
@@ -39,8 +40,10 @@ cdef class SensedState:
     cpdef Estimate sense(self, Readings readings)
     @cython.locals(at=Py_ssize_t, time=double, v=vector3)
     cdef _measured(self, Readings readings)
-    @cython.locals(filter_=InvariantFilter, contact=SoleContact, body=SensedBody, changed=cython.bint, due=cython.bint)
+    @cython.locals(filter_=InvariantFilter, contact=SoleContact, body=SensedBody, changed=cython.bint, rolled=cython.bint, due=cython.bint)
     cdef _step(self, Readings readings)
+    @cython.locals(ahead=double[::1], half_length=double, rolled=cython.bint, k=Py_ssize_t, place=double)
+    cdef bint _roll(self)
     @cython.locals(at=Py_ssize_t, gained=double[::1])
     cdef _turn(self, Readings readings)
     @cython.locals(back=Py_ssize_t)

@@ -61,6 +61,7 @@ class SensedState:
         self._torques: TorqueWrench | None = None
         self._torques_at, self._encoders = 0, np.zeros(0)
         self._begun, self._lost, self._still = False, False, [True, True]
+        self._edge = (0, 0)
         self._tick, self._imu_at, self._from = -1, 0, 0.0
         self._accelerations, self._accelerated = np.zeros((KEPT, 6)), 0
         self._gained, self._turned, self._unmoved = np.zeros(6), np.zeros(3), np.zeros(self._count)
@@ -80,7 +81,7 @@ class SensedState:
     def told(self, planned: Planned) -> None:
         """Hear what the controller does until the next tick."""
         self._remember(planned.acceleration)
-        self._still = [planned.contact[k] and planned.edge[k] == 0 for k in (0, 1)]
+        self._still, self._edge = list(planned.contact), planned.edge
 
     def _remember(self, acceleration: Array) -> None:
         """Generalised accelerations until the next tick, shape (6 + nj,)."""
@@ -145,7 +146,7 @@ class SensedState:
         self._base = FloatingBase(state, body, self._rate.rate)
         self._contact = self._feeling(readings)
         self._begun = True
-        self._contact.update(self._wrench(readings), self._still, self._above)
+        self._contact.update(self._wrench(readings), self._still, self._above, self._edge)
         self._load = self._contact.wrench
         body.offset_jacobians()
         self._deviation = self._doubt.deviation(self._contact, self._rate.deviation)
@@ -213,10 +214,11 @@ class SensedState:
         body = self._body
         encoders = readings.joint_position
         self._turn(readings)
-        contact.update(self._wrench(readings), self._still, self._above)
+        contact.update(self._wrench(readings), self._still, self._above, self._edge)
+        rolled = self._roll()
         body.update(encoders.values, self._stand.R, self._stand._offsets)
         changed = contact.firm != filter_.standing
-        due = changed or self._tick % self._every == 0
+        due = changed or rolled or self._tick % self._every == 0
         if due:
             self._renew(changed)
         if encoders.fresh:
@@ -226,6 +228,17 @@ class SensedState:
         if due:
             self._deviation = self._doubt.deviation(contact, self._rate.deviation)
             self._look_down()
+
+    def _roll(self) -> bool:
+        """See feet that begin to roll by their edge, and those that have rolled by their centre; whether any does."""
+        ahead, half_length, rolled = self._body._ahead, self._footing.half_size[0], False
+        for k in range(2):
+            place = (self._edge[1] if k else self._edge[0]) * half_length
+            if place != ahead[k]:
+                if self._filter.standing[k]:
+                    self._filter.shift(k, place - ahead[k])
+                ahead[k], rolled = place, True
+        return rolled
 
     def _turn(self, readings: Readings) -> None:
         """Go on with what the IMU says, if that is new."""
@@ -262,7 +275,7 @@ class SensedState:
         """Compute covariance and gain anew, after feet have landed and lifted."""
         filter_, body = self._filter, self._body
         J = body.offset_jacobians()
-        filter_.spread((self._share(0), self._share(1)), self._sprung())
+        filter_.spread((self._share(0), self._share(1)), self._sprung(), (self._edge[0] != 0, self._edge[1] != 0))
         if changed:
             self._change(J)
         filter_.weigh(J)
@@ -281,7 +294,7 @@ class SensedState:
             return None
         changed = self._contact.wrench - self._load
         self._load = self._contact.wrench
-        return sprung(changed, self._footing.half_size, self.parameters.ground.depth / self._weight)
+        return sprung(changed, self._footing.half_size, self.parameters.ground.depth / self._weight, self._edge)
 
     def _change(self, J: Array) -> None:
         """Let feet lift and land as their contact says."""
@@ -317,7 +330,7 @@ class SensedState:
         filter_.correct(body._position, body._rotation)
 
     def _sole(self, k: int) -> Vector:
-        """Centre of a sole in the world, by the kinematics [m]."""
+        """Place of a sole in the world, by the kinematics [m]."""
         state = self._stand
         reach = algebra.rotate(state._R, algebra.row(self._body._position, k))
         return algebra.add(algebra.row(state._columns, 1), reach)

@@ -22,7 +22,7 @@ cdef class InvariantFilter:
     @cython.locals(i=Py_ssize_t)
     cpdef void propagate(self, const double[:] rate, const double[:] force, double time) noexcept
     @cython.locals(k=Py_ssize_t, time=double)
-    cpdef void spread(self, (double, double) loads, const double[:, :] sprung=*)
+    cpdef void spread(self, (double, double) loads, const double[:, :] sprung=*, (bint, bint) rolling=*)
     @cython.locals(k=Py_ssize_t, ticks=double)
     cpdef weigh(self, const double[:, :, :] J)
     @cython.locals(i=Py_ssize_t, k=Py_ssize_t)

@@ -170,13 +170,16 @@ class InvariantFilter:
             v[i] += time * a[i]
         self._since += time
 
-    def spread(self, loads: tuple[float, float], sprung: Array | None = None) -> None:
+    def spread(
+        self, loads: tuple[float, float], sprung: Array | None = None, rolling: tuple[bool, bool] = (False, False)
+    ) -> None:
         """Covariance of the way since it was computed last.
 
         Args:
             loads: shares of the weight on the soles [-].
             sprung: by how much each sole has rolled, pitched and risen on springs in that time, in its own axes, shape
                 (2, 3), with half of that as its deviation; None where nobody knows [rad, rad, m].
+            rolling: soles that turn about an edge across them, left first.
         """
         time, self._since = self._since, 0.0
         if time <= 0.0:
@@ -188,7 +191,7 @@ class InvariantFilter:
                 covariance.add_standing(k, time, loads[k])
                 if sprung is not None:
                     covariance.add_springs(k, self.stand.give(k, sprung[k]), sprung[k, 2])
-                covariance.add_leaning(k, time)
+                covariance.add_turning(k, time, rolling[k])
 
     def land(
         self, k: int, y: Array, Y: Array, J: Array, height: tuple[float, float] | None, place: float, turn: float
@@ -224,6 +227,18 @@ class InvariantFilter:
             row[0, TURN] = -pin.skew(s.d[k])[2]
             if lacking**2 < LIKELY * (float(row[0] @ P @ row[0]) + height[1] ** 2):
                 self._correct(row, np.array([lacking]), np.array([height[1] ** 2]))
+
+    def shift(self, k: int, ahead: float) -> None:
+        """A foot that stands is seen by another point of its sole, so far ahead along it [m].
+
+        That is d + Z r for the way r in the sole's axes. Its error is ξ_d - hat(Z r) (ζ - ξ_R).
+        """
+        s, P, i = self.stand, self.P, FOOT[k]
+        way = ahead * s.Z[k][:, 0]
+        lever = pin.skew(way)
+        s.columns[2 + k] += way
+        P[i] -= lever @ (P[SOLE[k]] - P[TURN])
+        P[:, i] -= (P[:, SOLE[k]] - P[:, TURN]) @ lever.T
 
     def lift(self, k: int) -> None:
         """A foot stands no longer."""

@@ -17,7 +17,7 @@ cdef class Sole:
 
 @cython.final
 cdef class SensedBody:
-    cdef readonly object model, chain, position, rotation, jacobian, leaning
+    cdef readonly object model, chain, position, rotation, ahead, jacobian, leaning
     cdef readonly double mass
     cdef readonly bint behind
     cdef object _data, _q, _v
@@ -32,7 +32,7 @@ cdef class SensedBody:
     cdef const double[:] _com
     cdef double[:, ::1] _mount_rotation, _turn, _mounted, _imu_rotation
     cdef vector3 _mount_position, _imu_position
-    cdef double[::1] _angles, _speeds
+    cdef double[::1] _angles, _speeds, _ahead
     cdef double[:, ::1] carried
     cdef vector3 lever, turning, moving
     cdef double[:, ::1] _position

@@ -1,7 +1,7 @@
 """The places of the soles from the IMU, their motion by encoder zeros, and the place of the base.
 
-Of soles that lean (see `surefoot.wbc.body.leaning`) the place is that of the line on which they stand: it stays where
-it is while they turn about it.
+Of soles that lean (see `surefoot.wbc.body.leaning`) the place is that of the line on which they stand, of soles that
+roll that of their edge: it stays where it is while they turn about it.
 """
 
 import numpy as np
@@ -56,9 +56,10 @@ class SensedBody:
         leaning: as given.
         mass: of the robot [kg].
         chain: indices of the joints between the IMU and the soles, shape (m,).
-        position: of the soles in the frame of the IMU, shape (2, 3) [m].
+        position: of the soles' places in the frame of the IMU, shape (2, 3) [m].
         rotation: of the soles to the frame of the IMU, shape (2, 3, 3).
         jacobian: as last asked for, see `offset_jacobians`.
+        ahead: the point of each sole that is its place, ahead of its centre, in an array to be written, shape (2,) [m].
         behind: whether joints are between the base and the IMU.
         carried: orientation of the IMU in the base, by `carry`, shape (3, 3).
         lever: its place there [m].
@@ -82,8 +83,8 @@ class SensedBody:
         self._find_chain(model, [model.frames[frame].parentJoint for frame in frames])
         self._q, self._v = pin.neutral(model), np.zeros(model.nv)
         self._angles, self._speeds = self._q[7:], self._v[6:]
-        self.position, self.rotation = np.zeros((2, 3)), np.zeros((2, 3, 3))
-        self._position, self._rotation = self.position, self.rotation
+        self.position, self.rotation, self.ahead = np.zeros((2, 3)), np.zeros((2, 3, 3)), np.zeros(2)
+        self._position, self._rotation, self._ahead = self.position, self.rotation, self.ahead
         self.jacobian = self._jacobian = np.zeros((2, 6, len(self.chain) + AXES))
         self.jacobian[:, 3:, -AXES:] = np.eye(3)
         data = self._data
@@ -141,11 +142,13 @@ class SensedBody:
         """A sole in the frame of the IMU."""
         sole.place()
         apart = algebra.subtract(sole.position, self._imu_position)
+        if self._ahead[k] != 0.0:
+            apart = algebra.add(apart, algebra.scale(self._ahead[k], algebra.column(sole.rotation, 0)))
         algebra.put_row(self._position, k, algebra.rotate_back(self._imu_rotation, apart))
         algebra.compose_back(self._imu_rotation, sole.rotation, self._rotation[k])
 
     def _lean(self, attitude: Array, half_width: float) -> None:
-        """Take the lines of the soles for their centres."""
+        """Take the lines of the soles for their places."""
         for k in (0, 1):
             beside = line_centre(k, np.zeros(3), attitude @ self.rotation[k], half_width)
             self.position[k] += beside @ attitude
@@ -187,7 +190,7 @@ class SensedBody:
         algebra.put_row(J, 2, (y, -x, 0.0), m)
 
     def in_base(self, k: int) -> Vector:
-        """A sole's centre in the base's frame [m]."""
+        """A sole's place in the base's frame [m]."""
         return algebra.add(algebra.rotate(self._imu_rotation, algebra.row(self._position, k)), self._imu_position)
 
     def moved_by(self, joint: int, at: Vector) -> Vector:

@@ -25,7 +25,9 @@ def problem(error=(0.0, 0.0), left=0.6, transfer=0.5, parameters=P, **context):
     share = np.clip((np.arange(count) - touchdown) / ramp, 0.0, 1.0)[:, None]
     stiffness, omega = np.full(count, W * W), np.full(count, W)
     half = np.full((count, 2), HALF)
-    reference = ZmpReference(share * STEP, np.hstack((share, np.zeros_like(share))), half, np.zeros(count))
+    reference = ZmpReference(
+        share * STEP, np.hstack((share, np.zeros_like(share))), half, np.zeros(count), np.zeros((count, 2))
+    )
     here = nominal_dcm(stiffness, omega, reference.point, T)[0] + error
     state = np.column_stack((here - 0.1 / W, np.full(2, 0.1), np.zeros(2)))
     steps = StepContext(

@@ -51,7 +51,7 @@ def tick_of(fallback=None, seed=4, **parameters):
     ramp = np.clip((np.arange(count)[:, None] - (20, 90)) / 25, 0.0, 1.0)
     stiffness = 9.0 + np.sin(0.1 * np.arange(count))
     box = rng.uniform(0.02, 0.05, (count, 2))
-    reference = ZmpReference(ramp @ [[0.2, 0.1], [0.3, -0.2]], ramp, box, np.zeros(count))
+    reference = ZmpReference(ramp @ [[0.2, 0.1], [0.3, -0.2]], ramp, box, np.zeros(count), np.zeros((count, 2)))
     increment, free = np.full((2, 2), 0.2), (True, True)
     bounds = reachable_shifts(p, increment, 1.0, free, np.zeros(2), 0.4)
     steps = StepContext(increment, (1.0, -1.0), free, np.zeros(2), 0.4, 0.2, *bounds)

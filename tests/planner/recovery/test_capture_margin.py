@@ -33,7 +33,9 @@ COUNT, SEGMENTS = P.horizon + P.preview + 1, 3
 def window(half=0.9 * HALF):
     times = T * np.arange(COUNT)
     point = np.clip((times - 0.3) / 0.12, 0.0, 1.0)[:, None] * (0.36, 0.2)
-    reference = ZmpReference(point, np.zeros((COUNT, 2)), np.broadcast_to(half, (COUNT, 2)), np.zeros(COUNT))
+    reference = ZmpReference(
+        point, np.zeros((COUNT, 2)), np.broadcast_to(half, (COUNT, 2)), np.zeros(COUNT), np.zeros((COUNT, 2))
+    )
     height = HeightPreview(np.ones((3, COUNT)), np.full(COUNT, OMEGA**2))
     still = np.zeros((COUNT, 2))
     stiffness, omega = np.full(COUNT, OMEGA**2), np.full(COUNT, OMEGA)

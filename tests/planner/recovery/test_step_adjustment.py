@@ -46,7 +46,7 @@ def situation(error=(0.0, 0.0), single=0.3, half=HALF, swing=((0.1, 0.2), (1.0, 
     times = T * np.arange(count)
     share = np.clip((times - landed) / 0.12, 0.0, 1.0)
     point, gain = share[:, None] * NOMINAL, np.column_stack((share, np.zeros(count)))
-    reference = ZmpReference(point, gain, np.broadcast_to(half, (count, 2)), np.zeros(count))
+    reference = ZmpReference(point, gain, np.broadcast_to(half, (count, 2)), np.zeros(count), np.zeros((count, 2)))
     stiffness, omega = np.full(count, OMEGA**2), np.full(count, OMEGA)
     bounded = viability_weights(stiffness, omega, T) @ point
     given = {

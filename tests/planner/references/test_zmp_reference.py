@@ -13,14 +13,16 @@ from surefoot.planner.references.zmp_reference import (
     SupportKey,
     hull_of,
     load_left,
+    on_edges,
     present_support,
+    sole_of,
     support_table,
     zmp_reference,
 )
 from surefoot.planner.steps.gait import GaitParameters
 from surefoot.planner.steps.schedule import Schedule
 from surefoot.planner.swing.course import Ground
-from surefoot.planner.types import Foot, Footstep, PhaseKind
+from surefoot.planner.types import Edge, Foot, Footstep, PhaseKind
 
 pytestmark = pytest.mark.unit
 
@@ -133,3 +135,101 @@ def test_the_load_goes_evenly_from_one_support_point_to_the_next(schedule):
     passed = np.add(samples.index, samples.fraction)
     assert max(samples.fraction) > 0.0 and len(set(samples.index)) > 2
     np.testing.assert_allclose(load_left(samples, on_left), np.interp(passed, np.arange(len(on_left)), on_left))
+
+
+ROLLING = GaitParameters(
+    steps=5, step_length=0.42, single_support=0.4, double_support=0.2, initial_stand=0.0, heel_off=0.5, heel_strike=0.2
+)
+
+
+def _stood_on(phase, place, clock):
+    """Corners of what of a foot is down."""
+    edge = phase.edges(clock)[place.foot]
+    corners = sole_corners(place, HALF if edge == Edge.SOLE else HALF * (0.0, 1.0))
+    return corners + edge * HALF[0] * frame_rotation(place.yaw)[:, 0]
+
+
+def _box(reference, k, yaw, origin):
+    """Corners of the box of a sample in the world."""
+    corners = np.array([[1, 1], [1, -1], [-1, 1], [-1, -1]]) * reference.half_size[k]
+    return origin + (reference.point[k] + reference.middle[k] + corners) @ frame_rotation(yaw).T
+
+
+def test_the_box_lies_in_the_hull_of_what_is_down_of_rolling_feet(schedule):
+    """A box of flat feet does not. Where the reference is outside, the box reaches from there to the reference."""
+    walk = schedule(ROLLING)
+    steps, support = (
+        walk.schedule,
+        present_support(SupportKey(walk.schedule, 0, 0.0, (True, True)), PhaseKind.STAND, 1.0, (9.0, 9.0)),
+    )
+    count = len(walk.samples.clock)
+    flat_feet = zmp_reference(walk.samples, support.table)
+    edges, rolled, beyond, reaching, seen = on_edges(flat_feet, walk.samples, support, count), 0, 0, 0, set()
+    for k, clock in enumerate(walk.samples.clock.tolist()):
+        phase = walk.samples.phases[walk.samples.which[k]]
+        if phase.edges(clock) == (0, 0) or phase.step < 1:
+            assert not edges.middle[k].any()
+            np.testing.assert_array_equal(edges.half_size[k], flat_feet.half_size[k])
+            continue
+        seen.add(tuple(sorted(phase.edges(clock))))
+        feet = [steps.step(number).place for number in (phase.step, phase.step - 1)]
+        hull = convex_hull(np.concatenate([_stood_on(phase, place, clock) for place in feet]))
+        outside = [
+            min(signed_distance(hull, corner) for corner in _box(each, k, 0.0, support.origin))
+            for each in (edges, flat_feet)
+        ]
+        middle, half = edges.middle[k, 0], edges.half_size[k, 0]
+        assert abs(middle) <= half + 1e-12
+        if abs(middle) < half - 1e-9:
+            assert outside[0] > -1e-9
+        else:
+            far = support.origin + edges.point[k] + (2.0 * middle, edges.middle[k, 1])
+            assert signed_distance(hull, far) > -1e-9
+            reaching += 1
+        rolled, beyond = rolled + 1, beyond + (outside[1] < -0.01)
+    assert beyond > 0.8 * rolled > 20 and 0 < reaching < rolled
+    assert seen == {(-1, 0), (0, 1), (-1, 1)}
+
+
+def test_boxes_beyond_what_is_planned_are_those_of_flat_feet(schedule):
+    walk = schedule(ROLLING)
+    support = present_support(SupportKey(walk.schedule, 0, 0.0, (True, True)), PhaseKind.STAND, 1.0, (9.0, 9.0))
+    flat_feet = zmp_reference(walk.samples, support.table)
+    edges = on_edges(flat_feet, walk.samples, support, 60)
+    assert edges.middle[:60].any() and not edges.middle[60:].any()
+    np.testing.assert_array_equal(edges.half_size[60:], flat_feet.half_size[60:])
+
+
+def test_a_stance_foot_that_rolls_alone_has_its_box_on_its_edge(schedule):
+    """As of a heel that leaves the ground before the other foot has landed."""
+    walk = schedule(replace(ROLLING, heel_strike=0.0))
+    steps = walk.schedule
+    step = steps.step(3)
+    early = replace(step, toe_off=step.toe_off._replace(start=steps.step(2).touchdown - 10.0))
+    at = steps.index(3)
+    rolled = steps.with_steps((*steps.steps[:at], early, *steps.steps[at + 1 :]))
+    phase = next(p for p in rolled.phases if p.step == 2 and p.stance is not None)
+    assert phase.edges(phase.end - 1.0)[phase.stance] == Edge.TOE and phase.edges(phase.start) == (0, 0)
+    key = SupportKey(rolled, 1, phase.start, (True, True), phase.edges(phase.end - 1.0))
+    support = present_support(key, PhaseKind.SINGLE, 0.9, (9.0, 9.0))
+    reference = on_edges(
+        zmp_reference(rolled.samples(phase.end - np.arange(1.0, 20.0)), support.table),
+        rolled.samples(phase.end - np.arange(1.0, 20.0)),
+        support,
+        19,
+    )
+    np.testing.assert_allclose(reference.middle[:9, 0], 0.5 * HALF[0])
+    np.testing.assert_allclose(reference.half_size[:9, 0], 0.5 * HALF[0])
+    assert reference.half_size[0, 1] > 0.04 and not reference.middle[9:].any()
+    # The polygon that is planned is a strip at its toes.
+    ahead = (support.outer - support.origin) @ support.rotation[:, 0]
+    assert 0.0 < np.ptp(ahead) < 0.01 and ahead.max() == pytest.approx(HALF[0])
+
+
+@pytest.mark.parametrize("edge", [Edge.TOE, Edge.HEEL])
+def test_an_edge_of_a_sole_lies_at_its_end(edge):
+    place = Footstep(Foot.LEFT, np.array([1.0, 0.2, 0.0]), 0.3, np.array([0.0, 0.0, 1.0]))
+    for corners, width in zip(sole_of(place, HALF, 0.9, int(edge)), (1.0, 0.9), strict=True):
+        along, across = ((corners - place.position[:2]) @ frame_rotation(place.yaw)).T
+        assert np.abs(along).max() <= HALF[0] + 1e-12 and (along * edge).min() > 0.9 * HALF[0]
+        assert np.abs(across).max() == pytest.approx(width * HALF[1])

@@ -3,6 +3,8 @@ from itertools import pairwise
 
 import numpy as np
 import pytest
+from hypothesis import given
+from hypothesis import strategies as st
 from scipy.spatial.transform import Rotation
 
 from surefoot.planner.flight import swinging_to, upcoming
@@ -21,9 +23,9 @@ from surefoot.planner.steps.gait import GaitParameters
 from surefoot.planner.steps.schedule import Schedule
 from surefoot.planner.swing.course import Ground
 from surefoot.planner.swing.leg_reach import LegReach
-from surefoot.planner.swing.rolling import FootRoll, bump
+from surefoot.planner.swing.rolling import FootRoll, bump, landing_pitch
 from surefoot.planner.track import advanced
-from surefoot.planner.types import CentroidalState, Edge, Foot, PhaseKind
+from surefoot.planner.types import CentroidalState, Edge, Foot, Footstep, PhaseKind
 from surefoot.planner.walk_model import WalkModel
 
 pytestmark = pytest.mark.unit
@@ -213,6 +215,25 @@ def test_a_heel_waits_where_ankles_do_not_bear_the_robot_on_its_toes(stand):
     np.testing.assert_allclose(late - early, 0.25 * ROLLING.double_support / 0.02)
 
 
+@given(way=st.floats(-0.5, 0.8), usual=st.floats(-0.3, 0.6), yaw=st.floats(-3.0, 3.0))
+def test_a_foot_lands_the_more_on_its_heel_the_farther_ahead_it_lands(way, usual, yaw):
+    """As much as is asked for at the gait's own way, and not at all less than one and a half half soles ahead."""
+
+    def pitch(way):
+        ahead, right, up = np.array(
+            [[np.cos(yaw), np.sin(yaw), 0.0], [np.sin(yaw), -np.cos(yaw), 0.0], [0.0, 0.0, 1.0]]
+        )
+        stance = Footstep(Foot.LEFT, np.zeros(3), yaw, up)
+        landing = Footstep(Foot.RIGHT, way * ahead + 0.2 * right, yaw, up)
+        return landing_pitch(stance, landing, 0.11, usual, 0.3)
+
+    assert 0.0 <= pitch(way) <= pitch(way + 0.01) <= 0.3
+    assert (pitch(way) == 0.0) == (way <= 0.165) or abs(way - 0.165) < 1e-6
+    if usual > 0.17:
+        assert pitch(usual) == 0.3
+        assert pitch(0.5 * (usual + 0.165)) == pytest.approx(0.15, abs=1e-5)
+
+
 def test_a_step_that_is_moved_back_lands_flat_unless_its_toes_are_on_their_way_up(stand):
     ground = Ground(flat(), np.array([0.11, 0.055]), PlannerParameters(reach_length=0.8))
     feet = stand(GAIT.step_width)
@@ -223,6 +244,9 @@ def test_a_step_that_is_moved_back_lands_flat_unless_its_toes_are_on_their_way_u
     strike = state.schedule.step(1).heel_strike
     (landing,) = upcoming(state, 0.0, np.zeros((2, 2)))[:1]
     short = replace(landing, position=landing.position * (0.0, 1.0, 1.0))
+    middle = replace(landing, position=landing.position * (0.7, 1.0, 1.0))
+    (half,) = [span for span in swinging_to(state, middle, measured, False).phase.rolls if span.angle < 0.0]
+    assert strike.angle < half.angle < 0.3 * strike.angle and half[:3] == strike[:3]
     for footstep, flatly in ((landing, False), (short, True)):
         swung = swinging_to(state, footstep, measured, False)
         assert (swung.schedule.step(1).heel_strike is None) is flatly
@@ -230,6 +254,30 @@ def test_a_step_that_is_moved_back_lands_flat_unless_its_toes_are_on_their_way_u
     while state.clock.now < strike.start:
         state = advanced(state, measured)
     assert swinging_to(state, short, measured, False).schedule.step(1).heel_strike == strike
+
+
+@pytest.mark.parametrize("begun", [False, True])
+def test_a_step_that_catches_lands_flat_and_arrives_as_feet_that_do(stand, begun):
+    """It does so before its swing has begun, and after it: what is left of the swing is then sooner over."""
+    ground = Ground(flat(), np.array([0.11, 0.055]), PlannerParameters(reach_length=0.8))
+    feet = stand(GAIT.step_width)
+    measured = Measured(CentroidalState(0.0, np.array([0.0, 0.0, GAIT.com_height]), np.zeros(3)), feet)
+
+    def swung(gait, catches):
+        state = WalkState.start(WalkModel.of(gait, ground, SmoothHeight(), None), feet)
+        while state.phase.kind is not PhaseKind.SINGLE:
+            state = advanced(state, measured)
+        (landing,) = upcoming(state, 0.0, np.zeros((2, 2)))[:1]
+        if begun:
+            state = swinging_to(state, landing, measured, False)
+        return swinging_to(replace(state, adapted=catches), landing, measured, False)
+
+    flatly, heels, caught = swung(GAIT, True), swung(ROLLING, False), swung(ROLLING, True)
+    assert heels.schedule.step(1).heel_strike is not None is caught.schedule.step(1).heel_strike
+    arrivals = [state.swing.trajectory.touchdown_time for state in (flatly, heels, caught)]
+    speeds = [state.swing.trajectory.search.touchdown_speed for state in (flatly, heels, caught)]
+    assert arrivals[2] == pytest.approx(arrivals[0]) and arrivals[1] > arrivals[0] + 0.01
+    assert speeds[2] == pytest.approx(speeds[0]) and speeds[1] > speeds[0] + 0.05
 
 
 def test_a_rolling_foot_turns_about_its_toe_edge_and_lifts_the_ankle():

@@ -34,6 +34,7 @@ NAMES = (
 
 WITHOUT_A_VALUE = (
     "knee_stance_mean knee_heel_strike knee_midstance landing_peak landing_rate heel_strike_pitch toe_off_pitch "
+    "toe_clearance_min human_share human_correlation "
     "fall_time fall_warning place_error heading_error waypoints_missed velocity_error yaw_rate_error "
     "stair_edge_margin_min "
     "coupling_error memory_growth com_estimation_error_rms velocity_estimation_error_rms "

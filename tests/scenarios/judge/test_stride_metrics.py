@@ -5,7 +5,7 @@ from types import SimpleNamespace
 import numpy as np
 import pytest
 
-from surefoot.scenarios.judge import strides
+from surefoot.scenarios.judge import people, strides
 from surefoot.scenarios.judge.digest import RunView
 from surefoot.similarity import REFERENCE_SIZE
 
@@ -106,3 +106,81 @@ def test_a_walk_of_few_steps_has_no_steady_ones():
     view = Walk(steps=5).view
     found = [getattr(strides, name)(view) for name in ("knee_stance_mean", "landing_peak", "toe_off_pitch")]
     assert found == [None, None, None]
+
+
+def test_toe_clearance_is_that_of_the_toe_edge_in_the_middle_of_a_swing():
+    walk = Walk()
+    walk.sole[:, :, 2] = 0.05
+    foot, lands = walk.landings[5]
+    middle = lands - 100
+    walk.sole[foot, middle, 2] = 0.03
+    assert strides.toe_clearance_min(walk.view) == pytest.approx(0.03)
+    # A heel that is up leaves its toes lower, by half the length of the sole times the sine of the pitch.
+    walk.pitched(foot, middle, 0.1)
+    assert strides.toe_clearance_min(walk.view) == pytest.approx(0.03 - 0.1 * np.sin(0.1), abs=1e-6)
+    # One that is down is not lower at its toes, and what is near a landing is no clearance.
+    walk.pitched(foot, middle, -0.1)
+    walk.sole[foot, lands - 10, 2] = 0.0
+    assert strides.toe_clearance_min(walk.view) == pytest.approx(0.03 + 0.1 * np.sin(0.1), abs=1e-6)
+
+
+NAMES = ("hip_yaw", "hip_pitch", "knee", "ankle_pitch", "ankle_roll")
+
+
+class Person(Walk):
+    """Legs that move as people's means do, or as given; with hips and ankles of any sign and zero."""
+
+    def __init__(self, flexion=None, hip=(1.0, 0.0), ankle=1.0, lean=0.0):
+        super().__init__()
+        mean = people.people()[0] if flexion is None else flexion
+        self.joints = np.zeros((TICKS, 2 * len(NAMES)))
+        turn, rng = np.array([0.0, np.sin(0.5 * lean), 0.0, np.cos(0.5 * lean)]), np.random.default_rng(0)
+        self.q = np.column_stack((np.zeros((TICKS, 3)), np.tile(turn, (TICKS, 1))))
+        for foot in (0, 1):
+            lands = next(tick for side, tick in self.landings if side == foot)
+            share = ((np.arange(TICKS) - lands) / (2.0 * STEP)) % 1.0
+            H, K, D = (np.interp(share, np.arange(101) / 100.0, (*row, row[0])) for row in mean)
+            own = slice(len(NAMES) * foot, len(NAMES) * (foot + 1))
+            yaw, roll = 0.02 * rng.normal(size=(2, TICKS))
+            self.joints[:, own] = np.column_stack((yaw, hip[0] * H + hip[1], K, ankle * D, roll))
+            self.sole[foot, :, 4] = np.sin(0.5 * (lean + K - H - D))
+            self.sole[foot, :, 6] = np.cos(0.5 * (lean + K - H - D))
+
+    @property
+    def view(self):
+        view = super().view
+        view.log["/truth"]._fields["q"], view.log["/measurement"]._fields["joint_position"] = self.q, self.joints
+        sides = [[f"{side}_{name}" for name in NAMES] for side in ("left", "right")]
+        view.constants.joint_names = (*sides[0], *sides[1])
+        view.constants.roles = dict(zip(("left_leg", "right_leg"), sides, strict=True))
+        return view
+
+
+@pytest.mark.parametrize("how", [{}, {"hip": (-1.0, 0.3)}, {"ankle": -1.0, "lean": 0.2}], ids=str)
+def test_legs_that_move_as_peoples_do_are_like_theirs_whatever_turns_them(how):
+    view = Person(**how).view
+    assert people.human_correlation(view) == pytest.approx([1.0, 1.0, 1.0], abs=0.01)
+    share = people.human_share(view)
+    # An ankle's zero is known as well as that of the hip is.
+    assert share[:2] == [1.0, 1.0] and (share[2] == 1.0 or how.get("hip"))
+
+
+def test_a_crouch_is_like_people_in_its_hips_alone():
+    """The knees and ankles are bent by 40 and 25 degrees more; its curves have the shape of people's."""
+    mean = people.people()[0]
+    view = Person(mean + np.radians([[65.0], [40.0], [25.0]])).view
+    assert people.human_share(view)[0] == 1.0
+    assert max(people.human_share(view)[1:]) < 0.05
+    assert people.human_correlation(view) == pytest.approx([1.0, 1.0, 1.0], abs=0.01)
+    plateau = np.stack((mean[0], np.full(100, 0.8) + 0.1 * np.sin(np.arange(100) * np.pi / 50.0), -mean[2]))
+    shares, shapes = people.human_share(Person(plateau).view), people.human_correlation(Person(plateau).view)
+    assert shares[1] < 0.4 and abs(shapes[1]) < 0.9 and shapes[2] == pytest.approx(-1.0, abs=0.01)
+
+
+def test_legs_that_do_not_fit_together_are_not_judged():
+    person = Person()
+    person.joints[:, 3] = np.random.default_rng(1).normal(size=TICKS)
+    assert people.human_share(person.view) is None and people.human_correlation(person.view) is None
+    few = Person()
+    few.planned[:] = 1
+    assert people.human_share(few.view) is None

@@ -35,7 +35,7 @@ def tick(rng, status):
         sole_rotation=rotation[:2], torso_rotation=rotation[2],
     )  # fmt: skip
     report = SimpleNamespace(
-        active=(True, False), felt=(False, True), status=status, iterations=7, primal_residual=1e-9,
+        active=(True, False), edge=(0, 1), felt=(False, True), status=status, iterations=7, primal_residual=1e-9,
         dual_residual=2e-9, acceleration=rng.normal(size=NJ + 6), wrench=rng.normal(size=(2, 6)),
         task_error=rng.normal(size=18),
         load=ExternalLoad(rng.normal(size=3), rng.normal(size=3), rng.uniform(0.8, 1.2)),

@@ -82,7 +82,7 @@ def test_a_foot_that_landed_steps_again_after_a_push_aside_and_not_after_one_ahe
 
 def test_with_a_heel_rolled_in_no_time_and_soles_held_at_any_price_the_qp_drops_all_limits(monkeypatch):
     """Negative control."""
-    monkeypatch.setattr(adaptation, "with_foot_flat", lambda schedule, _: schedule)
+    monkeypatch.setattr(adaptation, "with_roll", lambda schedule, *_: schedule)
     held = property(lambda solver: False, lambda solver, value: None)
     monkeypatch.setattr(solvers.Daqp, "_lets_go", held, raising=False)
     assert all(pushed(impulse, 0.25)[1] for impulse in (0.67, 0.7, 0.73))

@@ -171,9 +171,11 @@ def test_only_the_edge_of_a_rolling_foot_supports():
     assert region.project(0.12, -0.1) == (0.12, -0.1)
 
 
-def test_a_foot_rolls_only_while_the_other_one_carries(references):
+def test_a_foot_in_the_air_stands_on_no_edge_and_one_that_carries_alone_may(references):
     standing, _ = references
     schedule = ContactSchedule(ContactParameters(), 981.0, 0.002)
     assert schedule.update(standing(edge=(-1, 1)), FootSensing((500.0, 400.0))).edge == (-1, 1)
     lifted = standing(planned_contact=(True, False), swing_foot=1, edge=(0, 1))
     assert schedule.update(lifted, FootSensing((900.0, 0.0))).edge == (0, 0)
+    both = standing(planned_contact=(True, False), swing_foot=1, edge=(1, -1))
+    assert schedule.update(both, FootSensing((900.0, 0.0))).edge == (1, 0)

@@ -381,6 +381,49 @@ def test_a_sole_that_leans_tells_how_it_is_turned_but_for_about_its_line(leaning
     assert abs(along[0]) < 2e-5 if leaning else along[0] < -5e-4
 
 
+@pytest.mark.parametrize("rolls", [True, False])
+def test_a_sole_that_rolls_tells_how_it_is_turned_but_for_about_its_edge(rolls):
+    def turned(axis):
+        stand = Stand(np.eye(3), np.zeros((4, 3)), np.stack((np.eye(3),) * 2), *np.zeros((2, 3)), np.zeros(OFFS))
+        filter_ = InvariantFilter(stand, NOISE, GROUND)
+        filter_.lift(1)
+        filter_.P[TURN, TURN] += 1e-4 * np.eye(3)
+        for _ in range(5):
+            filter_.propagate(np.zeros(3), np.array([0.0, 0.0, 9.81]), PERIOD)
+        filter_.spread((1.0, 0.0), None, (rolls, False))
+        filter_.weigh(np.zeros((2, 6, OFFS)))
+        filter_.correct(np.zeros((2, 3)), np.stack((pin.exp3(1e-3 * axis),) * 2))
+        return pin.log3(filter_.stand.R)
+
+    across, along = turned(np.array([0.0, 1.0, 0.0])), turned(np.array([1.0, 0.0, 0.0]))
+    assert along[0] < -5e-4
+    assert abs(across[1]) < 2e-5 if rolls else across[1] < -5e-4
+
+
+def test_a_foot_that_is_seen_by_another_point_has_the_error_of_that_point():
+    """The covariance follows the linear map of small errors."""
+    rng, ahead, step = np.random.default_rng(11), 0.11, 1e-6
+    believed = somewhere(rng)
+    T = np.empty((COUNT, COUNT))
+    for column in range(COUNT):
+        true, x = deepcopy(believed), np.zeros(COUNT)
+        x[column] = step
+        true.move(x)
+        filters = [InvariantFilter(deepcopy(each), NOISE, GROUND) for each in (true, believed)]
+        for each in filters:
+            each.shift(1, ahead)
+        T[:, column] = error(filters[0].stand, filters[1].stand) / step
+    filter_, root = InvariantFilter(deepcopy(believed), NOISE, GROUND), rng.normal(size=(COUNT, COUNT))
+    filter_.P[:] = root @ root.T
+    filter_.shift(1, ahead)
+    np.testing.assert_allclose(filter_.P, T @ root @ root.T @ T.T, atol=1e-3 * COUNT)
+    np.testing.assert_allclose(filter_.stand.d[1] - believed.d[1], ahead * believed.Z[1][:, 0], atol=1e-15)
+    np.testing.assert_array_equal(filter_.stand.d[0], believed.d[0])
+    assert np.abs(T - np.eye(COUNT)).max() > 0.5 * ahead
+    filter_.shift(1, -ahead)
+    np.testing.assert_allclose(filter_.P, root @ root.T, atol=1e-9 * COUNT)
+
+
 def test_soles_that_lean_tell_the_attitude_at_the_start_by_the_heights_of_both():
     """However they are turned about their lines, which those that do not lean take for a tilt of the robot."""
     found = []

@@ -154,3 +154,24 @@ def test_soles_that_lean_are_seen_at_their_lines_which_move_with_them(robot, mou
         for k in (0, 1):
             found = (centre.position[k] + centre.rotation[k] @ beside[k] - place[k]) / step
             np.testing.assert_allclose(J[k, :3, column], found, atol=2e-6)
+
+
+@pytest.mark.parametrize("mount", MOUNTS)
+def test_soles_that_roll_are_seen_at_their_edges_which_stay_while_they_turn_about_them(robot, mount):
+    q, _ = moving(robot)
+    step, ahead = 1e-6, np.array([0.11, -0.09])
+    body, centre = (SensedBody(robot.model, robot.frames.soles, mount) for _ in range(2))
+    body.ahead[:] = ahead
+    body.update(q[7:], np.eye(3))
+    centre.update(q[7:], np.eye(3))
+    np.testing.assert_allclose(body.position - centre.position, ahead[:, None] * centre.rotation[:, :, 0], atol=1e-15)
+    J, place = body.offset_jacobians().copy(), body.position.copy()
+    K = centre.offset_jacobians()
+    assert np.abs(J - K).max() > 0.05
+    for column, joint in enumerate(body.chain):
+        moved = q[7:].copy()
+        moved[joint] += step
+        body.update(moved, np.eye(3))
+        for k in (0, 1):
+            np.testing.assert_allclose((body.position[k] - place[k]) / step, J[k, :3, column], atol=2e-6)
+    np.testing.assert_array_equal(J[:, 3:], K[:, 3:])

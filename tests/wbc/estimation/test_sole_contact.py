@@ -22,7 +22,7 @@ class Feet:
         self.contact = SoleContact(ContactDetection(force=force), sensors, WEIGHT, HALF, PERIOD)
         self.update(0.5, 0.5)
 
-    def update(self, left, right, above=(0.0, 0.0), rolling=-1, cop=0.0, beside=0.0, ticks=1):
+    def update(self, left, right, above=(0.0, 0.0), rolling=-1, cop=0.0, beside=0.0, ticks=1, edge=0):
         """Load the feet with shares of the weight; says after how many ticks the left one was felt.
 
         The CoP of the left one is so far ahead and beside of its centre, in half sizes of the sole.
@@ -34,7 +34,7 @@ class Feet:
             wrench[0, 3], wrench[0, 4] = beside * HALF[1] * wrench[0, 2], -cop * HALF[0] * wrench[0, 2]
             noise = np.repeat([self.sensors.wrench_force, self.sensors.wrench_moment], 3)
             said = wrench + self.bias + noise * self.rng.normal(size=(2, 6))
-            self.contact.update(Reading(said, 0.0, True), [k != rolling for k in (0, 1)], np.array(above))
+            self.contact.update(Reading(said, 0.0, True), [k != rolling for k in (0, 1)], np.array(above), (edge, 0))
             if felt is None and self.contact.felt[0]:
                 felt = tick + 1
         return felt
@@ -127,6 +127,23 @@ def test_a_foot_on_its_edge_or_rolling_or_hardly_loaded_does_not_stand_still():
     assert feet.contact.felt[0] and feet.contact.firm == [False, True]
 
 
+@pytest.mark.parametrize("edge", [1, -1])
+def test_a_foot_that_rolls_stands_still_on_its_edge_if_it_is_loaded_there(edge):
+    for given, firm in (
+        ({"cop": 0.97 * edge}, True),
+        ({"cop": 0.0}, True),
+        ({"cop": -0.97 * edge}, False),
+        ({"cop": 0.97 * edge, "beside": 0.97}, False),
+        ({"cop": 0.97 * edge, "rolling": 0}, False),
+    ):
+        feet = swung()
+        feet.update(0.3, 0.7, ticks=30, edge=edge, **given)
+        assert feet.contact.firm == [firm, True], given
+    feet = swung()
+    feet.update(0.05, 0.95, ticks=30, cop=0.97 * edge, edge=edge)
+    assert feet.contact.firm == [False, True]
+
+
 def test_the_last_contact_stands_whatever_its_edge():
     feet = Feet()
     feet.update(1.0, 0.0, cop=0.97, rolling=0, ticks=60)
@@ -155,3 +172,14 @@ def test_a_sole_on_springs_under_its_corners_moves_until_they_bear_the_change():
         force = -high / (4.0 * give)
         found = [force.sum(), force @ corners[:, 1], -force @ corners[:, 0]]
         np.testing.assert_allclose(found, changed[k, [2, 3, 4]], rtol=1e-12)
+
+
+@pytest.mark.parametrize("edge", [1, -1])
+def test_an_edge_sinks_as_the_sole_does_there_and_turns_at_will(edge):
+    """Under a force at its edge alone a sole goes down there as far, by its pitch and by its height, as the edge."""
+    half, give = (0.11, 0.05), 2.5e-7
+    changed = np.zeros((2, 6))
+    changed[:, 2], changed[:, 4] = 100.0, -100.0 * edge * half[0]
+    (_, pitch, rises), (_, turned, sinks) = sprung(changed, half, give, (0, edge))
+    assert sinks == pytest.approx(rises - edge * half[0] * pitch) and sinks < 0.0
+    assert turned == 0.0 != pitch

@@ -1,0 +1,115 @@
+"""Feet that land on their heels, on three robots and along every way to a run."""
+
+import subprocess
+import sys
+
+import numpy as np
+import pytest
+import yaml
+
+import surefoot
+
+pytestmark = pytest.mark.physics
+
+GAIT = {
+    "steps": 8, "step_length": 0.36, "single_support": 0.45, "double_support": 0.14, "heel_off": 0.35,
+    "heel_strike": 0.15, "initial_stand": 0.3,
+}  # fmt: skip
+SOUND = {
+    "fell": False, "steps_taken": "steps_planned", "wbc_fallbacks": {"max": 0}, "foot_slip_max": {"max": 0.005},
+    "self_contact_time": {"max": 0},
+}  # fmt: skip
+ROBOTS = ("humanoid100", "g1", "talos")
+
+
+def on_heels(robot, **more):
+    """A walk of a robot that lands on its heels, steps and times for its size."""
+    return {"name": f"heels-{robot}", "robot": robot, "sized_for": "humanoid100", "gait": {**GAIT, **more},
+            "sensing": {"preset": "good"}, "criteria": SOUND}  # fmt: skip
+
+
+@pytest.mark.parametrize("robot", ROBOTS)
+def test_robots_land_on_their_heels_and_know_where_their_soles_are(robot, tmp_path, from_sensors):
+    result = surefoot.run(surefoot.load("walk", on_heels(robot)), out=tmp_path)
+    metrics, log = result.verdict.metrics, surefoot.read(result.log)
+    assert result.verdict.reasons == ()
+    assert 0.13 < metrics["heel_strike_pitch"] < 0.16
+    held = log["/contact"].field("edge")
+    assert {-1, 0, 1} == set(held[:, 0]) == set(held[:, 1])
+    # An edge that is held is one that is planned, of a foot that is held.
+    planned = np.sign(log["/reference"].field("roll"))
+    assert ((held == 0) | (held == planned)).mean() > 0.99
+    assert not held[log["/contact"].field("active") == 0].any()
+    if from_sensors:
+        assert metrics["estimation_nees"]["sole_height"] < 5.0
+
+
+BRISK = {
+    "gait.steps": 9, "gait.step_length": 0.46, "gait.single_support": 0.42, "gait.double_support": 0.12,
+    "gait.heel_off": 0.5, "gait.initial_stand": 0.4, "gait.com_height": 1.0, "gait.heel_strike": 0.2, "duration": 12.0,
+    "criteria": {"fell": False, "steps_taken": "steps_planned"},
+}  # fmt: skip
+FORWARD, BACKWARD = 0.0, 3.1416
+
+
+@pytest.mark.parametrize(
+    ("phase", "fraction", "direction", "impulse"),
+    [
+        ("double", 0.5, FORWARD, 0.7), ("single", 0.2, FORWARD, 0.85), ("single", 0.5, FORWARD, 0.98),
+        ("double", 0.5, BACKWARD, 1.2),
+    ],
+)  # fmt: skip
+def test_steps_that_catch_the_body_catch_as_much_as_those_of_feet_that_land_flat(
+    phase, fraction, direction, impulse, tmp_path
+):
+    """At 0.8 m/s. All but the third felled the robot when such steps landed on their heels, too."""
+    push = {"step": 5, "phase": phase, "fraction": fraction, "duration": 0.1}
+    pushes = [{**push, "impulse": impulse, "direction": direction}]
+    assert surefoot.run(surefoot.load("walk", {**BRISK, "pushes": pushes}), out=tmp_path).verdict.reasons == ()
+
+
+def command(folder, *words):
+    """Give a command in a process of its own; returns what it says."""
+    asked = [sys.executable, "-m", "surefoot", *words]
+    done = subprocess.run(asked, cwd=folder, capture_output=True, text=True, check=False)
+    assert done.returncode == 0, done.stdout + done.stderr
+    return done.stdout
+
+
+def test_runs_checks_and_sweeps_of_two_robots_are_the_same_to_the_bit(tmp_path, same_content):
+    names = []
+    for robot in ROBOTS[:2]:
+        names.append(f"heels-{robot}.yaml")
+        (tmp_path / names[-1]).write_text(yaml.safe_dump({**on_heels(robot), "gait": {**GAIT, "steps": 4}}))
+    for name in names:
+        result = surefoot.run(str(tmp_path / name), out=tmp_path / "runs")
+        again = surefoot.run(str(result.log), out=tmp_path / "again")
+        assert same_content(result.log, again.log) == []
+        command(tmp_path, "run", name, "--out", "commanded")
+        spawned = next((tmp_path / "commanded").glob(f"{name[:-5]}*/log.mcap"))
+        assert same_content(result.log, spawned) == []
+        spec = {"name": name[:-5], "scenario": name, "keep": "all", "grid": {"gait.heel_strike": [0.0, 0.15]}}
+        (tmp_path / "spec.yaml").write_text(yaml.safe_dump(spec))
+        command(tmp_path, "sweep", "spec.yaml", "--jobs", "2", "--out", f"swept-{name[:-5]}")
+        swept = sorted((tmp_path / f"swept-{name[:-5]}").rglob("log.mcap"))
+        assert len(swept) == 2 and sum(same_content(result.log, one) == [] for one in swept) == 1
+        command(tmp_path, "replay", str(result.log), "--html", f"{name[:-5]}.html")
+        assert (tmp_path / f"{name[:-5]}.html").stat().st_size > 1e5
+    command(tmp_path, "check", *names, "--update", "--out", "one")
+    assert "same" in command(tmp_path, "check", *names, "--out", "two")
+
+
+def test_no_edge_is_held_of_feet_that_do_not_roll(tmp_path):
+    """Negative control."""
+    flat = on_heels("humanoid100", heel_off=0.0, heel_strike=0.0, steps=4)
+    log = surefoot.read(surefoot.run(surefoot.load("walk", flat), out=tmp_path).log)
+    assert not log["/contact"].field("edge").any() and not log["/reference"].field("roll").any()
+
+
+@pytest.mark.parametrize(
+    "name", ["walk-curve", "stop-and-go", "slope", "stairs-up-down", "walk-turn", "walk-sideways", "commanded"]
+)
+def test_walks_of_every_kind_go_on_with_heel_strike(name, tmp_path):
+    """Turning, stopping, on slopes and stairs; what is bounded is what no landing may cost."""
+    settings = {"gait.heel_strike": 0.2, "criteria": SOUND}
+    assert surefoot.run(surefoot.load(name, settings), out=tmp_path).verdict.reasons == ()

@@ -35,7 +35,7 @@ SOURCES: dict[str, tuple[str, ...]] = {
     "figures.png": (PALETTE, *_FIGURES),
     "falling.png": (PALETTE, *_FIGURES),
     **dict.fromkeys(DRAWINGS, (PALETTE, f"{_OWN}/drawings.py")),
-    "front.webp": (*_MOVING, f"{_OWN}/front.py", f"{_OWN}/recoveries.py"),
+    "front.webp": (*_MOVING, f"{_OWN}/front.py"),
     **dict.fromkeys(RECOVERIES, (*_MOVING, f"{_OWN}/recoveries.py")),
     **dict.fromkeys([f"robot-{name}.webp" for name in ROBOTS], (*_MOVING, f"{_OWN}/gallery.py")),
     "tour.webp": (PALETTE, f"{_OWN}/tour.py", f"{_OWN}/webp.py"),

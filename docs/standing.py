@@ -27,7 +27,10 @@ class Row(NamedTuple):
 
 
 OF_BASELINES: tuple[tuple[str, str, str], ...] = (
-    ("steady walk", "walk-brisk", "speed_mean"),
+    ("walk on bent knees", "walk-brisk", "speed_mean"),
+    ("walk on straight legs, from start to stop", "walk-fast", "speed_mean"),
+    ("walk on straight legs, knee of the leg that carries", "walk-fast", "knee_stance_mean"),
+    ("walk on straight legs, cost of transport", "walk-fast", "cost_of_transport"),
     ("stairs of the tallest risers, edge under the sole", "stairs-tall", "stair_edge_margin_min"),
     ("stairs of the tallest risers, worst torque", "stairs-tall", "torque_ratio_max"),
     ("natural walk, ZMP against its reference", "walk", "zmp_error_rms"),

@@ -47,7 +47,7 @@ QUALITY = 58
 """Quality of WebP: the lowest at which thin marks keep their edges."""
 
 SHOWN, AT, SIZE = 1.0, (16, 14), 26
-"""How long the strength of the push is shown [s], and its place and size in the picture [px]."""
+"""Time for which the strength of the push is shown [s], and its place and size in the picture [px]."""
 
 
 def captioned(images: Sequence[Image.Image]) -> Iterator[Image.Image]:

@@ -48,8 +48,6 @@ _NO_CONTACT = (
     ("terrain", "friction"),
     ("terrain", "height_noise"),
     ("sensing", "force_estimate"),
-    ("gait", "heel_off"),
-    ("gait", "heel_strike"),
     ("start", "angle_noise"),
     ("errors", "friction"),
     ("errors", "torso_com"),

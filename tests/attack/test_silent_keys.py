@@ -93,7 +93,7 @@ def experiments(tmp_path_factory):
     ("base", "key", "value", "outcome"),
     [
         ("walk", "gait.step_length", 0.21, "felt"),
-        ("walk", "gait.heel_off", 0.2, "noted"),
+        ("walk", "gait.heel_off", 0.2, "felt"),
         ("walk", "gait.heel_strike", 0.2, "felt"),
         ("walk", "rates.physics", 2000, "noted"),
         ("walk", "planner.rise", "single", "noted"),

@@ -1,4 +1,4 @@
-"""What is seen from a foot or a pose: footholds, points and corners of soles."""
+"""Footholds, points and corners of soles as seen from a foot or a pose."""
 
 import math
 

@@ -100,7 +100,7 @@ def scaled(plans):
 
 
 def test_progress_and_time_to_the_switch_go_on_between_plans_as_the_next_plans_say(plans):
-    """What a plan says of an instant ahead is what the plan of that instant says, while the phase goes on."""
+    """A plan says of an instant ahead the same as the plan of that instant, while the phase goes on."""
     compared = 0
     for now, later in pairwise(plans):
         ahead = later.time - now.time

@@ -150,3 +150,35 @@ def test_the_controller_brakes_a_leg_before_it_meets_the_other(robot, geometry, 
         report = controller.update(reference, FootSensing((981.0, 0.0)))
         assert report.status is SolveStatus.SOLVED
         assert (row @ report.acceleration >= lower - 1e-6) == (limbs is not None)
+
+
+def test_a_robot_that_moves_as_a_whole_has_no_pair_to_be_measured(robot, geometry) -> None:
+    parameters, rng, data = SeparationParameters(), np.random.default_rng(2), robot.model.createData()
+    separation, v = Separation(robot.model, geometry, parameters), np.zeros(robot.nv)
+    rows, lower = np.zeros((parameters.slots, robot.nv)), np.zeros(parameters.slots)
+    pin.computeAllTerms(robot.model, data, robot.standing, v)
+    separation.write(data, v, rows, lower, UNBOUNDED)
+    near = set(separation.due())
+    assert len(near) < len(geometry.collisionPairs)
+    for _ in range(20):
+        move = np.concatenate((rng.normal(size=6), np.zeros(robot.nv - 6)))
+        pin.computeAllTerms(robot.model, data, pin.integrate(robot.model, robot.standing, move), v)
+        assert set(separation.due()) <= near
+
+
+def test_no_pair_comes_near_unseen(robot, geometry) -> None:
+    """However the limbs move, as many rows have a bound as pairs are within the attention."""
+    parameters = SeparationParameters(slots=len(geometry.collisionPairs))
+    rng, data, v, found = np.random.default_rng(2), robot.model.createData(), np.zeros(robot.nv), set()
+    separation, q = Separation(robot.model, geometry, parameters), robot.standing.copy()
+    rows, lower = np.zeros((parameters.slots, robot.nv)), np.full(parameters.slots, -UNBOUNDED)
+    for _ in range(200):
+        q = pin.integrate(robot.model, q, np.concatenate((rng.normal(size=6), 0.05 * rng.normal(size=robot.nv - 6))))
+        pin.computeAllTerms(robot.model, data, q, v)
+        separation.write(data, v, rows, lower, UNBOUNDED)
+        shapes = pin.GeometryData(geometry)
+        pin.computeDistances(robot.model, robot.model.createData(), geometry, shapes, q)
+        close = sum(0.0 < one.min_distance < parameters.attention for one in shapes.distanceResults)
+        assert (lower > -UNBOUNDED).sum() == close
+        found.add(close)
+    assert len(found) > 2

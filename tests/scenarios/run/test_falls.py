@@ -1,6 +1,5 @@
 """A fall is known before it comes, and the robot gives way: torques and joints keep to their limits on the way down."""
 
-import math
 from dataclasses import replace
 
 import pytest

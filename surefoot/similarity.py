@@ -10,7 +10,7 @@ unit.
 import math
 import re
 from collections.abc import Mapping
-from dataclasses import dataclass, field, fields, is_dataclass, replace
+from dataclasses import Field, dataclass, field, fields, is_dataclass, replace
 from typing import Any, TypeVar
 
 from surefoot.errors import ParameterError
@@ -105,8 +105,8 @@ class Similarity:
                 changed[entry.name] = self
             elif is_dataclass(value):
                 changed[entry.name] = self.scaled(value)
-            elif "unit" in entry.metadata and entry.metadata.get("sized", True):
-                changed[entry.name] = self.times(value, entry.metadata["unit"])
+            elif (unit := sized_unit(entry)) is not None:
+                changed[entry.name] = self.times(value, unit)
         return replace(group, **changed) if changed else group  # type: ignore[type-var]
 
     def times(self, value: Any, unit: str) -> Any:
@@ -117,6 +117,11 @@ class Similarity:
             return type(value)(self.times(part, one) for part, one in zip(value, units, strict=True))
         factor = self.factor(unit)
         return value if value is None or factor == 1.0 else value * factor
+
+
+def sized_unit(entry: "Field[Any]") -> str | None:
+    """The unit by which a dataclass field follows the size of a robot; None where it does not."""
+    return entry.metadata.get("unit") if entry.metadata.get("sized", True) else None
 
 
 def exponents(unit: str) -> Exponents:

@@ -13,7 +13,7 @@ from surefoot.planner.parameters import PlannerParameters, RecoveryParameters
 from surefoot.scenarios.documented import doc_of
 from surefoot.scenarios.file.names import OneOf
 from surefoot.scenarios.file.units import Unit
-from surefoot.similarity import REFERENCE_SIZE, Similarity
+from surefoot.similarity import REFERENCE_SIZE, Similarity, sized_unit
 from surefoot.tunable import Range
 from surefoot.wbc.parameters import WbcParameters
 
@@ -109,7 +109,7 @@ def _key(entry: "DataclassField[Any]", value: Any, null: str | None) -> Any:
     if isinstance(value, tuple):
         shown = list(value) if len(value) <= _SHOWN else "the planner's own"
         return kind | None, key(None, f"{doc}, null: {shown} [{unit}]")
-    sized = unit if entry.metadata.get("sized", True) else None
+    sized = sized_unit(entry)
     described = f"{doc}, null: {null or value}" + ("" if sized or not unit else f" [{unit}]")
     return (Annotated[kind, Unit(sized)] if sized else kind) | None, key(None, described)
 

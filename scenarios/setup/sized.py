@@ -31,7 +31,7 @@ from surefoot.scenarios.judge.metrics import known
 from surefoot.scenarios.setup.groups.speed import with_speed
 from surefoot.scenarios.setup.robot.robots import POSTURE, Robots, Rule, is_known, nearer_landings, rules
 from surefoot.scenarios.setup.walk import Walk
-from surefoot.similarity import REFERENCE, REFERENCE_SIZE, Similarity
+from surefoot.similarity import REFERENCE, REFERENCE_SIZE, Similarity, sized_unit
 from surefoot.wbc.parameters import WbcParameters
 
 _KEY = "sized_for"
@@ -196,8 +196,8 @@ class _Translation:
             value, at, own = values.get(entry.name), (*key, entry.name), getattr(parameters, entry.name)
             if is_dataclass(own):
                 self._parameters(own, value, at)
-            elif "unit" in entry.metadata and entry.name in values:
-                units = entry.metadata["unit"].split(", ")
+            elif (unit := sized_unit(entry)) is not None and entry.name in values:
+                units = unit.split(", ")
                 factors = [_against(self.after.size, self.before.size, unit) for unit in units]
                 self._put(values, entry.name, at, _times(value, factors[0] if len(factors) == 1 else factors))
 

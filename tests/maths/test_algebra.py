@@ -61,7 +61,8 @@ def test_rows_and_columns_are_written_where_they_are_read(rng):
 
 
 def test_rotations_turn_vectors_and_follow_each_other(rng):
-    A, B, a, out = pin.exp3(rng.normal(size=3)), pin.exp3(rng.normal(size=3)), rng.normal(size=3), np.empty((3, 3))
+    A, B = pin.exp3(rng.normal(size=3)), pin.exp3(rng.normal(size=3))
+    a, out = rng.normal(size=3), np.empty((3, 3))
     np.testing.assert_allclose(algebra.rotate(A, tuple(a)), A @ a)
     np.testing.assert_allclose(algebra.rotate_back(A, tuple(a)), A.T @ a)
     algebra.compose(A, B, out)

@@ -60,3 +60,9 @@ def test_numbers_of_a_file_for_another_robot_are_translated_and_set_ones_literal
     assert found.time_changes == pytest.approx(usual.time_changes)
     set_ = resolve(surefoot.load(file, {"planner.recovery.least_single": 0.2})).parameters.recovery
     assert set_.least_single == 0.2
+
+
+def test_what_is_the_same_for_all_sizes_is_not_translated(tmp_path):
+    file = tmp_path / "sized.yaml"
+    file.write_text(f"robot: g1\nsized_for: {REFERENCE}\nplanner: {{recovery: {{lifting: 4.0}}}}\n")
+    assert resolve(surefoot.load(file)).parameters.recovery.lifting == 4.0

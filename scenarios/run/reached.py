@@ -99,7 +99,7 @@ class Reached:
             yield from enumerate(_cell(found))
         elif isinstance(found, np.ndarray):
             root = root_of(found)
-            if root is not found or found.base is not None:
+            if root is not found or not root.flags.owndata:
                 self.exported.add(id(root))
             if root is found:
                 self.kept[len(self.parts)] = None

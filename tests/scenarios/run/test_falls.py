@@ -12,7 +12,7 @@ pytestmark = pytest.mark.physics
 KEYS = {
     "gait.steps": 5, "gait.step_length": 0.36, "gait.single_support": 0.5, "gait.double_support": 0.12,
     "gait.com_height": 0.95, "gait.initial_stand": 0.4,
-    "pushes": [{"step": 3, "phase": "single", "fraction": 0.5, "duration": 0.1, "impulse": 2.6, "direction": 0.6}],
+    "pushes": [{"step": 3, "phase": "single", "fraction": 0.5, "duration": 0.1, "impulse": 2.6, "direction": 0.3}],
 }  # fmt: skip
 
 

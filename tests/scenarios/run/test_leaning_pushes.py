@@ -9,7 +9,7 @@ pytestmark = pytest.mark.physics
 
 PUSHES = [
     (impulse, direction)
-    for direction, impulses in ((0.0, (1.0, 1.03, 1.06, 1.09)), (2.36, (0.99, 1.02, 1.05, 1.08)))
+    for direction, impulses in ((0.0, (1.06, 1.09, 1.12, 1.15)), (2.36, (1.05, 1.08, 1.11, 1.14)))
     for impulse in impulses
 ]
 """Impulse and direction in mid-swing [N·s/kg, rad]."""

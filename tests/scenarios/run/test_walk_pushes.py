@@ -62,7 +62,7 @@ NEVER, ALWAYS = 1e-6, 1e6
 def falls_in_double_support(direction, fraction, again_cost):
     """Number of three pushes after its fourth step that fell it; `again_cost` lets its foot step again, or not."""
     fallen = 0
-    for impulse in (0.45, 0.5, 0.55):
+    for impulse in (0.5, 0.55, 0.6):
         push = {"step": 5, "phase": "double", "fraction": fraction, "duration": 0.1}
         push |= {"impulse": impulse, "direction": direction}
         keys = {"robot": "g1", "gait.steps": 8, "pushes": [push], "criteria": {"fell": False}}

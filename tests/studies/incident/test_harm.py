@@ -56,9 +56,9 @@ def test_faults_are_the_same_at_about_the_time():
 
 @pytest.fixture(scope="module")
 def pendulum(tmp_path_factory):
-    """Runs of a pendulum: one that walks, one that is pushed over, and one that is pushed a little later."""
+    """Runs of a pendulum: it walks, is pushed over, is pushed a little later, and is pushed over as it stands."""
     folder, found = tmp_path_factory.mktemp("pendulum"), {}
-    for name, pushes in {"walks": [], "falls": [1.6], "later": [1.62]}.items():
+    for name, pushes in {"walks": [], "falls": [1.6], "later": [1.62], "stands": [0.3]}.items():
         push = [{"time": time, "impulse": 3.0, "duration": 0.1} for time in pushes]
         values = {"fidelity": "pendulum", "gait.steps": 3, "pushes": push, "criteria": {"fell": False}}
         scenario = surefoot.load("walk", values)
@@ -71,7 +71,9 @@ def test_the_harm_of_a_log(pendulum):
     assert fallen is not None
     assert fallen.fell
     assert fallen.time == pytest.approx(float(pendulum["falls"].metadata["end"]["time"]))
-    assert fallen.way @ (1.0, 0.0) > 0.0  # the push is forward
+    stood = harm_of(pendulum["stands"], {})
+    assert stood is not None
+    assert stood.way == pytest.approx((0.17, 0.0), abs=0.03)  # the push is forward
     assert harm_of(pendulum["walks"], {"fell": Bound(equals=False)}) is None
     criteria = {"speed_mean": Bound(min=10.0), "real_time_factor": Bound(min=1e9), "fell": Bound(equals=False)}
     missed = harm_of(pendulum["walks"], criteria)

@@ -77,7 +77,7 @@ def _fill(writer: LogWriter, sizes: channels.Sizes, posture: np.ndarray, duratio
         out["truth"].append(ns, q, np.zeros(sizes.nv), com, zero, zero, sole(time, 0), sole(time, 1), 0.0, 0, 0)
         out["estimate"].append(ns, com, zero, com[:2] + 0.01, zero, np.zeros(6), zero, zero, 100.0)
         zmp = np.array([time, 0.0, 0.0]) if time < 0.9 else np.full(3, np.nan)
-        out["contact"].append(ns, zmp, (900, 0), (1, 0), (1, 0), (1, 0), cop(0), cop(1))
+        out["contact"].append(ns, zmp, (900, 0), (1, 0), (1, 0), (1, 0), cop(0), cop(1), (0, 0))
         clock = (2, 0, 0, 0.0, 0.5)
         out["reference"].append(
             ns, com, zero, zero, zero[:2], zero[:2], 3.1, zero[:2], zero, zero, *clock, support, 4, zero[:2]

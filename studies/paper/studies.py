@@ -156,14 +156,18 @@ SHOVES = tuple(
     starmap(shove, ((i, way, kind) for kind in ADAPTATIONS for way in SHOVE_DIRECTIONS for i in SHOVE_IMPULSES))
 )
 
-GAITS = {"slow": "paper-walk", "fast": "walk"}
-KNEES = ("stretched", "bent")
+GAITS = {"slow": 0.8, "fast": 1.06}
+"""Speeds of the gaits of one number, whose feet roll from heel to toe [m/s]."""
+
+KNEES: dict[str, tuple[str, ...]] = {"stretched": (), "bent": ("planner.knee=bent", "wbc.knees.weight=0")}
+"""Knees of such a gait, with the same steps and feet; the task that straightens knees leaves bent ones alone."""
 
 
 def knee_study(gait: str, knee: str) -> Study:
     """A gait with stretched or with bent knees."""
-    title = f"{gait.capitalize()} gait, {knee} knees"
-    return Study(f"knee-{gait}-{knee}", title, GAITS[gait], (f"planner.knee={knee}",))
+    speed = GAITS[gait]
+    title = f"{gait.capitalize()} gait of {speed:g} m/s, {knee} knees"
+    return Study(f"knee-{gait}-{knee}", title, "walk", (f"gait={{speed: {speed:g}, steps: 16}}", *KNEES[knee]))
 
 
 BLOCKS: tuple[tuple[Iterable[Study], tuple[str, ...], tuple[PaperWorld, ...], int], ...] = (

@@ -1,6 +1,5 @@
 cimport cython
 cimport libc.math as math
-from surefoot.maths cimport algebra
 from surefoot.maths.algebra cimport vector3
 from surefoot.planner.steps.phases cimport PhaseSamples
 
@@ -10,7 +9,7 @@ cdef double _PI, GRAVITY
 @cython.locals(
     elapsed=double[::1], length=double[::1], fraction=double[::1], rate=double[::1], kind=Py_ssize_t[::1],
     index=Py_ssize_t[::1], t=double, k=Py_ssize_t, at=Py_ssize_t, swings=cython.bint, rise=vector3, bump=vector3,
-    low=double, change=double, within=double, share=double, apex=double, climb=double, descent=double,
+    low=double, change=double, share=double, pace=double, apex=double,
 )
 cdef void _fill(PhaseSamples samples, vector3 apexes, double standing, const double[:] levels, bint early, double[:, ::1] height)
 @cython.locals(level=double)

@@ -12,7 +12,6 @@ from typing import Protocol
 
 import numpy as np
 
-from surefoot.maths import algebra
 from surefoot.maths.algebra import Vector
 from surefoot.planner.steps.gait import GaitParameters
 from surefoot.planner.steps.phases import PhaseSamples
@@ -30,10 +29,6 @@ _IMPULSE_LIMIT = 0.95
 _LEAST_HEIGHT = 0.1
 """Height over the ZMP that the reference robot's pendulum never goes below [m]."""
 
-CLIMB_SHARE, DESCENT_SHARE = 0.8, 1.0
-"""Shares of single support in which the level rises and sinks: the knee is bent most, and can lift least, at the begin
-of a climb and at the end of a descent [-]."""
-
 BENT_KNEES = 0.08
 """Height by which bent knees carry the reference robot's CoM lower than stretched ones, as crouched gaits do [m]."""
 
@@ -46,7 +41,8 @@ class Rise(Enum):
 
     DOUBLE, as in the paper: from the height of one support point to that of the next, while the ZMP moves.
     SINGLE: the level of a double support is that of the lower of its two feet, so that both legs reach the ground. It
-    changes in the single support before: on the new foot when going up, above the foot left behind when going down.
+    changes in the single support before: on the new foot when going up, above the foot left behind when going down. It
+    takes all of that support: a quicker climb asks more of the knee where it is bent most, and can lift least.
     """
 
     DOUBLE = "double"
@@ -204,7 +200,6 @@ def _fill(samples: PhaseSamples, apexes: Vector, standing: float, levels: Array,
     fraction = samples.fraction
     rate = samples.fraction_rate
     kind, index, t = samples.kind, samples.index, samples.sample_time
-    climb, descent = CLIMB_SHARE, DESCENT_SHARE
     for k in range(height.shape[1]):
         swings, at = kind[k] == _SINGLE, index[k]
         apex = apexes[2] if swings else apexes[1] if kind[k] == _DOUBLE else apexes[0]
@@ -212,12 +207,10 @@ def _fill(samples: PhaseSamples, apexes: Vector, standing: float, levels: Array,
             at -= 1
         low = _level(levels, at, early)
         change = _level(levels, at + 1, early) - low if at + 1 < levels.shape[0] else 0.0
-        if not early:
-            rise = quintic_rise(fraction[k], rate[k])
-        else:
-            within = (descent if change < 0.0 else climb) * length[k] if swings else algebra.INFINITY
-            share = elapsed[k] / within
-            rise = quintic_rise(min(share, 1.0), 1.0 / (within * t) if share < 1.0 else 0.0)
+        share, pace = fraction[k], rate[k]
+        if early:
+            share, pace = elapsed[k] / length[k] if swings else 0.0, 1.0 / (length[k] * t) if swings else 0.0
+        rise = quintic_rise(share, pace)
         bump = sine_cubed(apex, elapsed[k], length[k], t)
         height[0, k] = bump[0] + rise[0] * change + (standing + low)
         height[1, k] = bump[1] + rise[1] * change

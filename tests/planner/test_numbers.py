@@ -101,7 +101,6 @@ UNNOTICED = {
     "model.time_scaling._SLOWEST",
     "recovery.capturability._ROUNDING",
     "references.com_height.BENT_KNEES",
-    "references.com_height.CLIMB_SHARE",
     "references.com_height.DESCENT_SHARE",
     "references.com_height._FALL_LIMIT",
     "references.com_height._IMPULSE_LIMIT",

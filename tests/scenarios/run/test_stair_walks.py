@@ -50,6 +50,30 @@ def test_treads_two_centimetres_off_are_found_from_sensors(tmp_path, name, seed)
     assert reasons(tmp_path, name, "terrain.height_noise=0.02", f"seed={seed}") == ()
 
 
+def hasty(tmp_path, direction, single, double, seed=0, riser=0.185, tread=0.32):
+    """Metrics of a flight that is taken in a hurry, from sensors."""
+    keys = (f"terrain.tread={tread}", f"gait.step_length={tread}", f"terrain.riser={riser}", f"seed={seed}")
+    times = (f"gait.single_support={single}", f"gait.double_support={double}", f"terrain.direction={direction}")
+    verdict = run_scenario(load_scenario("stairs-tall", (*keys, *times)), tmp_path / f"{seed}{riser}{tread}").verdict
+    found = verdict.metrics
+    assert not found["fell"]
+    assert found["steps_taken"] == found["steps_planned"]
+    assert found["self_contact_time"] == found["wbc_fallbacks"] == 0
+    return found
+
+
+@pytest.mark.physics
+def test_stairs_are_climbed_in_seven_tenths_of_a_second_and_descended_in_six(tmp_path):
+    """The knee of the front leg lifts all of single support: a climb in its first four fifths held 6 % of the time."""
+    for seed in range(3):
+        assert hasty(tmp_path / "up", "up", 0.56, 0.14, seed)["torque_at_limit_fraction"] < 0.01
+        assert hasty(tmp_path / "down", "down", 0.52, 0.08, seed)["torque_at_limit_fraction"] < 0.01
+    for riser, tread in ((0.17, 0.32), (0.2, 0.32), (0.185, 0.29)):
+        assert hasty(tmp_path / "near", "up", 0.56, 0.14, 0, riser, tread)["torque_at_limit_fraction"] < 0.01
+    # Negative control.
+    assert hasty(tmp_path / "late", "up", 0.46, 0.14, 0)["torque_at_limit_fraction"] > 0.03
+
+
 @pytest.mark.physics
 def test_the_rise_of_the_paper_is_out_of_reach_of_legs(tmp_path):
     """Negative control: risers that are climbed in single support are not in double support: the robot falls."""

@@ -156,14 +156,18 @@ SHOVES = tuple(
     starmap(shove, ((i, way, kind) for kind in ADAPTATIONS for way in SHOVE_DIRECTIONS for i in SHOVE_IMPULSES))
 )
 
-GAITS = {"slow": "paper-walk", "fast": "walk"}
-KNEES = ("stretched", "bent")
+GAITS = {"slow": 0.5, "fast": 0.8}
+"""Speeds of the gaits whose feet roll from heel to toe [m/s]."""
+
+KNEES = {"stretched": "straight", "bent": "bent"}
+"""Names of `planner.knee`."""
 
 
 def knee_study(gait: str, knee: str) -> Study:
-    """A gait with stretched or with bent knees."""
+    """A gait of one speed with stretched or with bent knees: steps, their times and the feet's edges are the same."""
     title = f"{gait.capitalize()} gait, {knee} knees"
-    return Study(f"knee-{gait}-{knee}", title, GAITS[gait], (f"planner.knee={knee}",))
+    settings = (START, f"gait={{speed: {GAITS[gait]}, steps: 24}}", f"planner.knee={KNEES[knee]}")
+    return Study(f"knee-{gait}-{knee}", title, "walk", settings)
 
 
 BLOCKS: tuple[tuple[Iterable[Study], tuple[str, ...], tuple[PaperWorld, ...], int], ...] = (
@@ -186,7 +190,7 @@ BLOCKS: tuple[tuple[Iterable[Study], tuple[str, ...], tuple[PaperWorld, ...], in
     (PUSHES, ("paper",), ("cart-table",), 1),
     (PUSHES, ("default",), ("full",), 2),
     (SHOVES, ("default",), ("pendulum",), 1),
-    (tuple(starmap(knee_study, product(GAITS, KNEES))), ("default",), ("full",), 1),
+    (tuple(starmap(knee_study, product(GAITS, KNEES))), ("default",), ("full",), 3),
 )
 """Studies that are run with every one of some profiles in every one of some worlds, and with how many seeds."""
 

@@ -166,7 +166,7 @@ KNEES = {"stretched": "straight", "bent": "bent"}
 def knee_study(gait: str, knee: str) -> Study:
     """A gait of one speed with stretched or with bent knees: steps, their times and the feet's edges are the same."""
     title = f"{gait.capitalize()} gait, {knee} knees"
-    settings = (START, f"gait={{speed: {GAITS[gait]}, steps: 24}}", f"planner.knee={KNEES[knee]}")
+    settings = (f"gait={{speed: {GAITS[gait]}, steps: 24}}", f"planner.knee={KNEES[knee]}")
     return Study(f"knee-{gait}-{knee}", title, "walk", settings)
 
 
@@ -190,7 +190,7 @@ BLOCKS: tuple[tuple[Iterable[Study], tuple[str, ...], tuple[PaperWorld, ...], in
     (PUSHES, ("paper",), ("cart-table",), 1),
     (PUSHES, ("default",), ("full",), 2),
     (SHOVES, ("default",), ("pendulum",), 1),
-    (tuple(starmap(knee_study, product(GAITS, KNEES))), ("default",), ("full",), 3),
+    (tuple(starmap(knee_study, product(GAITS, KNEES))), ("default",), ("full",), 1),
 )
 """Studies that are run with every one of some profiles in every one of some worlds, and with how many seeds."""
 

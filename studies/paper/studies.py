@@ -156,18 +156,18 @@ SHOVES = tuple(
     starmap(shove, ((i, way, kind) for kind in ADAPTATIONS for way in SHOVE_DIRECTIONS for i in SHOVE_IMPULSES))
 )
 
-GAITS = {"slow": 0.8, "fast": 1.06}
-"""Speeds of the gaits of one number, whose feet roll from heel to toe [m/s]."""
+GAITS = {"slow": 0.5, "fast": 0.8}
+"""Speeds of the gaits whose feet roll from heel to toe [m/s]."""
 
-KNEES: dict[str, tuple[str, ...]] = {"stretched": (), "bent": ("planner.knee=bent", "wbc.knees.weight=0")}
-"""Knees of such a gait, with the same steps and feet; the task that straightens knees leaves bent ones alone."""
+KNEES = {"stretched": "straight", "bent": "bent"}
+"""Names of `planner.knee`."""
 
 
 def knee_study(gait: str, knee: str) -> Study:
-    """A gait with stretched or with bent knees."""
-    speed = GAITS[gait]
-    title = f"{gait.capitalize()} gait of {speed:g} m/s, {knee} knees"
-    return Study(f"knee-{gait}-{knee}", title, "walk", (f"gait={{speed: {speed:g}, steps: 16}}", *KNEES[knee]))
+    """A gait of one speed with stretched or with bent knees: steps, their times and the feet's edges are the same."""
+    title = f"{gait.capitalize()} gait, {knee} knees"
+    settings = (f"gait={{speed: {GAITS[gait]}, steps: 24}}", f"planner.knee={KNEES[knee]}")
+    return Study(f"knee-{gait}-{knee}", title, "walk", settings)
 
 
 BLOCKS: tuple[tuple[Iterable[Study], tuple[str, ...], tuple[PaperWorld, ...], int], ...] = (

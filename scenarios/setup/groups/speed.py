@@ -38,7 +38,9 @@ FOLLOWING: tuple[Key, ...] = (
 """Keys that follow from the speed where they are not given."""
 
 _STRAIGHT = WbcParameters(weights=TaskWeights(com_vertical=1.2), knees=StraightKnees(weight=0.006))
-"""The controller of legs that are nearly straight: the knees say as much as the plan does how high the CoM is."""
+"""The controller of legs that are nearly straight: the knees say as much as the plan does how high the CoM is.
+
+Legs that are to be bent have the usual one, since a task that straightens their knees works against the plan."""
 
 
 def with_speed(scenario: Scenario, facts: RobotFacts, size: Similarity, given: frozenset[str]) -> Scenario:
@@ -72,7 +74,7 @@ def with_speed(scenario: Scenario, facts: RobotFacts, size: Similarity, given: f
     update: dict[str, Any] = {"gait": _with(gait, dict(zip(_OF_STEPS, numbers, strict=True)), given)}
     if "knee" not in scenario.planner.model_fields_set:
         update["planner"] = scenario.planner.model_copy(update={"knee": "straight"})
-    if scenario.walker == "full":
+    if scenario.walker == "full" and scenario.planner.knee != "bent":
         update["wbc"] = _controller(scenario.wbc, size.scaled(_STRAIGHT))
     return scenario.model_copy(update=update)
 

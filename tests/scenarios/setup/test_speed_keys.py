@@ -45,6 +45,13 @@ def test_each_number_may_be_set_beside_it(key):
     assert length / (single + double) == pytest.approx(0.8)
 
 
+def test_bent_knees_have_the_same_steps_and_no_task_that_straightens_them():
+    straight, bent = walk(), walk(("planner.knee", "bent"))
+    assert bent.gait == straight.gait
+    assert bent.wbc is None
+    assert resolve(bent).controller.knees.weight == 0.0
+
+
 def test_numbers_that_contradict_it_are_refused():
     with pytest.raises(ScenarioError, match=r"--set gait\.speed: speed 0\.8 m/s beside steps of 0\.3 m in 0\.66 s"):
         load("walk", {"gait.speed": 0.8})

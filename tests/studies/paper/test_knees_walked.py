@@ -1,4 +1,4 @@
-"""The paper's claims on knees, judged on walks of sixteen steps."""
+"""The paper's claims on knees, judged on walks in full physics."""
 
 import pytest
 from paper_samples import outcome, results
@@ -19,9 +19,8 @@ def test_stretched_knees_spare_torque_and_energy_at_the_same_speed_with_the_same
     found = {(gait, knee): walked(gait, knee) for gait in GAITS for knee in KNEES}
     outcomes = [outcome(knee_study(*pair), "default", "full", **metrics) for pair, metrics in found.items()]
     verdicts = {claim.name: claim.judge(results(*outcomes)).verdict for claim in claims()}
-    assert verdicts["claim-torque"] == verdicts["claim-energy"] == "holds"
-    assert verdicts["claim-stretched"] == "holds with a change"  # at 0.8 m/s and not at 1.06 m/s
+    assert verdicts["claim-stretched"] == verdicts["claim-torque"] == verdicts["claim-energy"] == "holds"
     for gait in GAITS:
         stretched, bent = (found[gait, knee] for knee in ("stretched", "bent"))
-        assert stretched["heel_strike_pitch"] > 0.15 < bent["heel_strike_pitch"]
+        assert stretched["heel_strike_pitch"] > 0.1 < bent["heel_strike_pitch"]
         assert stretched["knee_torque_rms"] < 0.6 * bent["knee_torque_rms"]

@@ -3,6 +3,8 @@
 import pytest
 from paper_samples import FALL, outcome, results
 
+from surefoot.scenarios.setup.load import load
+from surefoot.scenarios.setup.walk import resolve
 from surefoot.studies.paper import studies
 from surefoot.studies.paper.claims import JUDGES as RULES
 from surefoot.studies.paper.claims import any_of, claims, grade, stable
@@ -14,6 +16,7 @@ from surefoot.studies.paper.studies import (
     STEP_LAW,
     WALK,
     ZMP_ONLY,
+    Experiment,
     knee_study,
     shove,
 )
@@ -169,6 +172,23 @@ def test_effort(name, metric):
     assert verdict(name, *knees({}, FALL)) == "not measured"
     slow, fast = list(knees({metric: 1.0}, {metric: 2.0}))[:2], list(knees({metric: 2.0}, {metric: 1.0}))[2:]
     assert verdict(name, *slow, *fast) == "holds with a change"
+
+
+@pytest.mark.parametrize("gait", studies.GAITS)
+def test_knees_are_compared_with_equal_steps_and_equal_feet(gait):
+    found = [Experiment(knee_study(gait, knee), "default", "full") for knee in studies.KNEES]
+    stretched, bent = (load(one.study.base, list(one.overrides)) for one in found)
+    assert stretched.gait == bent.gait
+    assert stretched.gait.heel_strike > 0.0
+    assert stretched.gait.heel_off > 0.0
+    assert stretched.robot_options == bent.robot_options
+    high, low = (resolve(keys) for keys in (stretched, bent))
+    assert high.controller.knees.weight > 0.0
+    assert low.controller.knees.weight == 0.0
+
+
+def test_the_gait_of_0_8_is_measured():
+    assert 0.8 in studies.GAITS.values()
 
 
 def test_stretched_knees():

@@ -232,7 +232,7 @@ class RecoveryParameters:
         least=-math.inf,
     )
     least_double: float = positive(
-        0.04, "s", "time left of a double support below which none is cut; the load has to go over"
+        0.02, "s", "time left of a double support below which none is cut; the load goes over in a plan or two"
     )
     least_single: float = positive(
         0.10, "s", "time left of a single support below which none is cut; a foot has to lift and land"

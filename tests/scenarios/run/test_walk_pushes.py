@@ -72,7 +72,7 @@ def falls_in_double_support(**recovery):
 
 
 def test_a_foot_that_landed_steps_again_after_a_push_aside():
-    """Of slow double supports: after quicker ones the other foot crosses in time."""
+    """Double supports are slow: after quicker ones the other foot crosses in time."""
     assert falls_in_double_support() == falls_in_double_support(least_double=SLOW) == 0
     # Negative control.
     assert falls_in_double_support(least_double=SLOW, again_cost=NEVER) >= 2

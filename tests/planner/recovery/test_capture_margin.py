@@ -316,14 +316,14 @@ def test_a_step_that_catches_the_body_moves_until_shortly_before_it_lands(stand)
 
 def test_who_falls_was_outside_before(stand):
     """Pushed to its right, over the foot that stands."""
-    _, made, fallen = plans(stand, aside=-1.4)
+    _, made, fallen = plans(stand, aside=-1.6)
     assert fallen is not None
     assert min(plan.balance.movable for plan in made if plan.time < fallen - 0.1) < -0.03
 
 
 def test_a_fall_is_told_by_plans_on_end_far_outside(stand):
     numbers = P.recovery
-    _, made, fallen = plans(stand, aside=-1.4)
+    _, made, fallen = plans(stand, aside=-1.6)
     lost = 0
     for plan in made:
         lost = lost + 1 if plan.balance.movable < -numbers.fall_margin else 0

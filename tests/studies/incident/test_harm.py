@@ -73,7 +73,7 @@ def test_the_harm_of_a_log(pendulum):
     assert fallen.time == pytest.approx(float(pendulum["falls"].metadata["end"]["time"]))
     stood = harm_of(pendulum["stands"], {})
     assert stood is not None
-    assert stood.way == pytest.approx((0.17, 0.0), abs=0.03)  # the push is forward
+    assert stood.way[0] > 0.1 > 10.0 * abs(stood.way[1])  # the push is forward
     assert harm_of(pendulum["walks"], {"fell": Bound(equals=False)}) is None
     criteria = {"speed_mean": Bound(min=10.0), "real_time_factor": Bound(min=1e9), "fell": Bound(equals=False)}
     missed = harm_of(pendulum["walks"], criteria)

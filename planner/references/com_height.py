@@ -40,9 +40,9 @@ class Rise(Enum):
     """The time at which the base level of the CoM changes.
 
     DOUBLE, as in the paper: from the height of one support point to that of the next, while the ZMP moves.
-    SINGLE: the level of a double support is that of the lower of its two feet, so that both legs reach the ground. It
-    changes in the single support before: on the new foot when going up, above the foot left behind when going down. It
-    takes all of that support: a quicker climb asks more of the knee where it is bent most, and can lift least.
+    SINGLE: the level of a double support is that of the lower of its two feet, so that both legs reach the ground. The
+    level changes throughout the single support before. It rises over the new foot, and sinks over the foot left behind.
+    A quicker climb asks more of the knee where it is bent most, and can lift least.
     """
 
     DOUBLE = "double"

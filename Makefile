@@ -7,7 +7,7 @@ BIN := $(VENV)/bin
 .PHONY: walk test tests quick map unit interpreted physics check long gate format coverage mutants signs bench results texts docs dist dist-test scenario changelog clean
 
 walk: $(VENV)/.installed
-	$(BIN)/surefoot run diagonal-walk
+	$(BIN)/surefoot run walk
 
 # The gate takes one core for a while, so that the tests begin beside it.
 test:

@@ -52,37 +52,37 @@ def catalogue() -> Iterator[tuple[str, Overrides]]:
     """All scenarios as they stand, and some on the pendulum."""
     for name in (*OWN, *CONTROLS):
         yield name, {}
-    for name in ("walk", "stairs-up", "walk-turn", "commanded", "paper-walk", "paper-push"):
+    for name in ("walk-level", "stairs-up", "walk-turn", "commanded", "paper-walk", "paper-push"):
         yield name, PENDULUM
 
 
 def pushes() -> Iterator[tuple[str, Overrides]]:
     """Pushes and punches at random of three robots, from sensors and from the true state."""
     for seed in range(4):
-        yield "walk", pushed(seed, 0.2, 0.6)
-        yield "walk", {"sensing.preset": None, **pushed(100 + seed, 0.2, 0.6)}
-        yield "walk", {"robot": "g1", "sized_for": "humanoid100", **pushed(200 + seed, 0.2, 0.6)}
-    yield "walk", {"robot": "talos", "sized_for": "humanoid100", "sensing.preset": None, **pushed(300, 0.2, 0.4)}
-    yield "walk", pushed(400, 0.1, 0.3, "left_forearm")
+        yield "walk-level", pushed(seed, 0.2, 0.6)
+        yield "walk-level", {"sensing.preset": None, **pushed(100 + seed, 0.2, 0.6)}
+        yield "walk-level", {"robot": "g1", "sized_for": "humanoid100", **pushed(200 + seed, 0.2, 0.6)}
+    yield "walk-level", {"robot": "talos", "sized_for": "humanoid100", "sensing.preset": None, **pushed(300, 0.2, 0.4)}
+    yield "walk-level", pushed(400, 0.1, 0.3, "left_forearm")
     yield "stairs-up", pushed(500, 0.05, 0.15)
-    yield "walk", {**PENDULUM, **pushed(600, 0.2, 0.6)}
+    yield "walk-level", {**PENDULUM, **pushed(600, 0.2, 0.6)}
     yield "stand", {**PENDULUM, "pushes": [{"time": 1.0, "duration": 0.1, "force": [400, 0, 0]}]}
 
 
 def sensors() -> Iterator[tuple[str, Overrides]]:
     """Other sensors, none in the feet, and motors that err."""
-    yield "walk", CHEAP
+    yield "walk-level", CHEAP
     yield "stairs-up", CHEAP
-    yield "walk", {**GOOD, "sensing.wrench": "none"}
+    yield "walk-level", {**GOOD, "sensing.wrench": "none"}
     yield "walk-turn", {"sensing.preset": None}
-    yield "walk", {"motors": {"delay": 0.004, "noise": 2.0, "friction_loss": 1.0}}
+    yield "walk-level", {"motors": {"delay": 0.004, "noise": 2.0, "friction_loss": 1.0}}
 
 
 def robots() -> Iterator[tuple[str, Overrides]]:
     """Other robots on the walk and on stairs."""
     for name in ("g1", "talos", "alexander"):
         sized = {"robot": name, "sized_for": "humanoid100"}
-        yield "walk", sized
+        yield "walk-level", sized
         yield "stairs-up", {**sized, "sensing.preset": None}
 
 

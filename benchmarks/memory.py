@@ -92,7 +92,7 @@ def reading(quick: bool) -> Section:
     ratios: dict[str, float] = {}
     with tempfile.TemporaryDirectory() as name:
         folder = Path(name)
-        source = surefoot.run(surefoot.load("walk", {"gait.steps": 2} if quick else {}), out=folder).log
+        source = surefoot.run(surefoot.load("walk-level", {"gait.steps": 2} if quick else {}), out=folder).log
         for seconds in lengths:
             log = lengthened(source, folder / f"{seconds:.0f}.mcap", seconds)
             size = log.stat().st_size / 1e6

@@ -102,7 +102,7 @@ class _Walk:
     """A walk; of each plan on steps its processor time and that in `solve` [s], and whether a step was adapted."""
 
     def __init__(self, settings: Sequence[str]) -> None:
-        self.loop = closed_loop(resolve(load("walk", ["sensing.source=truth", *settings])), NoLog())
+        self.loop = closed_loop(resolve(load("walk-level", ["sensing.source=truth", *settings])), NoLog())
         self.rows: list[tuple[float, float, float]] = []
 
     def step(self) -> None:

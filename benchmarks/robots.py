@@ -179,7 +179,7 @@ def with_lines(text: str, added: Iterable[str]) -> str:
 def _moved(row: Row, robot: Mapping[str, str], out: Path) -> Row:
     """The row with what it did; where `walk` is refused, all is done with the gait that the refusal proposes."""
     stood = _run("stand", robot, out)
-    walked, gait = _followed("walk", robot, out)
+    walked, gait = _followed("walk-level", robot, out)
     settings = tuple(f"{key}={value}" for key, value in gait.items())
     row = replace(row, stands=stood.stayed, walks=walked.stayed, gait=settings, missed=walked.missed)
     if not walked.stayed:
@@ -188,7 +188,7 @@ def _moved(row: Row, robot: Mapping[str, str], out: Path) -> Row:
     survived, why = 0, [*row.why, *turned.refused]
     for side in SIDES:
         push = f"[{{step: 5, phase: single, fraction: 0.5, impulse: {IMPULSE}, direction: {side} deg}}]"
-        pushed = _run("walk", {**robot, **gait, **PUSHED, "pushes": push}, out)
+        pushed = _run("walk-level", {**robot, **gait, **PUSHED, "pushes": push}, out)
         survived += pushed.stayed
         why += pushed.refused
     return replace(row, turns=turned.stayed, pushed=survived, why=tuple(dict.fromkeys(why)))

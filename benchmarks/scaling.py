@@ -80,7 +80,9 @@ def robots(quick: bool) -> Section:
     """A control tick of robots with more and more joints, on the same walk at their size."""
     rows: list[tuple[Value, ...]] = []
     for name in ROBOTS[:1] if quick else ROBOTS:
-        loop = closed_loop(resolve(load("walk", [f"robot={name}", "gait.steps=2", "sensing.source=truth"])), NoLog())
+        loop = closed_loop(
+            resolve(load("walk-level", [f"robot={name}", "gait.steps=2", "sensing.source=truth"])), NoLog()
+        )
         spent = []
         with one_thread():
             while not loop.done and not (quick and len(spent) > 300):

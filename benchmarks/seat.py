@@ -78,7 +78,7 @@ def playing(commands: list[JointCommand]) -> Callable[[Any], None]:
 
 def report(policy: str, robot: str) -> str:
     """A line on a policy, by the least times of all rounds."""
-    walk = resolve(load("walk", [f"robot={robot}", f"controller.policy={policy}", *SETTINGS]))
+    walk = resolve(load("walk-level", [f"robot={robot}", f"controller.policy={policy}", *SETTINGS]))
     least = np.full(3, np.inf)
     for _ in range(ROUNDS):
         policy_of = Deciding()

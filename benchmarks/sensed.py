@@ -27,7 +27,7 @@ UNITS = {"CoM": (1e3, "mm"), "velocity": (1e3, "mm/s"), "tilt": (180.0 / np.pi, 
 def sample(preset: str, seed: int, folder: Path) -> dict[str, tuple[Array, Array]]:
     """Errors and deviations of a run by name, shape (instants, n) each."""
     keys = {**WALK, "sensing.preset": preset, "seed": seed}
-    log = read(surefoot.run(surefoot.load("walk", keys), out=folder).log)["/estimation"]
+    log = read(surefoot.run(surefoot.load("walk-level", keys), out=folder).log)["/estimation"]
     at = np.searchsorted(log.time, INSTANTS)
     return {name: (log.field(f"{part}_error")[at], log.field(f"{part}_deviation")[at]) for name, part in PARTS.items()}
 

@@ -42,7 +42,7 @@ class Pair:
 
 def pair(folder: Path) -> Pair:
     """Run both walks."""
-    walks = (surefoot.load("walk", settings) for settings in (SETTINGS, TRUTH))
+    walks = (surefoot.load("walk-level", settings) for settings in (SETTINGS, TRUTH))
     fell, walked = (surefoot.read(surefoot.run(walk, out=folder).log) for walk in walks)
     return Pair(fell, inspection.inspect(fell), walked, inspection.inspect(walked))
 

@@ -1,4 +1,4 @@
-"""Write the sample output of README.md: what `surefoot run diagonal-walk` prints.
+"""Write the sample output of README.md: what `surefoot run walk` prints.
 
     python docs/readme.py
 
@@ -12,11 +12,11 @@ import tempfile
 from pathlib import Path
 
 README = Path(__file__).parents[1] / "README.md"
-COMMAND = ("run", "diagonal-walk")
+COMMAND = ("run", "walk")
 REAL_TIME = "4 to 5"
 """Real-time factor on one core of a present machine, as the README says."""
 
-_BLOCK = re.compile(r"(?s)(<!-- sample: diagonal-walk -->\n```\n).*?(```\n<!-- end -->)")
+_BLOCK = re.compile(r"(?s)(<!-- sample: walk -->\n```\n).*?(```\n<!-- end -->)")
 
 
 def sample() -> str:

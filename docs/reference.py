@@ -303,7 +303,7 @@ VALUES: dict[str, str] = {
     "chunk": f"{CHUNK_PERIOD_NS / 1e6:g} ms",
     "scenarios": str(len(catalogue.OWN)),
     "models": result_tables.models_held(),
-    "knees": f"{standing.measured('walk', 'knee_angle_mean'):.0f}",
+    "knees": f"{standing.measured('walk-level', 'knee_angle_mean'):.0f}",
     "calls": str(_LIMITS["diagonal-walk"]["calls of a tick without a plan"]),
     "calls_plan": str(_LIMITS["diagonal-walk"]["calls of a tick with a plan"]),
     **{

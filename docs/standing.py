@@ -28,15 +28,17 @@ class Row(NamedTuple):
 
 OF_BASELINES: tuple[tuple[str, str, str], ...] = (
     ("walk on bent knees", "walk-brisk", "speed_mean"),
+    ("walk, knee of the leg that carries", "walk", "knee_stance_mean"),
+    ("walk, cost of transport", "walk", "cost_of_transport"),
     ("walk on straight legs, from start to stop", "walk-fast", "speed_mean"),
     ("walk on straight legs, knee of the leg that carries", "walk-fast", "knee_stance_mean"),
     ("walk on straight legs, cost of transport", "walk-fast", "cost_of_transport"),
     ("stairs of the tallest risers, edge under the sole", "stairs-tall", "stair_edge_margin_min"),
     ("stairs of the tallest risers, worst torque", "stairs-tall", "torque_ratio_max"),
-    ("natural walk, ZMP against its reference", "walk", "zmp_error_rms"),
-    ("natural walk, footsteps against the plan", "walk", "footstep_error_max"),
-    ("natural walk, cost of transport", "walk", "cost_of_transport"),
-    ("natural walk, bend of the knees", "walk", "knee_angle_mean"),
+    ("walk on level feet, ZMP against its reference", "walk-level", "zmp_error_rms"),
+    ("walk on level feet, footsteps against the plan", "walk-level", "footstep_error_max"),
+    ("walk on level feet, cost of transport", "walk-level", "cost_of_transport"),
+    ("walk on level feet, bend of the knees", "walk-level", "knee_angle_mean"),
 )
 """In words, the scenario, and the metric of its baseline."""
 

@@ -78,7 +78,7 @@ def test_every_error_is_itself_in_another_process():
 
 
 def test_what_a_run_leaves_is_itself(tmp_path):
-    scenario = surefoot.load("walk", BRIEF)
+    scenario = surefoot.load("walk-level", BRIEF)
     result = surefoot.run(scenario, out=tmp_path)
     assert again(result).verdict == result.verdict
     log = surefoot.read(result.log)

@@ -1,4 +1,4 @@
-"""Draw robots in docs/images, each from six steps of the scenario `walk`.
+"""Draw robots in docs/images, each from six steps of the scenario `walk-level`.
 
     python docs/images/gallery.py [ROBOT]...
 

@@ -44,7 +44,7 @@ def walk() -> None:
 
     from surefoot.scenarios.log import read
 
-    with run("walk") as log:
+    with run("walk-level") as log:
         save_png(composite(read(log)), "walk.png")
 
 
@@ -55,7 +55,7 @@ def animation() -> None:
 
     from surefoot.scenarios.log import read
 
-    with run("walk") as log:
+    with run("walk-level") as log:
         save_webp(FOLDER / "walk.webp", *pictures(read(log), WALK))
 
 
@@ -68,7 +68,7 @@ def figures() -> None:
 def falling() -> None:
     """The same of the walk of docs/falling.md."""
     sys.path.insert(0, str(FOLDER.parent))
-    with run("walk", import_module("falling").SETTINGS) as log:
+    with run("walk-level", import_module("falling").SETTINGS) as log:
         _balance(log, "falling.png", *FALLING)
 
 

@@ -65,13 +65,13 @@ def _push(impulse: float, degrees: float, when: str) -> str:
 SWING = "step: 3, phase: single, fraction: 0.2"
 RECOVERIES = {
     "recovery-forward.webp": Recovery(
-        "walk",
+        "walk-level",
         (*WALK, "duration=6.0"),
         _push(0.785, 0, "step: 3, phase: single, fraction: 0.5"),
         ReplayWindow(2.4, 5.2),
         SIDE,
     ),
-    "recovery-crossing.webp": Recovery("walk", WALK, _push(0.27, -90, SWING), ReplayWindow(2.2, 5.0), FRONT),
+    "recovery-crossing.webp": Recovery("walk-level", WALK, _push(0.27, -90, SWING), ReplayWindow(2.2, 5.0), FRONT),
     "recovery-standing.webp": Recovery(
         "stand", (*NATURAL, "duration=4.0"), _push(0.5, 0, "time: 0.5"), ReplayWindow(0.3, 3.0), SIDE
     ),
@@ -82,7 +82,7 @@ RECOVERIES = {
         "stairs-down", ("duration=17.0",), _push(0.2, -90, SWING), ReplayWindow(4.0, 7.6), FRONT
     ),
     "recovery-lasting.webp": Recovery(
-        "walk",
+        "walk-level",
         WALK,
         "{step: 3, phase: single, fraction: 0.5, duration: 2.0, impulse: 0.8, direction: 1.5708}",
         ReplayWindow(2.4, 5.4),

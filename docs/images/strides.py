@@ -47,7 +47,7 @@ Picture = NDArray[np.uint8]
 def walked(settings: dict[str, float], strip: bool) -> tuple[Curves | None, Picture | None]:
     """The joints of a walk over a stride, and the robot from the side where it is asked for."""
     with TemporaryDirectory() as folder:
-        log = surefoot.read(surefoot.run(surefoot.load("walk", {**GAIT, **settings}), out=folder).log)
+        log = surefoot.read(surefoot.run(surefoot.load("walk-level", {**GAIT, **settings}), out=folder).log)
         return curves(RunView(gathered(log))), side_by_side(log) if strip else None
 
 

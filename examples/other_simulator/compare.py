@@ -21,10 +21,10 @@ import surefoot
 
 ROBOTS, ENGINES = ("humanoid100", "g1"), ("MuJoCo", "DART")
 DIRECTIONS = {"forward": 0.0, "backward": math.pi, "left": math.pi / 2, "right": -math.pi / 2}
-WALKS: dict[str, tuple[str, dict[str, Any]]] = {"walk": ("walk", {}), "walk-turn": ("walk-turn", {})}
+WALKS: dict[str, tuple[str, dict[str, Any]]] = {"walk": ("walk-level", {}), "walk-turn": ("walk-turn", {})}
 for _name, _direction in DIRECTIONS.items():
     _push = {"step": 8, "phase": "single", "fraction": 0.5, "impulse": 0.2, "direction": _direction}
-    WALKS[f"walk, pushed {_name}"] = ("walk", {"pushes": [_push]})
+    WALKS[f"walk, pushed {_name}"] = ("walk-level", {"pushes": [_push]})
 BOUNDS = {
     "fell": False,
     "steps_taken": "steps_planned",

@@ -167,7 +167,7 @@ def knee_study(gait: str, knee: str) -> Study:
     """A gait of one speed with stretched or with bent knees: steps, their times and the feet's edges are the same."""
     title = f"{gait.capitalize()} gait, {knee} knees"
     settings = (f"gait={{speed: {GAITS[gait]}, steps: 24}}", f"planner.knee={KNEES[knee]}")
-    return Study(f"knee-{gait}-{knee}", title, "walk", settings)
+    return Study(f"knee-{gait}-{knee}", title, "walk-level", settings)
 
 
 BLOCKS: tuple[tuple[Iterable[Study], tuple[str, ...], tuple[PaperWorld, ...], int], ...] = (

@@ -27,7 +27,7 @@ EARLY = STEPS.replace("initial_stand: 0.1", "initial_stand: 0.5")
 LOADED = "errors: {payload: {mass: 4.0}}\n"
 
 BASES = {
-    "walk": POINT + STEPS,
+    "walk-level": POINT + STEPS,
     "stand": POINT + STAND + "duration: 1.0\n",
     "cart": POINT + STEPS + "pendulum: {plant: cart_table}\n",
     "velocity": POINT + f"gait: {{velocity: [{{time: 0, v_x: 0.2}}, {{time: 1}}], {PACE}}}\n",

@@ -178,7 +178,7 @@ def test_runs_that_are_ended_at_any_time(tmp_path, number, trials):
 
 @pytest.mark.long
 def test_closed_pipes_and_full_devices(logs):
-    for command in (["list"], ["schema"], ["inspect", logs[0]], ["inspect", logs[0], "--json"], ["show", "walk"]):
+    for command in (["list"], ["schema"], ["inspect", logs[0]], ["inspect", logs[0], "--json"], ["show", "walk-level"]):
         piped = surefoot_command(*command, stdout=subprocess.PIPE, stderr=subprocess.PIPE)
         piped.stdout.close()
         assert piped.stderr.read() == ""

@@ -28,7 +28,7 @@ FALL = {**WALK, "pushes": [{"time": 0.3, "duration": 0.3, "force": [3000, 0, 0]}
 def logs(tmp_path_factory):
     """A run that passes, and one of the same scenario that a push throws over."""
     folder = tmp_path_factory.mktemp("runs")
-    good, fallen = (surefoot.run(surefoot.load("walk", keys), out=folder) for keys in (WALK, FALL))
+    good, fallen = (surefoot.run(surefoot.load("walk-level", keys), out=folder) for keys in (WALK, FALL))
     assert good.verdict.passed, good.verdict.reasons
     assert fallen.verdict["fell"]
     return good.log, fallen.log

@@ -54,7 +54,7 @@ def attack(seeds):
         found.append(outcome(lambda text=text: read_scenario(text, "f.yaml", "f", (), robots), seed))
         if seed % 4 == 0:
             given = {"gait": trial(seed).get("gait"), "terrain.kind": TEXTS[seed % len(TEXTS)]}
-            found.append(outcome(lambda given=given: load("walk", given, robots), seed))
+            found.append(outcome(lambda given=given: load("walk-level", given, robots), seed))
     return found
 
 

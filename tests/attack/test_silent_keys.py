@@ -92,16 +92,16 @@ def experiments(tmp_path_factory):
 @pytest.mark.parametrize(
     ("base", "key", "value", "outcome"),
     [
-        ("walk", "gait.step_length", 0.21, "felt"),
-        ("walk", "gait.heel_off", 0.2, "felt"),
-        ("walk", "gait.heel_strike", 0.2, "felt"),
-        ("walk", "rates.physics", 2000, "noted"),
-        ("walk", "planner.rise", "single", "noted"),
-        ("walk", "robot_options.payload_body", "pelvis", "noted"),
-        ("walk", "errors.payload", {"mass": 0.0}, "noted"),
-        ("walk", "errors.com_height", 1e-300, "refused"),
-        ("walk", "pushes", [{"time": 0.5, "force": [1e-300, 0, 0]}], "refused"),
-        ("walk", "commands", [{"time": 2.4, "swing_height": 0.07}], "failed"),
+        ("walk-level", "gait.step_length", 0.21, "felt"),
+        ("walk-level", "gait.heel_off", 0.2, "felt"),
+        ("walk-level", "gait.heel_strike", 0.2, "felt"),
+        ("walk-level", "rates.physics", 2000, "noted"),
+        ("walk-level", "planner.rise", "single", "noted"),
+        ("walk-level", "robot_options.payload_body", "pelvis", "noted"),
+        ("walk-level", "errors.payload", {"mass": 0.0}, "noted"),
+        ("walk-level", "errors.com_height", 1e-300, "refused"),
+        ("walk-level", "pushes", [{"time": 0.5, "force": [1e-300, 0, 0]}], "refused"),
+        ("walk-level", "commands", [{"time": 2.4, "swing_height": 0.07}], "failed"),
         ("stand", "gait.swing_height", 0.06, "noted"),
         ("stand", "motors.delay", 0.002, "noted"),
         ("stand", "control.give_way", False, "noted"),
@@ -220,7 +220,7 @@ PUSH = "pushes=[{time: 2.9, force: [10, 0, 0], duration: %s}]"
 )
 def test_what_would_never_act_is_refused(settings, words):
     with pytest.raises(ScenarioError) as refused:
-        load("walk", ["fidelity=pendulum", "criteria={fell: false}", "duration=3", *settings])
+        load("walk-level", ["fidelity=pendulum", "criteria={fell: false}", "duration=3", *settings])
     assert words in "\n".join(refused.value.problems)
 
 
@@ -231,4 +231,4 @@ def test_what_was_given_by_hand_need_not_act():
         "commands=[{time: 1.001, v_x: 0.1, live: true}, {time: 1.01, v_x: 0.2, live: true},"
         " {time: 2.99, v_x: 0, live: true}]",
     ]
-    load("walk", ["fidelity=pendulum", "criteria={fell: false}", "duration=3", *given])
+    load("walk-level", ["fidelity=pendulum", "criteria={fell: false}", "duration=3", *given])

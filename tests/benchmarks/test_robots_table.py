@@ -53,7 +53,7 @@ def test_what_a_refusal_proposes_is_followed_until_it_is_accepted(robots, monkey
         return robots._Walked(stayed=not refused, refused=tuple(refused))
 
     monkeypatch.setattr(robots, "_run", run)
-    walked, gait = robots._followed("walk", {"robot": "r"}, tmp_path)
+    walked, gait = robots._followed("walk-level", {"robot": "r"}, tmp_path)
     assert walked.stayed
     assert gait == {"gait.step_length": "0.138", "gait.single_support": "0.66", "gait.com_height": "0.7"}
     assert given[-1] == {"robot": "r", **gait}
@@ -70,7 +70,7 @@ def test_a_list_that_is_proposed_is_followed_too(robots) -> None:
 def test_a_refusal_without_a_proposal_or_with_the_same_ends_it(robots, monkeypatch, tmp_path) -> None:
     refusal = robots._Walked(refused=("too weak; take for example --set gait.com_height=0.7",))
     monkeypatch.setattr(robots, "_run", lambda *given: refusal)
-    assert robots._followed("walk", {}, tmp_path) == (refusal, {"gait.com_height": "0.7"})
+    assert robots._followed("walk-level", {}, tmp_path) == (refusal, {"gait.com_height": "0.7"})
 
 
 def test_good_is_who_walks_and_survives_every_push_with_two_lines_at_most(robots) -> None:

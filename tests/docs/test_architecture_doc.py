@@ -112,7 +112,7 @@ def test_equation_12_is_where_the_page_says():
 
 
 def test_the_push_of_the_page_becomes_what_the_page_says():
-    scenario = load("walk")
+    scenario = load("walk-level")
     step, fraction = 4, 0.5
     text = "{step: 4, phase: single, fraction: 0.5, force: [40, 0, 0]}"
     assert f"`pushes: [{text}]`" in TEXT

@@ -80,7 +80,7 @@ def test_what_is_not_there_is_found():
     assert faults("surefoot robot chek x.yaml") == ["chek"]
     assert faults("surefoot robot check x.yaml --wak") == ["--wak"]
     assert faults("surefoot compare A B --exit-cod") == ["--exit-cod"]
-    assert faults("surefoot run walk --set gait.stride=3 --seed 3") == ["gait.stride"]
+    assert faults("surefoot run walk-level --set gait.stride=3 --seed 3") == ["gait.stride"]
     assert faults("surefoot sweep push-map --set phase=x --set phases=x") == ["phases"]
     assert faults("surefoot run push-map --set phase=x") == ["phase"]
 

@@ -12,7 +12,7 @@ from surefoot.scenarios.show.figures.page import FIGURES
 
 FOLDER = Path(__file__).parents[2] / "docs"
 TEXT = (FOLDER / "falling.md").read_text(encoding="utf-8")
-COMMANDS = re.findall(r"(?m)^surefoot run walk (.*)$", TEXT)
+COMMANDS = re.findall(r"(?m)^surefoot run walk-level (.*)$", TEXT)
 
 
 @pytest.fixture(scope="module")
@@ -31,7 +31,7 @@ def test_the_worked_example_is_what_its_runs_measure(falling, tmp_path):
 @pytest.mark.unit
 def test_the_walk_that_is_measured_is_that_of_the_page(falling):
     told = dict(one.split("=", 1) for one in re.findall(r'--set "?(\S+?=(?:\[.*?\]|[^\s"]+))"?', COMMANDS[0]))
-    assert load("walk", [f"{key}={value}" for key, value in told.items()]) == load("walk", falling.SETTINGS)
+    assert load("walk-level", [f"{key}={value}" for key, value in told.items()]) == load("walk-level", falling.SETTINGS)
 
 
 @pytest.mark.unit
@@ -48,7 +48,7 @@ def test_settings_that_test_a_cause_are_settings():
     settings = [word.strip("`,") for words in told for word in words if "=" in word]
     assert len(settings) >= 12
     for setting in settings:
-        load("walk", [setting])
+        load("walk-level", [setting])
 
 
 @pytest.mark.unit

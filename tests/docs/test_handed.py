@@ -69,7 +69,7 @@ def crossed():
 
     default = PROFILES["default"]
     profile = Profile("seen", "looks", default.parameters, Law, moves=True, planner=Planner)
-    scenario = surefoot.load("walk", {"duration": 0.02, "criteria": {"fell": False}})
+    scenario = surefoot.load("walk-level", {"duration": 0.02, "criteria": {"fell": False}})
     with surefoot.Simulation(scenario, planner=profile, estimator=Estimator, tasks=[Hand]) as sim:
         sim.step()
     return seen

@@ -30,8 +30,8 @@ def tree(tmp_path):
         "surefoot/other.py": "X = 1\n",
         "constraints.txt": "numpy==2.4.0\nrich==15.0\n",
         "maker.py": MAKER,
-        "x.yaml": "scenario: walk\n",
-        "scenarios/catalogue/walk.yaml": "steps: 3\n",
+        "x.yaml": "scenario: walk-level\n",
+        "scenarios/catalogue/walk-level.yaml": "steps: 3\n",
         "scenarios/catalogue/stand.yaml": "steps: 0\n",
     }.items():
         (tmp_path / name).write_text(text)
@@ -66,7 +66,7 @@ def test_a_result_is_unknown_until_it_is_made(one, tree):
     assert one.state() == "unknown"
     assert "made in" in one.make()
     assert one.state() == "fresh"
-    assert (tree / "kept.csv").read_text() == "4.0, scenario: walk\n"
+    assert (tree / "kept.csv").read_text() == "4.0, scenario: walk-level\n"
 
 
 @pytest.mark.parametrize(
@@ -75,8 +75,8 @@ def test_a_result_is_unknown_until_it_is_made(one, tree):
         ("surefoot/gain.py", "2.0", "3.0", "stale: code"),
         ("surefoot/law.py", "GAIN * x", "-GAIN * x", "stale: code"),
         ("maker.py", "force(2.0)", "force(3.0)", "stale: code"),
-        ("x.yaml", "walk", "stand", "stale: inputs"),
-        ("scenarios/catalogue/walk.yaml", "3", "4", "stale: inputs"),
+        ("x.yaml", "walk-level", "stand", "stale: inputs"),
+        ("scenarios/catalogue/walk-level.yaml", "3", "4", "stale: inputs"),
         ("constraints.txt", "2.4.0", "2.5.0", "stale: versions"),
         ("kept.csv", "4.0", "5.0", "unknown: it was written since by something else"),
         ("surefoot/law.py", "Of a spring.", "Its force.", "fresh"),

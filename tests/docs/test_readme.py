@@ -48,7 +48,7 @@ def test_the_sample_is_what_a_run_prints(readme):
 
 @pytest.mark.unit
 def test_only_the_wall_clock_is_left_out_of_the_sample(readme):
-    shown = re.search(r"(?s)<!-- sample: diagonal-walk -->\n```\n(.*?)```", TEXT)[1]
+    shown = re.search(r"(?s)<!-- sample: walk -->\n```\n(.*?)```", TEXT)[1]
     run = shown.replace("4 to 5 ", "4.21   ")
     assert run != shown
     assert readme.without_clock(run) == shown

@@ -23,12 +23,12 @@ NUMBERS = {entry.name: entry for entry in fields(RecoveryParameters)}
 
 @pytest.fixture(scope="module")
 def legs():
-    return resolve(load("walk")).legs
+    return resolve(load("walk-level")).legs
 
 
 @pytest.mark.parametrize("name", sorted(set(re.findall(r"`((?:planner|wbc|scenarios)\.[\w.]*[a-z])`", TEXT))))
 def test_code_or_key_is_there(name):
-    group = load("walk")
+    group = load("walk-level")
     keys = name.split(".")
     while keys and hasattr(type(group), "model_fields") and keys[0] in type(group).model_fields:
         group = getattr(group, keys.pop(0))
@@ -82,5 +82,5 @@ def test_what_has_no_key_is_as_the_page_says():
     parameters = PlannerParameters()
     assert f"`PlannerParameters.touchdown_lead` is {parameters.touchdown_lead:g} s" in TEXT
     assert parameters.cop_authority == (np.inf, np.inf)
-    assert not hasattr(load("walk").planner, "touchdown_lead")
-    assert not hasattr(load("walk").planner, "cop_authority")
+    assert not hasattr(load("walk-level").planner, "touchdown_lead")
+    assert not hasattr(load("walk-level").planner, "cop_authority")

@@ -103,7 +103,7 @@ def test_a_robot_that_is_refused_is_told_what_the_page_says(tmp_path):
     (quoted,) = re.findall(r"```text\n(.*?)\n```", (FOLDER / "own-robot.md").read_text(encoding="utf-8"))
     model = "package://example-robot-data/robots/romeo_description/urdf/romeo.urdf"
     (tmp_path / "romeo.yaml").write_text(draft(model, tmp_path).text, encoding="utf-8")
-    scenario = load("walk", [f"robot={tmp_path / 'romeo.yaml'}"])
+    scenario = load("walk-level", [f"robot={tmp_path / 'romeo.yaml'}"])
     with pytest.raises(SetupError) as refusal:
         Simulation(scenario)
     assert str(refusal.value) == quoted

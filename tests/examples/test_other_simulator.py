@@ -34,7 +34,7 @@ def compare():
 
 
 def walk_of(robot, **keys):
-    return surefoot.Simulation(surefoot.load("walk", {"robot": robot, "sensing.source": "truth", **keys})).walk
+    return surefoot.Simulation(surefoot.load("walk-level", {"robot": robot, "sensing.source": "truth", **keys})).walk
 
 
 def high(walk):
@@ -135,7 +135,9 @@ def test_a_pushed_walk_in_dart_keeps_its_bounds(compare, tmp_path, robot):
         "gait.steps": 6,
         "pushes": [{"step": 3, "phase": "single", "fraction": 0.5, "impulse": 0.2, "direction": 1.57}],
     }
-    scenario = surefoot.load("walk", {"robot": robot, "sensing.source": "truth", "criteria": compare.BOUNDS, **keys})
+    scenario = surefoot.load(
+        "walk-level", {"robot": robot, "sensing.source": "truth", "criteria": compare.BOUNDS, **keys}
+    )
     result = surefoot.run(scenario, out=tmp_path, parts=surefoot.Parts(plant=compare.DartPlant))
     assert result.verdict.passed, result.verdict
 

@@ -14,7 +14,7 @@ SLIGHT = {"time": 0.4, "duration": 0.1, "impulse": 0.05}
 
 FALLS: dict[str, Fall] = {
     "push": (
-        "walk",
+        "walk-level",
         {
             "gait.steps": 5,
             "errors.mass_scale": 1.02,
@@ -26,7 +26,7 @@ FALLS: dict[str, Fall] = {
     ),
     "stairs": ("stairs-up", {"terrain.height_noise": 0.06, "motors.noise": 0.2, "pushes": [SLIGHT]}),
     "hidden ground": (
-        "walk",
+        "walk-level",
         {
             "gait.steps": 6,
             "errors.ground": [{"x": 0.9, "length": 0.5, "height": 0.06}],
@@ -34,10 +34,10 @@ FALLS: dict[str, Fall] = {
             "start.position_noise": 0.002,
         },
     ),
-    "sensor noise": ("walk", {"gait.steps": 6, "sensing.encoder_noise": 0.05, "pushes": [SLIGHT]}),
-    "wrong mass": ("walk", {"gait.steps": 5, "errors.payload.mass": 130.0, "terrain.friction": 0.6}),
+    "sensor noise": ("walk-level", {"gait.steps": 6, "sensing.encoder_noise": 0.05, "pushes": [SLIGHT]}),
+    "wrong mass": ("walk-level", {"gait.steps": 5, "errors.payload.mass": 130.0, "terrain.friction": 0.6}),
     "sabotaged gain": (
-        "walk",
+        "walk-level",
         {
             "gait.steps": 5,
             "wbc.balance.height_stiffness": 8000.0,
@@ -47,12 +47,12 @@ FALLS: dict[str, Fall] = {
         },
     ),
     "friction": (
-        "walk",
+        "walk-level",
         {"gait.steps": 5, "terrain.friction": 0.05, "wbc.friction": 0.8, "errors.mass_scale": 0.95, "pushes": [SLIGHT]},
     ),
-    "late motors": ("walk", {"gait.steps": 5, "motors.delay": 0.04, "motors.noise": 0.2}),
+    "late motors": ("walk-level", {"gait.steps": 5, "motors.delay": 0.04, "motors.noise": 0.2}),
     "G1, a rule left out": (
-        "walk",
+        "walk-level",
         {
             "robot": "g1",
             "gait.steps": 5,

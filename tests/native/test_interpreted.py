@@ -20,7 +20,7 @@ import surefoot
 from surefoot.native import modules
 keys, file = json.loads(sys.argv[1]), sys.argv[2]
 found = []
-with surefoot.Simulation(surefoot.load("walk", keys)) as simulation:
+with surefoot.Simulation(surefoot.load("walk-level", keys)) as simulation:
     while simulation.time < 2.0:
         simulation.advance()
         state = simulation.look().state

@@ -18,7 +18,7 @@ WAYPOINTS = [{"x": 0.5, "y": 0.2, "yaw": 0.4}, {"x": 0.2, "y": -0.3, "yaw": -0.5
 def told(log, duration, orders, **keys):
     """Step a walk that is told things at times; the log."""
     waiting = dict(orders)
-    with surefoot.Simulation(surefoot.load("walk", {**STANDING, "duration": duration, **keys}), log=log) as sim:
+    with surefoot.Simulation(surefoot.load("walk-level", {**STANDING, "duration": duration, **keys}), log=log) as sim:
         while not sim.done:
             for time in [time for time in waiting if sim.time >= time]:
                 waiting.pop(time)(sim)
@@ -64,7 +64,7 @@ def test_the_log_walks_the_same_run_again(tmp_path, until, same_content):
         orders[time] = lambda sim, twist=twist: sim.command(*twist, single_support=r.uniform(0.4, 0.6))
     orders[1.5] = lambda sim: sim.push((20.0, 5.0, 0.0))
     path = tmp_path / "told.mcap"
-    with surefoot.Simulation(surefoot.load("walk", {**STANDING, "duration": 3.0}), log=path) as sim:
+    with surefoot.Simulation(surefoot.load("walk-level", {**STANDING, "duration": 3.0}), log=path) as sim:
         while not sim.done and (until is None or sim.time < until):
             for time in [time for time in orders if sim.time >= time]:
                 orders.pop(time)(sim)
@@ -83,7 +83,7 @@ def test_a_scenario_may_hold_what_is_told(tmp_path):
             {"time": 12.0, "v_x": 0.0},
         ],
     }
-    log = surefoot.read(surefoot.run(surefoot.load("walk", keys), out=tmp_path).log)
+    log = surefoot.read(surefoot.run(surefoot.load("walk-level", keys), out=tmp_path).log)
     before_stop = int(12.0 * 500) - 1
     soles = np.array([log["/truth"].field(f"{side}_sole")[before_stop] for side in ("left", "right")])
     np.testing.assert_allclose(soles[:, :2].mean(axis=0), [0.2, 0.1], atol=0.005)
@@ -91,7 +91,7 @@ def test_a_scenario_may_hold_what_is_told(tmp_path):
 
 def test_waypoints_are_passed_one_after_another(tmp_path):
     result = surefoot.run(
-        surefoot.load("walk", {**STANDING, "gait.waypoints": WAYPOINTS, "start.yaw": 1.0}), out=tmp_path
+        surefoot.load("walk-level", {**STANDING, "gait.waypoints": WAYPOINTS, "start.yaw": 1.0}), out=tmp_path
     )
     metrics = result.verdict.metrics
     assert metrics["place_error"] < 0.003
@@ -107,12 +107,12 @@ def test_waypoints_are_passed_one_after_another(tmp_path):
 
 def test_a_walk_that_ends_before_its_place_fails_though_it_was_asked_for_nothing(tmp_path):
     keys = {**STANDING, "gait.waypoints": WAYPOINTS, "duration": 4.0}
-    bare = surefoot.load("walk", keys).model_copy(update={"criteria": {}})
+    bare = surefoot.load("walk-level", keys).model_copy(update={"criteria": {}})
     reasons = surefoot.run(bare, out=tmp_path / "short").verdict.reasons
     assert "m from where it was commanded to go last" in reasons[0]
     assert "never came to" in reasons[-1]
     bounds = {name: Bound(max=9.0) for name in ("place_error", "heading_error", "waypoints_missed")}
-    far = surefoot.load("walk", keys).model_copy(update={"criteria": bounds})
+    far = surefoot.load("walk-level", keys).model_copy(update={"criteria": bounds})
     assert surefoot.run(far, out=tmp_path / "far").verdict.passed
 
 
@@ -152,7 +152,7 @@ def test_a_push_waits_for_its_point_of_the_gait(tmp_path):
 def test_a_push_whose_point_never_comes_is_a_fault(tmp_path):
     keys = {**STANDING, "duration": 2.0, "commands": [{"time": 0.1, "v_x": 0.1}]}
     push = {"step": 30, "phase": "single", "force": [40.0, 0.0, 0.0]}
-    result = surefoot.run(surefoot.load("walk", {**keys, "pushes": [push]}), out=tmp_path)
+    result = surefoot.run(surefoot.load("walk-level", {**keys, "pushes": [push]}), out=tmp_path)
     assert not result.verdict.passed
     assert "never came to fraction 0 of the single support of step 30" in " ".join(result.verdict.reasons)
 
@@ -160,10 +160,10 @@ def test_a_push_whose_point_never_comes_is_a_fault(tmp_path):
 @pytest.mark.parametrize(
     ("scenario", "order", "message"),
     [
-        ("walk", lambda sim: sim.command(float("nan")), "v_x"),
-        ("walk", lambda sim: sim.command(single_support=0.05), r"too short.*is the least"),
-        ("walk", lambda sim: sim.command(swing_height=-1.0), "swing_height"),
-        ("walk", lambda sim: sim.go_to(1e9, 0.0, 0.0), "x"),
+        ("walk-level", lambda sim: sim.command(float("nan")), "v_x"),
+        ("walk-level", lambda sim: sim.command(single_support=0.05), r"too short.*is the least"),
+        ("walk-level", lambda sim: sim.command(swing_height=-1.0), "swing_height"),
+        ("walk-level", lambda sim: sim.go_to(1e9, 0.0, 0.0), "x"),
         ("stairs-up", lambda sim: sim.command(0.3), "edges"),
     ],
 )
@@ -181,7 +181,7 @@ def test_a_run_without_a_given_duration_walks_again_and_what_never_came_is_left_
     keys = {**late, "gait.initial_stand": 0.1}
     for name, until in {"whole": 99.0, "part": 1.5}.items():
         path = tmp_path / f"{name}.mcap"
-        with surefoot.Simulation(surefoot.load("walk", keys), log=path) as sim:
+        with surefoot.Simulation(surefoot.load("walk-level", keys), log=path) as sim:
             sim.command(swing_height=0.06)
             while not sim.done and sim.time < until:
                 if sim.time == 1.0:
@@ -222,11 +222,11 @@ def test_a_walk_that_was_not_led_owes_all_its_steps_and_a_push_may_end_a_phase(t
     keys = {"duration": 2.5, "gait.steps": 12, "gait.initial_stand": 0.1, "fidelity": "pendulum"}
     push = {"step": 1, "phase": "single", "fraction": 1.0, "force": [1.0, 0.0, 0.0]}
     given = {**keys, "commands": [{"time": 1.0, "swing_height": 0.06}], "pushes": [push]}
-    result = surefoot.run(surefoot.load("walk", given), out=tmp_path)
+    result = surefoot.run(surefoot.load("walk-level", given), out=tmp_path)
     assert result.verdict["steps_planned"] == 12
     assert surefoot.read(result.log).metadata["end"]["kind"] == "completed"
     with (
-        surefoot.Simulation(surefoot.load("walk", keys)) as sim,
+        surefoot.Simulation(surefoot.load("walk-level", keys)) as sim,
         pytest.raises(surefoot.ParameterError, match="nothing"),
     ):
         sim.command()
@@ -253,7 +253,7 @@ def test_a_command_is_one_value_for_simulation_and_controller(tmp_path, same_con
     again = surefoot.run(str(other), out=tmp_path / "again")
     assert same_content(one, again.log) == []
     # What a walk does of it is such a value, too, which goes on with it.
-    with surefoot.Simulation(surefoot.load("walk", STANDING)) as sim:
+    with surefoot.Simulation(surefoot.load("walk-level", STANDING)) as sim:
         sim.command(surefoot.Command.of(v_x=0.2, march=True))
         sim.step()
         sim.command(sim.orders)
@@ -261,7 +261,7 @@ def test_a_command_is_one_value_for_simulation_and_controller(tmp_path, same_con
 
 
 def test_what_a_command_value_cannot_tell_is_refused():
-    with surefoot.Simulation(surefoot.load("walk", STANDING)) as sim:
+    with surefoot.Simulation(surefoot.load("walk-level", STANDING)) as sim:
         with pytest.raises(surefoot.ParameterError, match=r"beside a Command.*Command\.of"):
             sim.command(surefoot.Command.of(v_x=0.2), 0.1)
         with pytest.raises(surefoot.ParameterError, match="2 places"):

@@ -13,7 +13,7 @@ from surefoot.scenarios.judge.inspection import inspect
 
 pytestmark = pytest.mark.physics
 
-SHORT = ("walk", "--set", "gait.steps=1", "--set", "duration=2.5")
+SHORT = ("walk-level", "--set", "gait.steps=1", "--set", "duration=2.5")
 PUSHES = (
     "{step: 1, phase: single, fraction: 0.5, duration: 0.05, force: [0, 20, 0]}",
     "{time: 0.3, duration: 0.1, force: [20, 0, 0]}",
@@ -39,7 +39,7 @@ ROBOTS = {
 )
 def test_two_processes_walk_as_one_to_the_bit(bridge, robot, same_content, tmp_path):
     plant = bridge.serve(
-        "walk", "--set", "gait.steps=1", "--set", "duration=2.5", *PUSHED, *ROBOTS[robot], "--seed", "3"
+        "walk-level", "--set", "gait.steps=1", "--set", "duration=2.5", *PUSHED, *ROBOTS[robot], "--seed", "3"
     )
     controller = bridge.walk()
     _, verdict, said = bridge.result(controller)
@@ -52,7 +52,7 @@ def test_two_processes_walk_as_one_to_the_bit(bridge, robot, same_content, tmp_p
 
 
 def test_a_line_that_is_far_too_late_is_the_cause_of_the_fall(bridge, tmp_path):
-    plant = bridge.serve("walk", "--set", "sensing.source=truth", "--set", "gait.steps=6", "--delay", "0.06")
+    plant = bridge.serve("walk-level", "--set", "sensing.source=truth", "--set", "gait.steps=6", "--delay", "0.06")
     _, verdict, said = bridge.result(bridge.walk())
     assert verdict["fell"], said
     bridge.end(plant)
@@ -64,7 +64,7 @@ def test_a_line_that_is_far_too_late_is_the_cause_of_the_fall(bridge, tmp_path):
 
 @pytest.mark.parametrize("number", [signal.SIGKILL, signal.SIGINT])
 def test_a_controller_that_is_lost_is_let_down_gently(bridge, number):
-    plant = bridge.serve("walk")
+    plant = bridge.serve("walk-level")
     controller = bridge.walk()
     bridge.under_way(controller)
     controller.send_signal(number)
@@ -79,7 +79,7 @@ def test_a_controller_that_is_lost_is_let_down_gently(bridge, number):
 
 @pytest.mark.parametrize("number", [signal.SIGKILL, signal.SIGTERM])
 def test_a_plant_that_is_lost_ends_the_walk_in_order(bridge, number, tmp_path):
-    plant = bridge.serve("walk")
+    plant = bridge.serve("walk-level")
     controller = bridge.walk()
     bridge.under_way(controller)
     plant.send_signal(number)
@@ -115,7 +115,7 @@ def test_strangers_are_refused_while_it_walks_and_disturb_nothing(bridge, same_c
 
 def test_another_robot_is_refused_by_either_side(bridge):
     plant = bridge.serve("--robot", "g1")
-    code, _, said = bridge.end(bridge.walk("walk"))
+    code, _, said = bridge.end(bridge.walk("walk-level"))
     assert (code, "a controller of humanoid100, where the robot served is g1" in said) == (2, True), said
     assert len(said.splitlines()) == 1
     plant.send_signal(signal.SIGINT)
@@ -138,7 +138,7 @@ def test_what_cannot_be_served_is_said(bridge):
         ("fidelity=pendulum", "a pendulum has no joints to be commanded"),
         ("control.driven_joints={'.*shoulder.*': [14, 0.9]}", "control.driven_joints"),
     ):
-        code, out, told = bridge.end(bridge.start("serve", "walk", "--set", keys, "--port", "0"))
+        code, out, told = bridge.end(bridge.start("serve", "walk-level", "--set", keys, "--port", "0"))
         assert (code, out, said in told, "Traceback" in told) == (2, "", True, False), told
 
 
@@ -164,7 +164,7 @@ LINES = {
 def test_it_walks_over_a_line_that_is_late_and_loses_some(bridge, name, tmp_path):
     """With the true state: what readings of the IMU that get lost have said is told by no later one."""
     keys, how = LINES[name]
-    plant = bridge.serve("walk", "--set", "gait.steps=4", "--set", "sensing.source=truth", *keys, *how)
+    plant = bridge.serve("walk-level", "--set", "gait.steps=4", "--set", "sensing.source=truth", *keys, *how)
     _, verdict, said = bridge.result(bridge.walk())
     assert bridge.end(plant)[0] == 0
     assert (verdict["fell"], verdict["steps_taken"]) == (False, 4), said
@@ -177,7 +177,7 @@ def test_it_walks_over_a_line_that_is_late_and_loses_some(bridge, name, tmp_path
 
 
 def test_a_line_that_is_broken_for_longer_damps_the_joints_and_both_say_so(bridge):
-    plant = bridge.serve("walk", "--delay", "0.15")
+    plant = bridge.serve("walk-level", "--delay", "0.15")
     code, verdict, _ = bridge.result(bridge.walk())
     assert (code, verdict["verdict"]) == (1, "fail")
     assert any("the plant was damped at 0.1" in reason for reason in verdict["reasons"]), verdict["reasons"]
@@ -187,7 +187,7 @@ def test_a_line_that_is_broken_for_longer_damps_the_joints_and_both_say_so(bridg
 
 def test_a_plant_in_real_time_waits_for_nobody(bridge, tmp_path):
     keys = ("--set", "gait.steps=0", "--set", "duration=2", "--set", "sensing.source=truth")
-    plant = bridge.serve("walk", *keys, "--real-time", "--watchdog", "30")
+    plant = bridge.serve("walk-level", *keys, "--real-time", "--watchdog", "30")
     _, verdict, said = bridge.result(bridge.walk())
     code, _, told = bridge.end(plant)
     assert (code, verdict["fell"]) == (0, False), told + said

@@ -22,7 +22,7 @@ _SERVO = ("position", "velocity", "stiffness", "damping")
 
 @pytest.fixture(name="walk", scope="module")
 def walk_fixture():
-    return resolve(surefoot.load("walk", {"gait.steps": 1}))
+    return resolve(surefoot.load("walk-level", {"gait.steps": 1}))
 
 
 @pytest.fixture(name="start", scope="module")

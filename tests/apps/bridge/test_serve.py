@@ -28,7 +28,7 @@ COMMANDS = 3
 
 @pytest.fixture(name="walk", scope="module")
 def walk_fixture():
-    return resolve(surefoot.load("walk", {"gait.steps": 1}))
+    return resolve(surefoot.load("walk-level", {"gait.steps": 1}))
 
 
 def served(walk, *last, real_time=False, after=0.0, stays=False):

@@ -23,7 +23,7 @@ def shadow(log, out, **changes):
 
 @pytest.mark.parametrize("robot", [pytest.param("humanoid100", marks=pytest.mark.long), "g1 by its sensors"])
 def test_a_shadow_commands_what_was_commanded_to_the_bit(tmp_path, robot):
-    result = surefoot.run(surefoot.load("walk", {"gait.steps": 1, **ROBOTS[robot]}), out=tmp_path)
+    result = surefoot.run(surefoot.load("walk-level", {"gait.steps": 1, **ROBOTS[robot]}), out=tmp_path)
     same, log = shadow(result.log, tmp_path / "shadow")
     assert same.verdict["shadow_difference"] == {"rms": 0.0, "max": 0.0}
     assert np.array_equal(log["/torque"].field("command"), surefoot.read(result.log)["/torque"].field("command"))
@@ -32,7 +32,7 @@ def test_a_shadow_commands_what_was_commanded_to_the_bit(tmp_path, robot):
 
 
 def test_a_change_is_seen_in_the_torques_and_moves_nothing(tmp_path):
-    result = surefoot.run(surefoot.load("walk", {"gait.steps": 1}), out=tmp_path)
+    result = surefoot.run(surefoot.load("walk-level", {"gait.steps": 1}), out=tmp_path)
     other, log = shadow(result.log, tmp_path / "shadow", **{"robot_options.payload_mass": 5.0})
     found = other.verdict["shadow_difference"]
     assert found["max"] > found["rms"] > 0.1
@@ -41,13 +41,13 @@ def test_a_change_is_seen_in_the_torques_and_moves_nothing(tmp_path):
 
 def test_what_is_no_log_of_the_robot_is_refused(tmp_path):
     truth = {"sensing.source": "truth"}
-    result = surefoot.run(surefoot.load("walk", {**truth, "gait.steps": 0, "duration": 0.1}), out=tmp_path)
-    other = surefoot.load("walk", {**truth, "robot": "g1", "sized_for": "humanoid100", "gait.steps": 1})
+    result = surefoot.run(surefoot.load("walk-level", {**truth, "gait.steps": 0, "duration": 0.1}), out=tmp_path)
+    other = surefoot.load("walk-level", {**truth, "robot": "g1", "sized_for": "humanoid100", "gait.steps": 1})
     with pytest.raises(LogError, match="a log of another robot than g1"):
         walk_in_shadow(result.log, other, tmp_path / "a")
-    seeing = surefoot.load("walk", {"gait.steps": 1})
+    seeing = surefoot.load("walk-level", {"gait.steps": 1})
     with pytest.raises(LogError, match="has no channel /readings"):
         walk_in_shadow(result.log, seeing, tmp_path / "b")
-    point = surefoot.run(surefoot.load("walk", {"fidelity": "pendulum", "gait.steps": 1}), out=tmp_path / "c")
+    point = surefoot.run(surefoot.load("walk-level", {"fidelity": "pendulum", "gait.steps": 1}), out=tmp_path / "c")
     with pytest.raises(LogError, match="holds no walk in full physics"):
-        walk_in_shadow(point.log, surefoot.load("walk"), tmp_path / "d")
+        walk_in_shadow(point.log, surefoot.load("walk-level"), tmp_path / "d")

@@ -22,7 +22,7 @@ def logs(tmp_path_factory):
     """A short walk of each robot."""
     folder = tmp_path_factory.mktemp("walks")
     return {
-        name: surefoot.run(surefoot.load("walk", {"gait.steps": 1, **values}), out=folder).log
+        name: surefoot.run(surefoot.load("walk-level", {"gait.steps": 1, **values}), out=folder).log
         for name, values in ROBOTS.items()
     }
 

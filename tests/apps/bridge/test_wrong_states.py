@@ -37,7 +37,7 @@ def walked_fixture(tmp_path, monkeypatch):
     """A walk on a plant, one of whose states has other fields."""
 
     def walk(care=None, **wrong):
-        walk = resolve(surefoot.load("walk", KEYS))
+        walk = resolve(surefoot.load("walk-level", KEYS))
         layout = low_state(len(walk.robot.joint_names))
 
         def changed(state):
@@ -103,7 +103,7 @@ def test_ticks_may_be_missed_within_reach_and_never_come_again():
     ],
 )
 def test_a_command_that_cannot_be_is_refused_without_a_warning(changed, tick, said):
-    walk = resolve(surefoot.load("walk", KEYS))
+    walk = resolve(surefoot.load("walk-level", KEYS))
     n, ends = len(walk.robot.joint_names), []
     server = serve.Server(walk, "127.0.0.1", 0, lambda said: None, Care())
     serving = threading.Thread(target=lambda: ends.append(server.run(lambda: False)))

@@ -16,7 +16,7 @@ unit, physics = pytest.mark.unit, pytest.mark.physics
 
 @unit
 def test_a_pendulum_is_refused_before_anything_is_made(tmp_path: Path) -> None:
-    scenario = surefoot.load("walk", {"fidelity": "pendulum"})
+    scenario = surefoot.load("walk-level", {"fidelity": "pendulum"})
     with pytest.raises(LogError, match="a pendulum has no body"):
         drive_scenario(scenario, tmp_path / "runs", None, print)
     assert not (tmp_path / "runs").exists()
@@ -46,7 +46,7 @@ def test_it_says_what_its_log_takes(tmp_path: Path, robot: str, more: dict[str, 
     """Within a tenth; what a flight recorder takes at most it never exceeds."""
     keys = {"robot": robot, "gait.steps": 8, "gait.initial_stand": 0.2, "duration": 5.0}
     path, sizes = tmp_path / "log.mcap", []
-    with surefoot.Simulation(surefoot.load("walk", {**keys, **more}), log=path) as sim:
+    with surefoot.Simulation(surefoot.load("walk-level", {**keys, **more}), log=path) as sim:
         said = log_size(sim, path)
         assert sim.time < 0.3
         while not sim.done:

@@ -60,7 +60,7 @@ def test_what_the_page_would_not_send_is_refused(kind: str | None, given: dict[s
 
 def test_a_picture_shows_what_a_replay_of_the_log_shows(tmp_path):
     """Bodies, marks and charts in the single support of a walk, and a push."""
-    scenario = surefoot.load("walk", {**BRIEF, "sensing.source": "truth"})
+    scenario = surefoot.load("walk-level", {**BRIEF, "sensing.source": "truth"})
     log = tmp_path / "log.mcap"
     with surefoot.Simulation(scenario, log=log) as sim:
         pictures, seen = Pictures(sim.walk), []

@@ -52,7 +52,7 @@ def test_check_and_new_tell_them(printed, robot) -> None:
 def test_the_agenda_of_a_run_tells_them_of_a_whole_body_alone(robot) -> None:
     said = {f"robot {robot}, {line}" for line in lines(robot)}
     assert said <= set(agenda(resolve(load("stand", {"robot": robot}))).notes)
-    assert said.isdisjoint(agenda(resolve(load("walk", {"robot": robot, "fidelity": "pendulum"}))).notes)
+    assert said.isdisjoint(agenda(resolve(load("walk-level", {"robot": robot, "fidelity": "pendulum"}))).notes)
     assert not any("left out" in note for note in agenda(resolve(load("stand"))).notes)
 
 

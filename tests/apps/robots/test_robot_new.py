@@ -84,7 +84,7 @@ def test_a_model_beside_the_file_is_named_without_a_folder(surefoot, urdf, tmp_p
 
 def test_an_empty_robot_file_says_how_to_write_one(surefoot, tmp_path) -> None:
     (tmp_path / "robot.yaml").write_text("")
-    for command in (("robot", "check"), ("run", "walk", "--set")):
+    for command in (("robot", "check"), ("run", "walk-level", "--set")):
         given = f"robot={tmp_path}/robot.yaml" if command[0] == "run" else f"{tmp_path}/robot.yaml"
         code, _, err = surefoot(*command, given)
         assert code == 2

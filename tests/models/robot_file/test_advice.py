@@ -97,13 +97,13 @@ def test_a_drafted_file_can_be_used_with_what_it_writes_itself(tmp_path) -> None
 SLOW = {"velocity_limit": {"*": 15, "*_pitch": 2.2}}
 WEAK = {"torque_limit": {"*": 80, "*_knee": 13.5}}
 WALKS = {
-    "too slow": ("walk", SLOW),
+    "too slow": ("walk-level", SLOW),
     "too slow to turn": ("walk-turn", {"velocity_limit": {"*": 15, "*_yaw": 0.5}}),
     "too slow on stairs": ("stairs-up", SLOW),
-    "too weak": ("walk", WEAK),
+    "too weak": ("walk-level", WEAK),
     "too weak for stairs": ("stairs-tall", {"torque_limit": {"*": 80, "*_knee": 34}}),
-    "too high a CoM": ("walk", {"scenario": {"gait.com_height": 0.525}}),
-    "far too high a CoM": ("walk", {"scenario": {"gait.com_height": 0.7}}),
+    "too high a CoM": ("walk-level", {"scenario": {"gait.com_height": 0.525}}),
+    "far too high a CoM": ("walk-level", {"scenario": {"gait.com_height": 0.7}}),
     "too slow for what it is told": ("commanded", {"velocity_limit": {"*": 15, "*_yaw": 0.5}}),
 }
 

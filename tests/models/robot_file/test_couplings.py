@@ -331,7 +331,7 @@ def test_a_description_of_which_a_follower_is_driven_is_refused(robot):
 def test_it_walks_from_sensors_and_its_log_tells_that_the_coupling_holds(tmp_path, kind):
     robot = biped.write(tmp_path, urdf()) if kind == "urdf" else None
     robot = robot or biped.write(tmp_path, mjcf(equality(), motors(), armature=0.02), MJCF_FILE, "biped.xml")
-    result = run_scenario(surefoot.load("walk", {"robot": str(robot)}), tmp_path)
+    result = run_scenario(surefoot.load("walk-level", {"robot": str(robot)}), tmp_path)
     assert result.verdict.passed, result.verdict.reasons
     assert 0.0 < result.verdict["coupling_error"] < 5e-5
     log = surefoot.read(result.log)
@@ -346,7 +346,7 @@ def test_it_walks_from_sensors_and_its_log_tells_that_the_coupling_holds(tmp_pat
 @pytest.mark.physics
 def test_damped_joints_give_way_more_and_the_log_tells_it(tmp_path):
     keys = {"robot": str(biped.write(tmp_path, urdf())), "gait.steps": 4, "motors": {"damping": 0.5}, "criteria": {}}
-    verdict = run_scenario(surefoot.load("walk", keys), tmp_path).verdict
+    verdict = run_scenario(surefoot.load("walk-level", keys), tmp_path).verdict
     assert not verdict["fell"] and 5e-5 < verdict["coupling_error"] < 1e-3
 
 
@@ -361,6 +361,8 @@ def test_without_the_equality_the_log_tells_that_nothing_holds(tmp_path, monkeyp
             self.data.eq_active[:] = False
 
     monkeypatch.setattr("surefoot.scenarios.run.full.World", Lost)
-    verdict = run_scenario(surefoot.load("walk", {"robot": str(tmp_path / "biped.yaml")}), tmp_path / "lost").verdict
+    verdict = run_scenario(
+        surefoot.load("walk-level", {"robot": str(tmp_path / "biped.yaml")}), tmp_path / "lost"
+    ).verdict
     assert robot.couplings and not verdict.passed
     assert verdict["coupling_error"] > 0.1

@@ -92,7 +92,7 @@ def test_what_five_joints_cannot_do_without_is_said_in_one_sentence(tmp_path, lo
 @pytest.mark.physics
 def test_it_walks_and_stops_on_side_edges(tmp_path) -> None:
     keys = {"robot": str(robot(tmp_path)), "sensing.source": "truth"}
-    verdict = run_scenario(surefoot.load("walk", keys), tmp_path).verdict
+    verdict = run_scenario(surefoot.load("walk-level", keys), tmp_path).verdict
     assert verdict["fell"] is False
     assert verdict["steps_taken"] == verdict["steps_planned"] == 20
     assert verdict["standing_time_final"] > 1.0
@@ -107,7 +107,7 @@ def test_it_walks_and_stops_on_side_edges(tmp_path) -> None:
 @pytest.mark.physics
 def test_it_takes_its_steps_from_sensors(tmp_path) -> None:
     """Steps are moved, by up to 0.29 m, with perfect sensors no less; in one of three seeds the walk ends stepping."""
-    verdict = run_scenario(surefoot.load("walk", {"robot": str(robot(tmp_path))}), tmp_path).verdict
+    verdict = run_scenario(surefoot.load("walk-level", {"robot": str(robot(tmp_path))}), tmp_path).verdict
     assert verdict["fell"] is False and verdict["steps_taken"] >= 20
     assert verdict["step_shift"] < 0.3
 

@@ -238,7 +238,7 @@ def test_a_run_is_that_of_its_log_and_of_a_process_of_its_own(tmp_path) -> None:
     """A robot with several joints in a body, through a log, and beside another one in spawned processes."""
     file = str(_written(tmp_path, text()))
     short = {"robot": file, "gait.steps": 3, "sensing.source": "truth"}
-    first = run_scenario(surefoot.load("walk", short), tmp_path / "first")
+    first = run_scenario(surefoot.load("walk-level", short), tmp_path / "first")
     again = run_scenario(surefoot.load(str(first.log)), tmp_path / "again")
     one, other = (surefoot.read(run.log)["/truth"].field("com") for run in (first, again))
     np.testing.assert_array_equal(one, other)
@@ -250,6 +250,6 @@ def test_a_run_is_that_of_its_log_and_of_a_process_of_its_own(tmp_path) -> None:
 def test_it_walks(tmp_path, hip, ankle, armature) -> None:
     """From sensors, with every criterion of the scenario met, in legs without rotors."""
     result = run_scenario(
-        surefoot.load("walk", {"robot": str(_written(tmp_path, text(hip, ankle, armature)))}), tmp_path
+        surefoot.load("walk-level", {"robot": str(_written(tmp_path, text(hip, ankle, armature)))}), tmp_path
     )
     assert result.verdict.passed, result.verdict.reasons

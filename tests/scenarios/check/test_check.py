@@ -526,9 +526,9 @@ def test_every_baseline_of_the_catalogue_holds_all_that_is_compared():
     every = [case for case in cases([]) if case.baseline.exists()]
     assert len(every) > 20
     kept = {case.scenario.name: read_baseline(case.baseline) for case in every}
-    world = set(kept["walk"].world)
-    assert len(world) > 40 and "com_error_rms" in kept["walk"].metrics
+    world = set(kept["walk-level"].world)
+    assert len(world) > 40 and "com_error_rms" in kept["walk-level"].metrics
     for name, baseline in kept.items():
-        assert set(kept["walk"].metrics) == set(baseline.metrics), name
+        assert set(kept["walk-level"].metrics) == set(baseline.metrics), name
         assert set(COLUMNS) == set(baseline.trace.values), name
         assert set(baseline.world) == world, name

@@ -10,7 +10,7 @@ POINT = {"fidelity": "pendulum", "criteria": {"fell": False}, "gait.initial_stan
 
 
 def reasons(tmp_path, **keys):
-    return surefoot.run(surefoot.load("walk", {**POINT, **keys}), out=tmp_path).verdict.reasons
+    return surefoot.run(surefoot.load("walk-level", {**POINT, **keys}), out=tmp_path).verdict.reasons
 
 
 @pytest.mark.unit
@@ -65,7 +65,7 @@ def test_a_push_at_a_step_that_comes_late_is_cut_off(tmp_path):
 def test_what_is_given_by_hand_is_no_promise_and_its_log_runs_again(tmp_path, same_content):
     keys = {**POINT, "gait.steps": 0, "duration": 1.0}
     path = tmp_path / "driven.mcap"
-    with Simulation(surefoot.load("walk", keys), log=path) as sim:
+    with Simulation(surefoot.load("walk-level", keys), log=path) as sim:
         while not sim.done:
             if sim.time == 0.5:
                 sim.command(swing_height=0.08)
@@ -96,7 +96,7 @@ def test_ground_that_no_foot_meets_is_no_test(tmp_path):
 @pytest.mark.parametrize(("v_x", "bent"), [(9.9, True), (0.2, False)])
 def test_a_velocity_that_is_bent_to_what_is_possible_is_told(tmp_path, v_x, bent):
     keys = {"gait.steps": 0, "duration": 3.0, "commands": [{"time": 0.5, "v_x": v_x}, {"time": 2.0, "v_x": 0.0}]}
-    verdict = surefoot.run(surefoot.load("walk", {**POINT, **keys}), out=tmp_path).verdict
+    verdict = surefoot.run(surefoot.load("walk-level", {**POINT, **keys}), out=tmp_path).verdict
     assert verdict.passed
     told = [note for note in verdict.notes if "out of reach" in note]
     assert bool(told) == bent
@@ -107,7 +107,7 @@ def test_a_velocity_that_is_bent_to_what_is_possible_is_told(tmp_path, v_x, bent
 
 @pytest.mark.unit
 def test_a_velocity_that_is_told_by_hand_and_bent_is_told_too(tmp_path):
-    scenario = surefoot.load("walk", {**POINT, "gait.steps": 0, "duration": 1.0})
+    scenario = surefoot.load("walk-level", {**POINT, "gait.steps": 0, "duration": 1.0})
     with surefoot.Simulation(scenario, log=tmp_path / "told.mcap") as sim:
         sim.command(v_x=3.0, yaw_rate=1.0)
         while not sim.done:

@@ -31,7 +31,7 @@ LATE = "pushes.0 begins at 0.3 s and never acts: the run ends at 0.2 s"
 
 @pytest.fixture
 def pushed(two_steps):
-    return two_steps.model_copy(update={"pushes": load("walk", {"pushes": PUSHES}).pushes})
+    return two_steps.model_copy(update={"pushes": load("walk-level", {"pushes": PUSHES}).pushes})
 
 
 @pytest.fixture
@@ -41,7 +41,7 @@ def cut_off(tmp_path, robot, motion, pushed):
 
 
 def test_the_log_tells_when_what_acts_on_which_body(tmp_path, robot):
-    scenario = load("walk", {"pushes": PUSHES, "faults": FAULTS, "planner.rise": "single"})
+    scenario = load("walk-level", {"pushes": PUSHES, "faults": FAULTS, "planner.rise": "single"})
     agenda = notes.agenda(resolve(scenario, robot))
     middle = push_time(resolve(scenario, robot).gait, scenario.pushes[1])
     assert agenda.events == (
@@ -64,7 +64,7 @@ def test_the_judge_reads_what_was_resolved(cut_off):
 
 def test_a_note_on_standing_is_not_of_a_robot_that_was_driven(tmp_path):
     keys = {"fidelity": "pendulum", "duration": 0.2, "gait.steps": 0, "gait.turn": 0.2, "criteria": {"fell": False}}
-    log = read(surefoot.run(load("walk", keys), out=tmp_path).log)
+    log = read(surefoot.run(load("walk-level", keys), out=tmp_path).log)
     said = "gait.turn has no effect on a robot that takes no step"
     assert said in judge(log).notes
     agenda = Agenda.from_metadata(log.metadata, "")

@@ -312,7 +312,7 @@ def compared(fidelity, formulas, folder):
     rate = {"full": 500, "pendulum": 100}[fidelity]
     # What is judged from sensors, against the stance foot, is that of `test_stance_metrics`.
     keys = {**WALK, "fidelity": fidelity, "rates.control": rate, "sensing.source": "truth"}
-    result = surefoot.run(surefoot.load("walk", keys), out=folder)
+    result = surefoot.run(surefoot.load("walk-level", keys), out=folder)
     assert result.verdict.metrics["fell"] is False
     raw = Raw(result.log)
     values = {name: formula(raw) for name, formula in formulas.items()}

@@ -30,7 +30,7 @@ def run(tmp_path_factory):
     def result(*keys):
         asked = {name: value for more in (WALK, *keys) for name, value in more.items()}
         if str(asked) not in made:
-            made[str(asked)] = run_scenario(surefoot.load("walk", asked), folder)
+            made[str(asked)] = run_scenario(surefoot.load("walk-level", asked), folder)
         return made[str(asked)]
 
     return result
@@ -113,7 +113,7 @@ def test_it_is_walked_again_to_the_bit(run, tmp_path, same_content):
 
 
 def test_what_was_given_by_hand_is_kept_and_given_again(tmp_path, same_content):
-    scenario = surefoot.load("walk", {**WALK, **KEEP, **ENDS})
+    scenario = surefoot.load("walk-level", {**WALK, **KEEP, **ENDS})
     with surefoot.Simulation(scenario, log=tmp_path / "log.mcap") as sim:
         while not sim.done:
             if sim.time in (1.0, 3.5):

@@ -43,7 +43,7 @@ def acts_fixture(monkeypatch):
 
 def point(tmp_path, *pushes, **keys):
     """Reasons of a walk of the point mass under pushes."""
-    return surefoot.run(surefoot.load("walk", {**POINT, "pushes": pushes, **keys}), out=tmp_path).verdict.reasons
+    return surefoot.run(surefoot.load("walk-level", {**POINT, "pushes": pushes, **keys}), out=tmp_path).verdict.reasons
 
 
 @pytest.mark.parametrize("pushes", [[TIMED], [POINTED], OVERLAPPING, [TIMED, POINTED]])
@@ -87,11 +87,11 @@ def test_pushes_that_cancel_one_another_for_a_while_do_not_make_up_for_one_anoth
 def test_a_push_that_nothing_can_show_is_no_pass(tmp_path):
     """Forces on two bodies that add up to nothing turn the robot, and their sum, which is measured, shows none."""
     couple = [TIMED, {**TIMED, "force": [-20.0, -5.0, 0.0], "body": "pelvis"}]
-    scenario = surefoot.load("walk", {**STANDING, "pushes": couple})
+    scenario = surefoot.load("walk-level", {**STANDING, "pushes": couple})
     found = surefoot.run(scenario, out=tmp_path).verdict.reasons
     assert len(found) == 2 and all("the sum of forces was to be zero" in reason for reason in found)
     last = {"time": 0.2985, "duration": 0.0015, "force": [20.0, 0.0, 0.0]}
-    scenario = surefoot.load("walk", {**STANDING, "pushes": [last]})
+    scenario = surefoot.load("walk-level", {**STANDING, "pushes": [last]})
     (reason,) = surefoot.run(scenario, out=tmp_path).verdict.reasons
     assert "the log has no tick of that time" in reason
 
@@ -104,7 +104,7 @@ def test_a_fall_cuts_off_what_is_asked(tmp_path):
 
 def test_a_push_by_hand_is_compared_too_and_again_in_the_run_of_its_log(tmp_path, acts):
     def driven(name):
-        with surefoot.Simulation(surefoot.load("walk", {**POINT, "duration": 0.6}), log=tmp_path / name) as sim:
+        with surefoot.Simulation(surefoot.load("walk-level", {**POINT, "duration": 0.6}), log=tmp_path / name) as sim:
             while not sim.done:
                 if sim.time == 0.3:
                     sim.push((10.0, 0.0, 0.0), 0.1)
@@ -123,7 +123,7 @@ def test_a_push_by_hand_is_compared_too_and_again_in_the_run_of_its_log(tmp_path
 
 
 def test_a_log_tells_what_was_asked_of_the_plant(tmp_path):
-    scenario = surefoot.load("walk", {**POINT, "pushes": [TIMED, POINTED]})
+    scenario = surefoot.load("walk-level", {**POINT, "pushes": [TIMED, POINTED]})
     log = surefoot.read(surefoot.run(scenario, out=tmp_path).log)
     timed, pointed = asked_pushes(log.metadata, "a.mcap")
     torso = resolve(scenario).robot.torso_body
@@ -139,7 +139,7 @@ def test_a_log_tells_what_was_asked_of_the_plant(tmp_path):
 
 
 def test_a_push_at_the_end_of_all_times_is_no_fault_of_the_judge(tmp_path):
-    log = surefoot.read(surefoot.run(surefoot.load("walk", POINT), out=tmp_path).log)
+    log = surefoot.read(surefoot.run(surefoot.load("walk-level", POINT), out=tmp_path).log)
     for number, (time, lasts) in enumerate([(1e300, 1.0), (0.0, 1e300), (-1e300, 1e301)]):
         log.metadata[f"{PUSH_RECORD}{number}"] = AskedPush(time, lasts, (1.0, 0.0, 0.0)).to_metadata()
     assert any("N·s acted of the" in reason for reason in judge(log).reasons)
@@ -173,15 +173,15 @@ class Own:
 )
 def test_a_plant_of_ones_own_is_judged_by_what_it_says_that_acted(tmp_path, share, tells, words):
     parts = surefoot.Parts(plant=lambda walk: Own(walk, share, tells))
-    pushed = surefoot.load("walk", {**STANDING, "pushes": [TIMED]})
+    pushed = surefoot.load("walk-level", {**STANDING, "pushes": [TIMED]})
     assert "; ".join(surefoot.run(pushed, out=tmp_path, parts=parts).verdict.reasons) == words
-    assert surefoot.run(surefoot.load("walk", STANDING), out=tmp_path, parts=parts).verdict.passed
+    assert surefoot.run(surefoot.load("walk-level", STANDING), out=tmp_path, parts=parts).verdict.passed
 
 
 def bridged(tmp_path, scenario, **line):
     """The verdict of a walk on a plant that is served over a line."""
     care = Care(Disturbance(**line))
-    server = Server(resolve(surefoot.load("walk", STANDING)), "127.0.0.1", 0, lambda said: None, care)
+    server = Server(resolve(surefoot.load("walk-level", STANDING)), "127.0.0.1", 0, lambda said: None, care)
     serving = threading.Thread(target=server.run, args=(lambda: False,))
     serving.start()
     verdict = walk_on(Remote(server.address, {}), scenario, tmp_path).verdict
@@ -190,7 +190,7 @@ def bridged(tmp_path, scenario, **line):
 
 
 def test_a_push_that_gets_lost_over_the_bridge_is_no_pass(tmp_path, monkeypatch):
-    scenario = surefoot.load("walk", {**STANDING, "pushes": [TIMED]})
+    scenario = surefoot.load("walk-level", {**STANDING, "pushes": [TIMED]})
     assert bridged(tmp_path, scenario).passed
     push = Host.push
     monkeypatch.setattr(Host, "push", lambda host, asked: push(host, replace(asked, force=0.5 * asked.force)))
@@ -200,7 +200,7 @@ def test_a_push_that_gets_lost_over_the_bridge_is_no_pass(tmp_path, monkeypatch)
 
 
 def test_over_a_line_that_is_late_or_loses_states_no_push_is_blamed_for_it(tmp_path, monkeypatch):
-    scenario = surefoot.load("walk", {**STANDING, "pushes": [TIMED]})
+    scenario = surefoot.load("walk-level", {**STANDING, "pushes": [TIMED]})
     assert bridged(tmp_path, scenario, delay=0.01).passed
     (reason,) = bridged(tmp_path, scenario, drop=0.2).reasons
     assert reason.startswith("the ticks of the log are not 2 ms apart")
@@ -214,8 +214,8 @@ def test_over_a_line_that_is_late_or_loses_states_no_push_is_blamed_for_it(tmp_p
 
 
 def test_in_a_shadow_that_acted_which_is_in_its_log(tmp_path):
-    pushed = surefoot.load("walk", {**STANDING, "pushes": [TIMED]})
-    log, other = (surefoot.run(one, out=tmp_path).log for one in (pushed, surefoot.load("walk", STANDING)))
+    pushed = surefoot.load("walk-level", {**STANDING, "pushes": [TIMED]})
+    log, other = (surefoot.run(one, out=tmp_path).log for one in (pushed, surefoot.load("walk-level", STANDING)))
     assert walk_in_shadow(log, pushed, tmp_path / "same").verdict.passed
     assert walk_in_shadow(other, pushed, tmp_path / "other").verdict.reasons == (
         "0 of 1.05 N·s acted of the push at 0.1 s",

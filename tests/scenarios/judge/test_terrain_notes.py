@@ -12,8 +12,8 @@ _LANDING = "terrain.landing=0.56"
 @pytest.mark.parametrize(
     ("name", "override", "key"),
     [
-        ("walk", "terrain.riser=0.2", "riser"),
-        ("walk", "terrain.height_noise=0.01", "height_noise"),
+        ("walk-level", "terrain.riser=0.2", "riser"),
+        ("walk-level", "terrain.height_noise=0.01", "height_noise"),
         ("slope", "terrain.direction=down", "direction"),
         ("blocks", "terrain.count=7", "count"),
         ("stairs-up", "terrain.angle=0.1", "angle"),
@@ -30,6 +30,6 @@ def test_a_landing_is_noted_where_stairs_go_one_way(name: str, idle: bool) -> No
     assert told == idle
 
 
-@pytest.mark.parametrize("name", ["walk", "slope", "blocks", "stairs-up", "stairs-up-down", "stair-climbing"])
+@pytest.mark.parametrize("name", ["walk-level", "slope", "blocks", "stairs-up", "stairs-up-down", "stair-climbing"])
 def test_the_catalogue_sets_no_idle_key(name: str) -> None:
     assert notes(Walk(load_scenario(name))) == ()

@@ -116,7 +116,7 @@ def test_what_the_doctor_finds(tmp_path):
 
 
 def test_a_run_with_pushes_and_commands(tmp_path):
-    scenario = surefoot.load("walk", {"fidelity": "pendulum", "gait.steps": 6, "duration": 4.0})
+    scenario = surefoot.load("walk-level", {"fidelity": "pendulum", "gait.steps": 6, "duration": 4.0})
     with surefoot.Simulation(scenario, log=tmp_path / "log.mcap") as sim:
         while not sim.done:
             if sim.time in (1.0, 1.111, 2.5):

@@ -79,7 +79,9 @@ def told(path):
 
 @pytest.mark.parametrize("rate", [1, 17])
 def test_a_thinned_log_has_the_verdict_of_the_whole_one(tmp_path, rate):
-    logs = [run_scenario(surefoot.load("walk", {**WALK, **more}), tmp_path).log for more in ({}, {"log.rate": rate})]
+    logs = [
+        run_scenario(surefoot.load("walk-level", {**WALK, **more}), tmp_path).log for more in ({}, {"log.rate": rate})
+    ]
     whole, thinned = map(read, logs)
     assert told(logs[0]) == told(logs[1])
     judged = judged_topics()
@@ -91,7 +93,7 @@ def test_a_thinned_log_has_the_verdict_of_the_whole_one(tmp_path, rate):
 
 
 def test_it_is_walked_again_to_the_bit(tmp_path, same_content):
-    first = run_scenario(surefoot.load("walk", {**WALK, "log.rate": 5}), tmp_path).log
+    first = run_scenario(surefoot.load("walk-level", {**WALK, "log.rate": 5}), tmp_path).log
     again = run_scenario(surefoot.load(str(first)), tmp_path).log
     assert not same_content(first, again)
 

@@ -118,17 +118,17 @@ def test_a_scenario_asks_of_a_seat_what_it_can_hear(scenario, stander, tmp_path)
 
 def test_criteria_of_a_planner_are_left_out_where_the_scenario_names_no_controller(stander):
     asked = [f"controller.policy={stander}"]
-    loaded = load("walk", ["robot=g1", *asked])
+    loaded = load("walk-level", ["robot=g1", *asked])
     assert "zmp_error_rms" in loaded.left_out and "zmp_error_rms" not in loaded.criteria
     assert "foot_slip_max" in loaded.criteria
     with pytest.raises(surefoot.ScenarioError, match="zmp_error_rms is of a planner"):
-        load("walk", ["robot=g1", *asked, "criteria.zmp_error_rms.max=0.1"])
+        load("walk-level", ["robot=g1", *asked, "criteria.zmp_error_rms.max=0.1"])
 
 
 def test_equal_steps_are_the_velocity_of_their_path(stander):
     from surefoot.scenarios.setup.seat import velocities
 
-    walk = resolve(load("walk", ["robot=g1", f"controller.policy={stander}"]))
+    walk = resolve(load("walk-level", ["robot=g1", f"controller.policy={stander}"]))
     begin, end = velocities(walk)
     gait = walk.asked_gait
     assert end.twist.is_zero

@@ -20,7 +20,7 @@ SEEDS, MINUTES = 10, 10
 """Stop of the long walks."""
 
 FEET = {
-    "human-size feet": ("walk", (0.6, 0.25, 0.6), {}),
+    "human-size feet": ("walk-level", (0.6, 0.25, 0.6), {}),
     "7.5 cm feet": ("paper-walk", (0.2, 0.08, 0.2), {"gait.single_support": 0.8, "gait.double_support": 0.3}),
 }
 
@@ -70,7 +70,7 @@ def test_ten_minutes_of_random_commands_are_walked(feet, seed, tmp_path):
 )
 def test_the_mean_velocity_is_the_one_that_is_followed(v_x, v_y, yaw_rate):
     """Over three gait cycles of the path, which runs midway between the footholds."""
-    scenario = surefoot.load("walk", {"gait.steps": 0, "gait.initial_stand": 0.2, "duration": 6.5})
+    scenario = surefoot.load("walk-level", {"gait.steps": 0, "gait.initial_stand": 0.2, "duration": 6.5})
     period = scenario.gait.single_support + scenario.gait.double_support
     places = []
     with surefoot.Simulation(scenario) as sim:
@@ -104,6 +104,6 @@ TIERS = [pytest.param(1, marks=pytest.mark.physics), *(pytest.param(n, marks=pyt
 def test_durations_change_at_any_moment(seed, tmp_path):
     keys = {"gait.single_support": 0.637, "gait.double_support": 0.171, "criteria": SOUND, "seed": seed}
     told = {"duration": 20.0, "commands": retimed(seed, 20.0)}
-    result = surefoot.run(surefoot.load("walk", {**keys, **told}), out=tmp_path)
+    result = surefoot.run(surefoot.load("walk-level", {**keys, **told}), out=tmp_path)
     assert result.verdict.passed, result.verdict.reasons
     assert len(surefoot.read(result.log)["/command"]) > 10

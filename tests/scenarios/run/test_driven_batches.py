@@ -35,7 +35,7 @@ def end_of(name, keys, seed=0):
 def test_arms_that_are_moved_at_random_are_survived(robot, told):
     overrides, arms, _ = ROBOTS[robot]
     control = {"driven_joints": arms, "driven_motion": 0.06, "driven_told": told}
-    ends = [end_of("walk", {**overrides, "control": control}, seed) for seed in range(SEEDS)]
+    ends = [end_of("walk-level", {**overrides, "control": control}, seed) for seed in range(SEEDS)]
     assert sum(end != "completed" for end in ends) <= MOST_LOST[told], ends
 
 
@@ -43,7 +43,7 @@ def test_arms_that_are_moved_at_random_are_survived(robot, told):
 @pytest.mark.parametrize("robot", [pytest.param("humanoid100", marks=pytest.mark.long), "g1"])
 def test_arms_go_overhead_in_a_second_and_it_walks_on(robot):
     overrides, arms, _ = ROBOTS[robot]
-    scenario = load("walk", {"sensing.source": "truth", **overrides, "control": {"driven_joints": arms}})
+    scenario = load("walk-level", {"sensing.source": "truth", **overrides, "control": {"driven_joints": arms}})
     controller = surefoot.Controller(scenario.robot, scenario)
     walk, body = controller.walk, controller.body
     world = World(walk.robot, walk.ground.terrain, walk.rates.physics, (), walk.size)
@@ -70,7 +70,7 @@ def test_arms_go_overhead_in_a_second_and_it_walks_on(robot):
 
 
 @pytest.mark.physics
-@pytest.mark.parametrize("name", [pytest.param("walk", marks=pytest.mark.long), "walk-turn"])
+@pytest.mark.parametrize("name", [pytest.param("walk-level", marks=pytest.mark.long), "walk-turn"])
 @pytest.mark.parametrize("robot", [pytest.param("humanoid100", marks=pytest.mark.long), "g1"])
 def test_five_kilograms_in_a_hand_that_are_told(robot, name):
     overrides, _, hand = ROBOTS[robot]
@@ -79,7 +79,7 @@ def test_five_kilograms_in_a_hand_that_are_told(robot, name):
 
 
 @pytest.mark.physics
-@pytest.mark.parametrize("name", [pytest.param("walk", marks=pytest.mark.long), "walk-turn"])
+@pytest.mark.parametrize("name", [pytest.param("walk-level", marks=pytest.mark.long), "walk-turn"])
 @pytest.mark.parametrize("robot", ["humanoid100", pytest.param("g1", marks=pytest.mark.long)])
 def test_five_kilograms_in_a_hand_that_nobody_told_of(robot, name):
     overrides, _, hand = ROBOTS[robot]

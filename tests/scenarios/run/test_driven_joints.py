@@ -35,7 +35,7 @@ def arms(robot, **keys):
 )
 def test_it_walks_with_arms_that_are_moved_at_random(robot, told):
     keys = arms(robot, driven_motion=0.06, driven_told=told)
-    with surefoot.Simulation(load("walk", {**keys, "gait.steps": 2, "sensing.source": "truth"})) as simulation:
+    with surefoot.Simulation(load("walk-level", {**keys, "gait.steps": 2, "sensing.source": "truth"})) as simulation:
         q = [simulation.step().measurement.q[7:]]
         while not simulation.done:
             simulation.advance()
@@ -46,7 +46,7 @@ def test_it_walks_with_arms_that_are_moved_at_random(robot, told):
 
 
 def test_somebody_moves_their_joints_alone_and_the_same_each_time():
-    walk = resolve(load("walk", arms("g1", driven_motion=0.06)))
+    walk = resolve(load("walk-level", arms("g1", driven_motion=0.06)))
     posture = np.zeros(len(walk.robot.joint_names))
     first, again = (Somebody(walk.control, walk.robot, posture, 3) for _ in range(2))
     seen = [first.command(0.02 * k).servo for k in range(50)]
@@ -72,7 +72,7 @@ def test_somebody_moves_their_joints_alone_and_the_same_each_time():
 )
 def test_what_cannot_be_is_refused(keys, told):
     with pytest.raises(surefoot.SetupError, match=told):
-        closed_loop(resolve(load("walk", {"control": keys})), NoLog())
+        closed_loop(resolve(load("walk-level", {"control": keys})), NoLog())
 
 
 def test_a_controller_is_told_what_drives_them():

@@ -30,7 +30,7 @@ def pushed(fraction, impulse, direction):
     push = {"step": 3, "phase": "single", "fraction": fraction, "duration": 0.1}
     push |= {"impulse": impulse, "direction": direction}
     keys = {"robot": "g1", "sensing.source": "truth", "criteria": {"fell": False}, "duration": 6.5}
-    return surefoot.Simulation(surefoot.load("walk", {**keys, "pushes": [push]}))
+    return surefoot.Simulation(surefoot.load("walk-level", {**keys, "pushes": [push]}))
 
 
 def falls():

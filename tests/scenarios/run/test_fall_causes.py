@@ -41,7 +41,7 @@ def test_the_command_line_prints_the_cause_before_its_effects(tmp_path):
         "duration": 6.0,
         "pushes": [{"step": 4, "phase": "single", "fraction": 0.5, "impulse": 1.7, "direction": -1.2}],
     }
-    log = surefoot.run(surefoot.load("walk", walk), out=tmp_path).log
+    log = surefoot.run(surefoot.load("walk-level", walk), out=tmp_path).log
     lines = CliRunner().invoke(app, ["inspect", str(log)]).stdout.splitlines()
     health = [line for line in lines if line.startswith("health: ")]
     assert health[0].startswith("health: cause: push from ")

@@ -20,7 +20,7 @@ SEEDS = range(3)
 
 
 def fallen(out, seed, profile=PROFILES["default"]):
-    return surefoot.run(surefoot.load("walk", {**KEYS, "seed": seed}), out=out, planner=profile).verdict.metrics
+    return surefoot.run(surefoot.load("walk-level", {**KEYS, "seed": seed}), out=out, planner=profile).verdict.metrics
 
 
 def test_who_is_pushed_over_gives_way(tmp_path):

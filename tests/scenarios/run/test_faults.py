@@ -42,12 +42,12 @@ def test_losing_the_torque_in_mid_walk_it_falls(run):
     assert_fell(*run("diagonal-walk", "faults=[{kind: torque_loss, time: 5}]"), since=5.0)
 
 
-@pytest.mark.parametrize("name", ["diagonal-walk", "walk"])
+@pytest.mark.parametrize("name", ["diagonal-walk", "walk-level"])
 def test_on_ice_it_falls(run, name):
     assert_fell(*run(name, "terrain.friction=0.02"), since=1.0)
 
 
-@pytest.mark.parametrize(("name", "time"), [("diagonal-walk", 2.2), ("walk", 2.2), ("walk", 3.0)])
+@pytest.mark.parametrize(("name", "time"), [("diagonal-walk", 2.2), ("walk-level", 2.2), ("walk-level", 3.0)])
 def test_with_a_frozen_plan_it_falls(run, name, time):
     """A plan that ends with a foot in the air. (One whose horizon holds the touchdown is survived, standing.)"""
     assert_fell(*run(name, f"faults=[{{kind: planner_freeze, time: {time}}}]"), since=time)

@@ -30,7 +30,7 @@ def on_heels(robot, **more):
 
 @pytest.mark.parametrize("robot", ROBOTS)
 def test_robots_land_on_their_heels_and_know_where_their_soles_are(robot, tmp_path, from_sensors):
-    result = surefoot.run(surefoot.load("walk", on_heels(robot)), out=tmp_path)
+    result = surefoot.run(surefoot.load("walk-level", on_heels(robot)), out=tmp_path)
     metrics, log = result.verdict.metrics, surefoot.read(result.log)
     assert result.verdict.reasons == ()
     assert 0.13 < metrics["heel_strike_pitch"] < 0.16
@@ -65,7 +65,7 @@ def test_steps_that_catch_the_body_catch_as_much_as_those_of_feet_that_land_flat
     """At 0.8 m/s. All but the third felled the robot when such steps landed on their heels, too."""
     push = {"step": 5, "phase": phase, "fraction": fraction, "duration": 0.1}
     pushes = [{**push, "impulse": impulse, "direction": direction}]
-    assert surefoot.run(surefoot.load("walk", {**BRISK, "pushes": pushes}), out=tmp_path).verdict.reasons == ()
+    assert surefoot.run(surefoot.load("walk-level", {**BRISK, "pushes": pushes}), out=tmp_path).verdict.reasons == ()
 
 
 def command(folder, *words):
@@ -102,7 +102,7 @@ def test_runs_checks_and_sweeps_of_two_robots_are_the_same_to_the_bit(tmp_path, 
 def test_no_edge_is_held_of_feet_that_do_not_roll(tmp_path):
     """Negative control."""
     flat = on_heels("humanoid100", heel_off=0.0, heel_strike=0.0, steps=4)
-    log = surefoot.read(surefoot.run(surefoot.load("walk", flat), out=tmp_path).log)
+    log = surefoot.read(surefoot.run(surefoot.load("walk-level", flat), out=tmp_path).log)
     assert not log["/contact"].field("edge").any() and not log["/reference"].field("roll").any()
 
 

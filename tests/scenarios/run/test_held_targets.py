@@ -21,7 +21,7 @@ class Unfelt(Controller):
 
 
 def stands(seed, **keys):
-    scenario = load("walk", {**G1, **HELD, "seed": seed, **keys})
+    scenario = load("walk-level", {**G1, **HELD, "seed": seed, **keys})
     with surefoot.Simulation(scenario) as simulation:
         while not simulation.done:
             simulation.advance()

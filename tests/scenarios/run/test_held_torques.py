@@ -18,7 +18,7 @@ def test_what_is_decided_for_a_tick_is_what_is_planned_for_its_middle(monkeypatc
             return super().tick(time, middle)
 
     monkeypatch.setattr(planning, "PlanSampler", Noting)
-    with Simulation(load_scenario("walk", ("fidelity=pendulum",))) as simulation:
+    with Simulation(load_scenario("walk-level", ("fidelity=pendulum",))) as simulation:
         ticks = [simulation.step() for _ in range(20)]
         rate = simulation.walk.rates.control
     assert acted == pytest.approx([tick.time + 0.5 / rate for tick in ticks])

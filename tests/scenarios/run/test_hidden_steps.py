@@ -24,7 +24,7 @@ def hidden_step(height, start, end):
     [
         pytest.param("diagonal-walk", STRAIGHT, (0.01, 0.3, 0.66), marks=pytest.mark.long),
         ("diagonal-walk", STRAIGHT, (0.02, 0.3, 0.66)),
-        ("walk", ["gait.steps=10"], (0.02, 0.75, 1.65)),
+        ("walk-level", ["gait.steps=10"], (0.02, 0.75, 1.65)),
     ],
 )
 def test_a_hidden_step_is_felt_and_walked_over(scenario, overrides, step, tmp_path):
@@ -42,7 +42,7 @@ def test_ground_a_centimetre_off_is_felt_and_walked_over(tmp_path):
     """It is felt: the same walk on tiles that are all as high as believed has none of it."""
     settings = ["gait.steps=3", "seed=3", "duration=4.5"]
     rough, flush = (
-        run_scenario(load_scenario("walk", [*settings, f"errors.ground_noise={noise}"]), tmp_path)
+        run_scenario(load_scenario("walk-level", [*settings, f"errors.ground_noise={noise}"]), tmp_path)
         for noise in (0.01, 1e-7)
     )
     metrics = rough.verdict.metrics

@@ -30,7 +30,9 @@ BRIEF = {"duration": 0.3, "criteria": {"fell": False}}
 
 
 def ran(folder, *instruments, **more):
-    return read(surefoot.run(surefoot.load("walk", {**BRIEF, "instruments": [*instruments], **more}), out=folder).log)
+    return read(
+        surefoot.run(surefoot.load("walk-level", {**BRIEF, "instruments": [*instruments], **more}), out=folder).log
+    )
 
 
 @pytest.fixture(scope="module")
@@ -157,7 +159,7 @@ REFUSED = {
 @pytest.mark.parametrize("sentence", REFUSED)
 def test_what_cannot_be_or_does_nothing_is_refused_in_a_sentence(sentence):
     with pytest.raises(ScenarioError) as refused:
-        surefoot.load("walk", {**BRIEF, "instruments": [{"name": "altimeter", **REFUSED[sentence]}]})
+        surefoot.load("walk-level", {**BRIEF, "instruments": [{"name": "altimeter", **REFUSED[sentence]}]})
     assert len([problem for problem in refused.value.problems if sentence in problem]) == 1, refused.value.problems
 
 
@@ -165,13 +167,15 @@ def test_two_of_one_label_are_refused():
     with pytest.raises(
         ScenarioError, match=r"instruments.1 has the channel /instrument/altimeter, as instruments.0 has"
     ):
-        surefoot.load("walk", {**BRIEF, "instruments": [NOISY, NOISY]})
+        surefoot.load("walk-level", {**BRIEF, "instruments": [NOISY, NOISY]})
 
 
 def test_a_fault_that_would_do_nothing_but_for_its_first_reading_is_refused():
     """An instrument that freezes before it has said anything says its first reading for ever after."""
     with pytest.raises(ScenarioError, match="acts on no reading"):
-        surefoot.load("walk", {**BRIEF, "instruments": [{**NOISY, "faults": [{"kind": "freeze", "duration": 0.004}]}]})
+        surefoot.load(
+            "walk-level", {**BRIEF, "instruments": [{**NOISY, "faults": [{"kind": "freeze", "duration": 0.004}]}]}
+        )
 
 
 def test_lengths_of_its_keys_grow_with_the_robot():
@@ -185,7 +189,7 @@ def test_lengths_of_its_keys_grow_with_the_robot():
 
 
 def test_on_a_pendulum_a_note_says_that_they_have_no_effect(tmp_path):
-    scenario = surefoot.load("walk", {**BRIEF, "fidelity": "pendulum", "instruments": [NOISY]})
+    scenario = surefoot.load("walk-level", {**BRIEF, "fidelity": "pendulum", "instruments": [NOISY]})
     result = surefoot.run(scenario, out=tmp_path)
     assert "instruments has no effect on a pendulum" in result.verdict.notes
     assert "/instrument/altimeter" not in read(result.log).topics
@@ -224,7 +228,7 @@ def bad():
 )
 def test_one_of_others_that_fails_ends_the_run_as_a_fault_that_names_it(bad, begun, words, tmp_path):
     bad(begun)
-    scenario = surefoot.load("walk", {**BRIEF, "instruments": [{"name": "bad"}]})
+    scenario = surefoot.load("walk-level", {**BRIEF, "instruments": [{"name": "bad"}]})
     try:
         result = surefoot.run(scenario, out=tmp_path)
     except surefoot.PartError as refusal:  # as it is made
@@ -271,7 +275,7 @@ def test_a_saved_simulation_goes_on_with_the_same_readings():
     listed = INSTRUMENTS.add("listed", Listed())
     try:
         instruments = [{"name": "listed", "period": "14 ms"}]
-        with surefoot.Simulation(surefoot.load("walk", {**BRIEF, "instruments": instruments})) as sim:
+        with surefoot.Simulation(surefoot.load("walk-level", {**BRIEF, "instruments": instruments})) as sim:
             for _ in range(20):
                 sim.step()
             state = sim.save()

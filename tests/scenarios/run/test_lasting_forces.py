@@ -39,7 +39,7 @@ def pulled(force, direction, phase=("single", 0.5)):
 @pytest.mark.physics
 def test_a_lasting_force_is_found_within_a_tenth_and_walked_with(tmp_path):
     # What is found of it from sensors shakes with their noise, see the next test.
-    result = walk(tmp_path, "walk", *NATURAL, "sensing.source=truth", pulled(40, "left"))
+    result = walk(tmp_path, "walk-level", *NATURAL, "sensing.source=truth", pulled(40, "left"))
     assert result.verdict.reasons == ()
     log = read(result.log)
     acting = log["/measurement"].field("external_force")[:, 1]
@@ -60,7 +60,7 @@ def test_a_lasting_force_is_found_within_a_tenth_and_walked_with(tmp_path):
 )
 def test_a_lasting_force_is_found_and_walked_with_from_sensors(direction, phase, seed, tmp_path):
     """Within a tenth in the median; what is found shakes with the noise of momentum and wrenches."""
-    result = walk(tmp_path, "walk", *NATURAL, pulled(40, direction, phase), f"seed={seed}")
+    result = walk(tmp_path, "walk-level", *NATURAL, pulled(40, direction, phase), f"seed={seed}")
     assert result.verdict.reasons == ()
     log, along = read(result.log), np.array([*FORCES[direction], 0])
     acting = log["/measurement"].field("external_force") @ along
@@ -77,15 +77,17 @@ def test_a_lasting_force_is_found_and_walked_with_from_sensors(direction, phase,
 @pytest.mark.physics
 def test_a_force_that_is_walked_with_moves_steps_much_farther_without_the_estimate(tmp_path):
     """Steps alone then catch a body that leans the wrong way, one after the other."""
-    told = walk(tmp_path, "walk", *NATURAL, pulled(45, "left")).verdict
-    untold = walk(tmp_path, "walk", *NATURAL, pulled(45, "left"), OFF).verdict
+    told = walk(tmp_path, "walk-level", *NATURAL, pulled(45, "left")).verdict
+    untold = walk(tmp_path, "walk-level", *NATURAL, pulled(45, "left"), OFF).verdict
     assert told.reasons == ()
     assert untold.metrics["step_shift"] > 0.25 > 2.5 * told.metrics["step_shift"]
 
 
 @pytest.mark.physics
 def test_an_undisturbed_walk_is_the_same_to_the_last_digit(tmp_path):
-    logs = [read(walk(tmp_path, "walk", *NATURAL, "gait.steps=2", "duration=2.5", *keys).log) for keys in ((), (OFF,))]
+    logs = [
+        read(walk(tmp_path, "walk-level", *NATURAL, "gait.steps=2", "duration=2.5", *keys).log) for keys in ((), (OFF,))
+    ]
     np.testing.assert_array_equal(*(log["/truth"].field("q") for log in logs))
     estimate = logs[0]["/estimate"]
     assert not estimate.field("external_force").any()
@@ -107,7 +109,7 @@ def test_the_true_weight_is_found_within_a_hundredth(scale, keys, tmp_path):
 @pytest.mark.parametrize("keys", [("sensing.source=truth",), ()], ids=["truth", "good"])
 def test_forces_that_last_two_seconds(keys, direction, phase, tmp_path):
     keys = (*NATURAL, pulled(HELD["natural gait"], direction, phase), "start.position_noise=0.0005", *keys)
-    assert walk(tmp_path, "walk", *keys).verdict.reasons == ()
+    assert walk(tmp_path, "walk-level", *keys).verdict.reasons == ()
 
 
 @pytest.mark.long
@@ -120,7 +122,7 @@ def test_forces_that_last_on_small_feet(direction, phase, tmp_path):
 
 
 @pytest.mark.long
-@pytest.mark.parametrize("scenario", ["walk", "diagonal-walk"])
+@pytest.mark.parametrize("scenario", ["walk-level", "diagonal-walk"])
 @pytest.mark.parametrize("scale", SCALES)
 def test_a_weight_that_is_not_believed_in(scale, scenario, tmp_path):
     assert walk(tmp_path, scenario, f"errors.mass_scale={scale}").verdict.reasons == ()

@@ -20,7 +20,7 @@ def falls(keys):
     fallen, march = 0, read_campaign("march-ladder").spec.set
     for impulse, direction in PUSHES:
         push = {**march["pushes"][0], "impulse": impulse, "direction": direction}
-        with surefoot.Simulation(surefoot.load("walk", {**march, **keys, "pushes": [push]})) as simulation:
+        with surefoot.Simulation(surefoot.load("walk-level", {**march, **keys, "pushes": [push]})) as simulation:
             while not (simulation.done or simulation.fell):
                 simulation.step()
             fallen += simulation.fell

@@ -16,7 +16,7 @@ PUSHED = {
 def walked(robot, out, *left_out):
     push = {"step": 3, "phase": "single", "fraction": 0.5, "duration": 0.1, **PUSHED[robot]}
     keys = {"robot": robot, "gait.steps": 6, "pushes": [push], "sensing.source": "truth", "criteria": {"fell": False}}
-    return surefoot.run(surefoot.load("walk", {**keys, "planner.without": list(left_out)}), out=out)
+    return surefoot.run(surefoot.load("walk-level", {**keys, "planner.without": list(left_out)}), out=out)
 
 
 @pytest.mark.parametrize("robot", PUSHED)

@@ -31,7 +31,7 @@ def logs(tmp_path_factory):
     """A run of each, and one that goes on from its state."""
     folder, found = tmp_path_factory.mktemp("logs"), {}
     for name, values in RUNS.items():
-        log = surefoot.run(surefoot.load("walk", {"gait.steps": 2, "duration": 2.6, **values}), out=folder).log
+        log = surefoot.run(surefoot.load("walk-level", {"gait.steps": 2, "duration": 2.6, **values}), out=folder).log
         plant = {"plant": {"name": "log", "options": {"log": str(log), "until": UNTIL}}}
         again = surefoot.run(surefoot.load(str(log), plant), out=folder).log
         found[name] = surefoot.read(log), surefoot.read(again)
@@ -140,7 +140,7 @@ def test_what_is_no_instant_of_a_log_is_refused(logs, tmp_path, options, error, 
 def test_another_robot_and_driven_joints_are_refused(logs, tmp_path):
     log, _ = logs["humanoid100"]
     plant = {"plant": {"name": "log", "options": {"log": str(log.path), "until": UNTIL}}}
-    other = surefoot.load("walk", {"robot": "g1", "sensing.source": "truth", **plant})
+    other = surefoot.load("walk-level", {"robot": "g1", "sensing.source": "truth", **plant})
     with pytest.raises(LogError, match="another robot than g1"):
         surefoot.run(other, out=tmp_path)
     driven = {"control": {"driven_joints": {"left_shoulder_pitch": [100.0, 10.0]}}}

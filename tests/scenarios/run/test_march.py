@@ -13,7 +13,7 @@ MARCH = [{"time": 0.2, "march": True}, {"time": 4.0, "v_x": 0.0}]
 
 def walked(**keys):
     told = {"gait.steps": 0, "gait.initial_stand": 0.2, "duration": 7.0, "commands": MARCH, "criteria": {"fell": False}}
-    with surefoot.Simulation(load("walk", {**told, **keys})) as simulation:
+    with surefoot.Simulation(load("walk-level", {**told, **keys})) as simulation:
         steps, place = set(), []
         while not simulation.done:
             tick = simulation.step()
@@ -55,4 +55,4 @@ def test_it_can_be_told_from_a_program():
 @pytest.mark.parametrize("commands", [[{"time": 0.2, "march": True}]])
 def test_a_march_without_an_end_needs_a_duration(commands):
     with pytest.raises(surefoot.ScenarioError, match="commands that do not end with a stop"):
-        load("walk", {"gait.steps": 0, "commands": commands})
+        load("walk-level", {"gait.steps": 0, "commands": commands})

@@ -18,7 +18,7 @@ def falls(direction, phase, fraction, impulse, **changed):
     own = {f"planner.recovery.{name}": value for name, value in changed.items()}
     keys = {**read_campaign("march-ladder").spec.set, "duration": 3.0, **own}
     push = {**keys["pushes"][0], "phase": phase, "fraction": fraction, "impulse": impulse, "direction": direction}
-    with surefoot.Simulation(surefoot.load("walk", {**keys, "pushes": [push]})) as simulation:
+    with surefoot.Simulation(surefoot.load("walk-level", {**keys, "pushes": [push]})) as simulation:
         while not simulation.done:
             tick = simulation.step()
             if tick.fell:

@@ -21,7 +21,7 @@ def motion(log):
     return log["/truth"].field("q")
 
 
-def run(out, keys, name="walk"):
+def run(out, keys, name="walk-level"):
     return read(surefoot.run(surefoot.load(name, {**SHORT, **keys}), out=out).log)
 
 

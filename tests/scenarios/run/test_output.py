@@ -20,7 +20,7 @@ POSITION = {"output": "position", "output_rate": 50}
 
 @pytest.fixture(scope="module")
 def robot():
-    return resolve(load("walk")).robot
+    return resolve(load("walk-level")).robot
 
 
 def moved(robot, rng):
@@ -71,21 +71,21 @@ def test_gains_are_those_of_the_last_pattern_that_matches(robot):
 )
 def test_what_does_not_fit_is_refused(keys, told):
     with pytest.raises(surefoot.SetupError, match=told.replace("(", r"\(")):
-        closed_loop(resolve(load("walk", {"control": keys})), NoLog())
+        closed_loop(resolve(load("walk-level", {"control": keys})), NoLog())
     with pytest.raises(surefoot.ParameterError, match=told.replace("(", r"\(")):
-        surefoot.Controller("humanoid100", "walk", control=keys)
+        surefoot.Controller("humanoid100", "walk-level", control=keys)
 
 
 def test_a_controller_takes_the_keys_of_a_scenario():
     with pytest.raises(surefoot.ParameterError, match=r"control\.output 'force'"):
-        surefoot.Controller("humanoid100", "walk", control={"output": "force"})
-    made = surefoot.Controller("g1", "walk", control=POSITION)
+        surefoot.Controller("humanoid100", "walk-level", control={"output": "force"})
+    made = surefoot.Controller("g1", "walk-level", control=POSITION)
     assert made.walk.control == ControlSettings(**POSITION)
 
 
 @pytest.mark.parametrize("robot", [{}, G1], ids=["humanoid100", "g1"])
 def test_targets_at_fifty_hertz_walk_and_are_held_in_between(robot):
-    with surefoot.Simulation(load("walk", {**robot, "gait.steps": 2, "control": POSITION})) as simulation:
+    with surefoot.Simulation(load("walk-level", {**robot, "gait.steps": 2, "control": POSITION})) as simulation:
         reports = set()
         while not simulation.done:
             reports.add(simulation.step().report.torque.tobytes())
@@ -95,7 +95,7 @@ def test_targets_at_fifty_hertz_walk_and_are_held_in_between(robot):
 
 def test_torques_may_be_held_as_well():
     keys = {"gait.steps": 1, "control": {"output_rate": 250}}
-    with surefoot.Simulation(load("walk", keys)) as simulation:
+    with surefoot.Simulation(load("walk-level", keys)) as simulation:
         while not simulation.done:
             simulation.advance()
         assert simulation.end.kind == "completed"

@@ -35,7 +35,7 @@ SENSED = {"good": 0.95, "cheap": 0.85}
 
 FEET = {"robot_options": {"foot_length": 0.22, "foot_width": 0.11}}
 GAIT = {"gait.single_support": 0.5, "gait.double_support": 0.12, "gait.com_height": 0.95}
-NATURAL = ("walk", {**GAIT, "gait.steps": 7, "gait.step_length": 0.36, "duration": 11.0})
+NATURAL = ("walk-level", {**GAIT, "gait.steps": 7, "gait.step_length": 0.36, "duration": 11.0})
 PAPER = ("diagonal-walk", {"duration": 18.0})
 """Both with time for the steps that a push at their end adds: each brings feet together of a robot that is at rest."""
 

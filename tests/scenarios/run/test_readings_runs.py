@@ -18,7 +18,7 @@ RATE = 500
 SHORT = {"duration": 0.6, "criteria": {"fell": False}, "sensing.source": "ekf"}
 
 
-def run(out, keys, name="walk"):
+def run(out, keys, name="walk-level"):
     return read(surefoot.run(surefoot.load(name, {**SHORT, **keys}), out=out).log)
 
 
@@ -110,7 +110,7 @@ def test_a_key_over_the_preset_acts_alone(tmp_path):
 def test_sensors_of_an_estimator_that_reads_none_are_refused(tmp_path):
     SOURCES.add("blind", TrueState)
     try:
-        scenario = surefoot.load("walk", {**SHORT, "sensing.source": "blind", "sensing.gyro_bias": 0.1})
+        scenario = surefoot.load("walk-level", {**SHORT, "sensing.source": "blind", "sensing.gyro_bias": 0.1})
         with pytest.raises(SetupError, match=r"gyro_bias 0\.1 beside an estimator that reads no sensor"):
             surefoot.run(scenario, out=tmp_path)
     finally:

@@ -50,9 +50,11 @@ def assert_recovered(result):
 @pytest.mark.parametrize(("direction", "impulse", "fraction"), [(FORWARD, 0.785, 0.5), (RIGHT, 0.27, 0.2)])
 def test_a_walk_goes_on_after_a_push_that_no_step_on_its_clock_could_catch(direction, impulse, fraction, tmp_path):
     when = f"step: 3, phase: single, fraction: {fraction}"
-    metrics, _ = assert_recovered(pushed("walk", WALKING, impulse, direction, when, tmp_path / "free"))
+    metrics, _ = assert_recovered(pushed("walk-level", WALKING, impulse, direction, when, tmp_path / "free"))
     assert metrics["steps_taken"] >= 6
-    as_laid = pushed("walk", (*WALKING, "planner.step_adaptation=none"), impulse, direction, when, tmp_path / "laid")
+    as_laid = pushed(
+        "walk-level", (*WALKING, "planner.step_adaptation=none"), impulse, direction, when, tmp_path / "laid"
+    )
     assert as_laid.verdict.metrics["fell"]
 
 

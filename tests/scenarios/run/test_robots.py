@@ -22,7 +22,7 @@ off aside in five seeds, where the reference robot's bound is 1.44 mm for this s
     [
         ("talos", "walk-turn"),
         ("talos", "slope"),
-        pytest.param("g1", "walk", marks=pytest.mark.long),
+        pytest.param("g1", "walk-level", marks=pytest.mark.long),
         ("g1", "walk-backward"),
     ],
 )
@@ -60,7 +60,7 @@ def test_a_robot_walks_fast(
 def test_talos_stands_a_push_in_mid_single_support(tmp_path: Path, direction: float) -> None:
     push = {"step": 3, "phase": "single", "fraction": 0.5, "impulse": 0.2, "direction": direction}
     keys = {"robot": "talos", "gait.steps": 6, "pushes": [push], "criteria": {"fell": False}}
-    verdict = run_scenario(surefoot.load("walk", keys), tmp_path).verdict
+    verdict = run_scenario(surefoot.load("walk-level", keys), tmp_path).verdict
     assert verdict.passed, verdict.reasons
     assert verdict["step_shift"] > 0.0
 

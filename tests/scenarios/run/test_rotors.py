@@ -21,7 +21,7 @@ def falls(robot):
     keys = {**march, "robot": robot, "sensing.source": "ekf", "sensing.preset": "good", "pushes": [push]}
     fallen = 0
     for seed in SEEDS:
-        with surefoot.Simulation(surefoot.load("walk", {**keys, "seed": seed})) as simulation:
+        with surefoot.Simulation(surefoot.load("walk-level", {**keys, "seed": seed})) as simulation:
             try:
                 while not (simulation.done or simulation.fell):
                     simulation.step()

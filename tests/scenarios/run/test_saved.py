@@ -18,17 +18,17 @@ TRUTH, GOOD = {"sensing": {"source": "truth"}}, {"sensing": {"source": "ekf", "p
 PUSHED = {"pushes": [{"time": 1.55, "duration": 0.1, "impulse": 0.35}]}
 
 WALKS = {
-    "truth": ("walk", {**TRUTH, "robot": "humanoid100"}, 1.7),
-    "sensors, in a push": ("walk", {**GOOD, **PUSHED, "robot": "humanoid100"}, 1.6),
-    "g1, sensors, in a push": ("walk", {**GOOD, **PUSHED, "robot": "g1"}, 1.6),
-    "g1, truth, before a push in a swing": ("walk", {**TRUTH, **PUSHED, "robot": "g1"}, 1.4),
+    "truth": ("walk-level", {**TRUTH, "robot": "humanoid100"}, 1.7),
+    "sensors, in a push": ("walk-level", {**GOOD, **PUSHED, "robot": "humanoid100"}, 1.6),
+    "g1, sensors, in a push": ("walk-level", {**GOOD, **PUSHED, "robot": "g1"}, 1.6),
+    "g1, truth, before a push in a swing": ("walk-level", {**TRUTH, **PUSHED, "robot": "g1"}, 1.4),
     "motors, position commands": (
-        "walk",
+        "walk-level",
         {**GOOD, "robot": "humanoid100", "motors": {"delay": 0.004}, "control": {"output": "position"}},
         1.6,
     ),
-    "before the first tick": ("walk", {**GOOD, "robot": "g1"}, 0.0),
-    "pendulum": ("walk", {"fidelity": "pendulum", "sensing": {"zmp_noise": 0.01}}, 1.6),
+    "before the first tick": ("walk-level", {**GOOD, "robot": "g1"}, 0.0),
+    "pendulum": ("walk-level", {"fidelity": "pendulum", "sensing": {"zmp_noise": 0.01}}, 1.6),
 }
 GOES_ON = 0.6
 """Time for which it goes on [s]."""
@@ -179,7 +179,7 @@ def test_a_state_of_something_else_is_refused_and_nothing_changes(tmp_path):
         state = sim.save()
         assert isinstance(state, State) and repr(state) == f"<State after the tick at {state.time:.3f} s>"
         for keys in ({"seed": 7}, {"robot": "g1"}, {"gait.steps": 3}):
-            with surefoot.Simulation(surefoot.load("walk", {**WALKS["truth"][1], **keys})) as other:
+            with surefoot.Simulation(surefoot.load("walk-level", {**WALKS["truth"][1], **keys})) as other:
                 before = goes_on(other, 5)
                 with pytest.raises(surefoot.ParameterError, match="a state of another scenario"):
                     other.restore(state)

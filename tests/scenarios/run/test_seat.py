@@ -56,9 +56,9 @@ class Bench:
 
 @pytest.mark.parametrize(("robot", "overrides"), ROBOTS)
 def test_a_loop_of_ones_own_is_the_simulation_to_the_bit(robot, overrides):
-    bench = Bench("walk", {**overrides, "gait.steps": 1})
+    bench = Bench("walk-level", {**overrides, "gait.steps": 1})
     with surefoot.Simulation(
-        surefoot.load("walk", {"sensing.source": "truth", **overrides, "gait.steps": 1})
+        surefoot.load("walk-level", {"sensing.source": "truth", **overrides, "gait.steps": 1})
     ) as simulation:
         every = bench.walk.rates.physics // bench.walk.rates.control
         for _ in range(400):
@@ -72,7 +72,7 @@ def test_a_loop_of_ones_own_is_the_simulation_to_the_bit(robot, overrides):
 
 @pytest.mark.parametrize(("robot", "overrides"), ROBOTS)
 def test_readings_may_come_at_any_time_and_some_never(robot, overrides):
-    bench, rng = Bench("walk", {**overrides, "gait.steps": 2}), np.random.default_rng(1)
+    bench, rng = Bench("walk-level", {**overrides, "gait.steps": 2}), np.random.default_rng(1)
     end = bench.walk.duration
     worst, seen = bench.walk_for(end, steps=lambda: int(rng.choice([1, 2, 3, 4, 12], p=[0.2, 0.4, 0.3, 0.08, 0.02])))
     assert worst < 0.01
@@ -81,7 +81,7 @@ def test_readings_may_come_at_any_time_and_some_never(robot, overrides):
 
 
 def test_feet_that_feel_nothing_walk():
-    bench = Bench("walk", {"gait.steps": 2})
+    bench = Bench("walk-level", {"gait.steps": 2})
     worst, seen = bench.walk_for(bench.walk.duration, blind=True)
     assert worst < 0.01
     assert seen.q[0] > 0.25
@@ -91,7 +91,7 @@ def test_feet_that_feel_nothing_walk():
 
 
 def test_a_walk_begins_anywhere_and_again():
-    bench = Bench("walk", {"gait.steps": 2}, place=(3.0, -2.0, 1.2))
+    bench = Bench("walk-level", {"gait.steps": 2}, place=(3.0, -2.0, 1.2))
     for _ in range(2):
         bench.world.reset(bench.start)
         bench.controller.reset(bench.start)
@@ -102,7 +102,7 @@ def test_a_walk_begins_anywhere_and_again():
 
 
 def test_readings_that_are_older_than_the_last_change_nothing():
-    bench = Bench("walk", {})
+    bench = Bench("walk-level", {})
     old = bench.world.measure()
     old = surefoot.Measurement.of_state(old.time, old.q.copy(), old.v.copy())
     bench.walk_for(0.1)
@@ -112,7 +112,7 @@ def test_readings_that_are_older_than_the_last_change_nothing():
 
 
 def test_readings_that_stay_away_end_the_walk():
-    bench = Bench("walk", {})
+    bench = Bench("walk-level", {})
     bench.walk_for(0.1)
     seen = bench.world.measure()
     with pytest.raises(RunFault, match="nothing was measured for"):
@@ -130,7 +130,7 @@ def test_a_command_is_taken_by_the_next_plan():
 
 @pytest.mark.parametrize("blind", [False, True])
 def test_a_robot_let_down_from_a_crane_stands_and_walks(blind):
-    bench = Bench("walk", {"gait.steps": 2})
+    bench = Bench("walk-level", {"gait.steps": 2})
     controller, world = bench.controller, bench.world
     hung = bench.start.copy()
     hung[2] += 0.05
@@ -155,11 +155,11 @@ def test_a_robot_let_down_from_a_crane_stands_and_walks(blind):
 
 def test_a_scenario_of_another_robot_is_refused():
     with pytest.raises(surefoot.ParameterError, match="a scenario of humanoid100 for g1"):
-        surefoot.Controller("g1", surefoot.load("walk"))
+        surefoot.Controller("g1", surefoot.load("walk-level"))
 
 
 def test_what_another_estimator_reads_is_refused():
-    bench = Bench("walk", {"sensing.source": "ekf"})
+    bench = Bench("walk-level", {"sensing.source": "ekf"})
     with pytest.raises(surefoot.ParameterError, match=r"give what sensors say, as surefoot\.Readings"):
         bench.controller.step(bench.world.measure())
 

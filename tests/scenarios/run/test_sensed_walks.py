@@ -119,7 +119,7 @@ def test_a_standing_robot_is_known_as_far_as_its_sensors_tell(tmp_path):
 @pytest.mark.unit
 @pytest.mark.parametrize("keys", [GOOD_SENSORS, {"sensing.source": "truth"}])
 def test_the_planner_is_told_how_sure_the_state_is(keys):
-    planning = closed_loop(resolve(surefoot.load("walk", keys)), NoLog())
+    planning = closed_loop(resolve(surefoot.load("walk-level", keys)), NoLog())
     update, told = planning.planning.planner.update, []
 
     def heard(state, feet):
@@ -254,7 +254,7 @@ PUSH = {"step": 3, "phase": "single", "fraction": 0.5, "duration": 0.1, "impulse
 
 
 @pytest.mark.physics
-@pytest.mark.parametrize("name", ["walk", pytest.param("walk-brisk", marks=pytest.mark.long)])
+@pytest.mark.parametrize("name", ["walk-level", pytest.param("walk-brisk", marks=pytest.mark.long)])
 def test_walks_pass_from_good_sensors(name, tmp_path):
     verdict = surefoot.run(surefoot.load(name, {"seed": 1, **GOOD_SENSORS}), out=tmp_path).verdict
     assert verdict.passed, verdict.reasons
@@ -269,14 +269,16 @@ def test_walks_pass_from_good_sensors(name, tmp_path):
 def test_an_imu_that_is_mounted_wrongly_turns_no_way(seed, tmp_path):
     """The way of the estimate would leave the true one by it: by 0.55 to 0.79 percent in these seeds."""
     keys = {"sensing.preset": "cheap", "seed": seed, "gait.steps": 30, "duration": 20.0, "criteria": {}}
-    result = surefoot.run(surefoot.load("walk", keys), out=tmp_path)
+    result = surefoot.run(surefoot.load("walk-level", keys), out=tmp_path)
     assert not result.verdict["fell"]
     assert result.verdict["estimation_drift"] < 0.002
 
 
 @pytest.mark.physics
 def test_a_push_is_survived_from_good_sensors(tmp_path):
-    scenario = surefoot.load("walk", {"seed": 1, "gait.steps": 8, "pushes": [PUSH], "criteria": {}, **GOOD_SENSORS})
+    scenario = surefoot.load(
+        "walk-level", {"seed": 1, "gait.steps": 8, "pushes": [PUSH], "criteria": {}, **GOOD_SENSORS}
+    )
     verdict = surefoot.run(scenario, out=tmp_path).verdict
     assert not verdict["fell"] and verdict["steps_taken"] >= 8
 
@@ -285,5 +287,5 @@ def test_a_push_is_survived_from_good_sensors(tmp_path):
 def test_a_robot_without_foot_sensors_walks_on_by_its_torques(tmp_path):
     """It takes all steps; what it takes for an error of the DCM moves some of them, and may add some."""
     keys = {"seed": 1, "gait.steps": 6, "criteria": {}, "sensing.wrench": "none", **GOOD_SENSORS}
-    verdict = surefoot.run(surefoot.load("walk", keys), out=tmp_path).verdict
+    verdict = surefoot.run(surefoot.load("walk-level", keys), out=tmp_path).verdict
     assert not verdict["fell"] and verdict["steps_taken"] >= 6

@@ -32,7 +32,7 @@ def quarter():
 
 
 def walked(tmp_path, robot, *keys):
-    return run_scenario(load("walk", (*SHORT, f"robot={robot}", *keys)), tmp_path).verdict
+    return run_scenario(load("walk-level", (*SHORT, f"robot={robot}", *keys)), tmp_path).verdict
 
 
 def test_a_quarter_of_the_size_takes_the_same_share_of_torques_and_speeds(tmp_path):

@@ -22,7 +22,7 @@ FORCE = (30.0, -20.0, 0.0)
 
 @pytest.fixture(scope="module")
 def scenario():
-    return surefoot.load("walk", BRIEF)
+    return surefoot.load("walk-level", BRIEF)
 
 
 def stepped(scenario, log, push_at=None, **parts):
@@ -36,7 +36,7 @@ def stepped(scenario, log, push_at=None, **parts):
 
 @pytest.mark.parametrize("fidelity", ["full", "pendulum"])
 def test_a_stepped_walk_is_the_walk_that_run_makes(fidelity, tmp_path, same_content):
-    scenario = surefoot.load("walk", {**BRIEF, "fidelity": fidelity})
+    scenario = surefoot.load("walk-level", {**BRIEF, "fidelity": fidelity})
     made = surefoot.run(scenario, out=tmp_path)
     assert same_content(stepped(scenario, tmp_path / "stepped.mcap"), made.log) == []
     assert surefoot.judge(surefoot.read(tmp_path / "stepped.mcap")).metrics["duration"] == pytest.approx(0.6)
@@ -47,7 +47,7 @@ def test_the_logged_forces_add_up_to_the_impulse_of_pushes_shorter_than_a_tick(f
     """3 N s in 1 ms that begins within a tick of 4 ms, and 5.5 ms given on the way."""
     push = {"time": 0.0511, "duration": 0.001, "force": (3000.0, 0.0, 0.0)}
     rates = {"rates.control": 250, "duration": 0.15}
-    scenario = surefoot.load("walk", {**BRIEF, **rates, "fidelity": fidelity, "pushes": [push]})
+    scenario = surefoot.load("walk-level", {**BRIEF, **rates, "fidelity": fidelity, "pushes": [push]})
     with surefoot.Simulation(scenario, log=tmp_path / "pushed.mcap") as sim:
         while not sim.done:
             if sim.time == 0.1:
@@ -59,9 +59,9 @@ def test_the_logged_forces_add_up_to_the_impulse_of_pushes_shorter_than_a_tick(f
 
 @pytest.mark.parametrize("fidelity", ["full", "pendulum"])
 def test_a_push_from_outside_acts_and_is_logged_as_a_scheduled_one(fidelity, tmp_path, same_content):
-    scenario = surefoot.load("walk", {**BRIEF, "fidelity": fidelity})
+    scenario = surefoot.load("walk-level", {**BRIEF, "fidelity": fidelity})
     log = stepped(scenario, tmp_path / "pushed.mcap", push_at=0.3)
-    scheduled = surefoot.load("walk", {
+    scheduled = surefoot.load("walk-level", {
         **BRIEF, "fidelity": fidelity, "pushes": [{"time": 0.3, "duration": 0.05, "force": FORCE}],
     })  # fmt: skip
     assert same_content(log, surefoot.run(scheduled, out=tmp_path).log) == []
@@ -129,7 +129,7 @@ def test_an_impossible_push_is_refused(scenario, push, message):
 
 
 def test_a_vertical_push_means_nothing_to_a_pendulum():
-    pendulum = surefoot.Simulation(surefoot.load("walk", {**BRIEF, "fidelity": "pendulum"}))
+    pendulum = surefoot.Simulation(surefoot.load("walk-level", {**BRIEF, "fidelity": "pendulum"}))
     with pendulum as sim, pytest.raises(surefoot.ParameterError, match="vertical push"):
         sim.push((0.0, 0.0, 1.0))
 
@@ -200,7 +200,7 @@ def test_a_log_that_was_closed_is_walked_again_as_long_as_it_was(scenario, tmp_p
 
 @pytest.mark.parametrize("fidelity", ["full", "pendulum"])
 def test_a_run_that_is_over_leaves_a_whole_log_though_nobody_closes_it(fidelity, tmp_path):
-    short = surefoot.load("walk", {**BRIEF, "duration": 0.1, "fidelity": fidelity, "criteria": {"fell": False}})
+    short = surefoot.load("walk-level", {**BRIEF, "duration": 0.1, "fidelity": fidelity, "criteria": {"fell": False}})
     sim = surefoot.Simulation(short, log=tmp_path / "over.mcap")
     while not sim.done:
         sim.step()
@@ -220,7 +220,7 @@ def test_a_part_that_leaves_ends_the_run_in_the_log_and_for_the_program(tmp_path
             raise SystemExit
 
     profile = Profile("leaving", "leaves", PROFILES["default"].parameters, Leaving, moves=False)
-    scenario = surefoot.load("walk", {**BRIEF, "fidelity": "pendulum"})
+    scenario = surefoot.load("walk-level", {**BRIEF, "fidelity": "pendulum"})
     sim = surefoot.Simulation(scenario, log=tmp_path / "left.mcap", planner=profile)
     with pytest.raises(surefoot.RunFault, match=r"profile 'leaving' of this program: SystemExit, .*\.py:\d+") as caught:
         sim.step()
@@ -231,7 +231,7 @@ def test_a_part_that_leaves_ends_the_run_in_the_log_and_for_the_program(tmp_path
 
 
 def test_a_walk_whose_last_states_got_lost_ends_when_its_data_do(monkeypatch):
-    loop = closed_loop(resolve(load("walk", {"fidelity": "pendulum", "duration": 0.1})), NoLog())
+    loop = closed_loop(resolve(load("walk-level", {"fidelity": "pendulum", "duration": 0.1})), NoLog())
     sense, last = loop.walker.sense, round(loop.duration * loop.rate) - 1
     monkeypatch.setattr(loop.walker, "sense", lambda tick, now: sense(tick, now) + 2 * (tick == last))
     while not loop.done:

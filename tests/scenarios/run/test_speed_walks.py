@@ -17,7 +17,7 @@ SOUND = {
 def walked(tmp_path, speed, steps=16, criteria=None, **overrides):
     gait = {"speed": speed, "steps": steps}
     keys = {"gait": gait, "criteria": {**SOUND, **(criteria or {})}, **overrides}
-    return run_scenario(load("walk", keys), tmp_path).verdict
+    return run_scenario(load("walk-level", keys), tmp_path).verdict
 
 
 @pytest.mark.physics
@@ -27,7 +27,8 @@ def test_a_walk_of_one_number_has_straight_knees_and_costs_less_than_a_bent_one(
     length, single, double = 0.461, 0.438, 0.138
     bent = {"steps": 16, "step_length": length, "single_support": single, "double_support": double}
     flat = run_scenario(
-        load("walk", {"gait": {**bent, "com_height": 0.98, "heel_off": 0.5}, "criteria": SOUND}), tmp_path / "bent"
+        load("walk-level", {"gait": {**bent, "com_height": 0.98, "heel_off": 0.5}, "criteria": SOUND}),
+        tmp_path / "bent",
     ).verdict
     assert flat.reasons == ()
     assert straight.metrics["knee_stance_mean"] < 0.36 < 0.6 < flat.metrics["knee_stance_mean"]

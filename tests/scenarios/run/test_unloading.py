@@ -9,7 +9,7 @@ from surefoot.scenarios.log import read
 pytestmark = pytest.mark.physics
 
 
-@pytest.mark.parametrize(("name", "robot", "share"), [("slope", "humanoid100", 0.95), ("walk", "alexander", 0.7)])
+@pytest.mark.parametrize(("name", "robot", "share"), [("slope", "humanoid100", 0.95), ("walk-level", "alexander", 0.7)])
 def test_a_sole_keeps_its_contact_until_it_is_lifted(tmp_path, name, robot, share, from_sensors):
     if from_sensors and robot == "alexander":
         share = 0.5  # 0.52 in one tick of three seeds, 20 ms before a foot leaves the ground

@@ -18,7 +18,7 @@ def pushed(impulse, direction):
     push |= {"impulse": impulse, "direction": direction}
     keys = {"robot": "g1", "sensing.source": "truth", "criteria": {"fell": False}, "duration": 6.0, "pushes": [push]}
     dropped = 0
-    with surefoot.Simulation(surefoot.load("walk", keys)) as simulation:
+    with surefoot.Simulation(surefoot.load("walk-level", keys)) as simulation:
         while not simulation.done:
             tick = simulation.step()
             dropped += tick.report.status is SolveStatus.EQUALITIES_ONLY
@@ -44,7 +44,7 @@ def falls_around(adaptation, directions):
         push |= {"impulse": 0.4, "direction": n * math.pi / 4.0}
         keys = {"robot": "g1", "gait.steps": 10, "pushes": [push], "criteria": {"fell": False}, "seed": n % 3}
         keys |= {"sensing.source": "ekf", "sensing.preset": "good", "planner.step_adaptation": adaptation}
-        fallen += surefoot.run(surefoot.load("walk", keys)).verdict.metrics["fell"] > 0
+        fallen += surefoot.run(surefoot.load("walk-level", keys)).verdict.metrics["fell"] > 0
     return fallen
 
 
@@ -67,7 +67,7 @@ def falls_in_double_support(**recovery):
         push |= {"impulse": impulse, "direction": -1.33}
         keys = {"robot": "g1", "gait.steps": 8, "pushes": [push], "criteria": {"fell": False}}
         keys |= {"sensing.source": "truth", **{f"planner.recovery.{name}": value for name, value in recovery.items()}}
-        fallen += surefoot.run(surefoot.load("walk", keys)).verdict.metrics["fell"] > 0
+        fallen += surefoot.run(surefoot.load("walk-level", keys)).verdict.metrics["fell"] > 0
     return fallen
 
 

@@ -41,7 +41,7 @@ SHORT = ("fidelity=pendulum", "gait.steps=2", "criteria={fell: false}")
 )
 def test_what_never_acts_is_refused_with_its_place(settings, key, words):
     with pytest.raises(ScenarioError) as refused:
-        load("walk", [*SHORT, *settings])
+        load("walk-level", [*SHORT, *settings])
     (problem,) = refused.value.problems
     assert words in problem
     assert f"--set {key}" in problem
@@ -63,7 +63,7 @@ OPPOSED = "{time: 1, impulse: 0.1}, {time: 1.02, impulse: 0.06, duration: 0.06, 
 )
 def test_pushes_that_cancel_one_another_are_refused(pushes, idle):
     with pytest.raises(ScenarioError) as refused:
-        load("walk", [*SHORT, f"pushes=[{pushes}]"])
+        load("walk-level", [*SHORT, f"pushes=[{pushes}]"])
     found = refused.value.problems
     assert len(found) == len(idle)
     assert all(f"pushes.{index} never acts: other pushes" in found[place] for place, index in enumerate(idle))
@@ -71,16 +71,16 @@ def test_pushes_that_cancel_one_another_are_refused(pushes, idle):
 
 def test_pushes_that_cancel_one_another_in_part_or_on_two_bodies_are_taken():
     one = "{time: 1, force: [1, 0, 0]}"
-    load("walk", [*SHORT, f"pushes=[{one}, {{time: 1.05, force: [-1, 0, 0]}}]"])
-    load("walk", [*SHORT, f"pushes=[{one}, {{time: 1, force: [-1, 0, 0], live: true}}]"])
-    load("walk", ["gait.steps=2", f"pushes=[{one}, {{time: 1, force: [-1, 0, 0], body: pelvis}}]"])
+    load("walk-level", [*SHORT, f"pushes=[{one}, {{time: 1.05, force: [-1, 0, 0]}}]"])
+    load("walk-level", [*SHORT, f"pushes=[{one}, {{time: 1, force: [-1, 0, 0], live: true}}]"])
+    load("walk-level", ["gait.steps=2", f"pushes=[{one}, {{time: 1, force: [-1, 0, 0], body: pelvis}}]"])
 
 
 @pytest.mark.parametrize("name", ["latency", "imu_latency", "wrench_jitter"])
 def test_a_time_that_makes_no_sample_late_is_refused(name):
     with pytest.raises(ScenarioError, match=f"sensing.{name} 1e-09 s is too short to make any sample late"):
-        load("walk", [f"sensing.{name}=1.0e-9"])
-    load("walk", [f"sensing.{name}=2.0e-9"])
+        load("walk-level", [f"sensing.{name}=1.0e-9"])
+    load("walk-level", [f"sensing.{name}=2.0e-9"])
 
 
 @pytest.mark.parametrize(
@@ -93,13 +93,13 @@ def test_a_time_that_makes_no_sample_late_is_refused(name):
     ],
 )
 def test_what_acts_however_shortly_is_taken(settings):
-    scenario = load("walk", [*SHORT, *settings])
+    scenario = load("walk-level", [*SHORT, *settings])
     assert len(scenario.pushes) + len(scenario.faults) == 1
 
 
 @pytest.mark.parametrize(("start", "duration", "first"), [(0.0, None, 0.02), (0.02, None, 0.02), (0.024, 0.02, 0.04)])
 def test_a_frozen_planner_is_noticed_when_a_plan_is_due(start, duration, first):
-    scenario = load("walk", [f"faults=[{{kind: planner_freeze, time: {start}, duration: {duration or 'null'}}}]"])
+    scenario = load("walk-level", [f"faults=[{{kind: planner_freeze, time: {start}, duration: {duration or 'null'}}}]"])
     window = FaultWindow.of(scenario.faults[0], scenario.rates.control)
     assert window.first_act(scenario.rates) == pytest.approx(first)
 
@@ -125,7 +125,7 @@ def test_many_commands_are_looked_at_once(monkeypatch):
 def test_a_push_after_a_fall_is_no_pass(tmp_path):
     """The fall is what is asked for, and comes before the second push could act."""
     pushes = "pushes=[{time: 1, force: [2000, 0, 0], duration: 0.5}, {time: 6, force: [1, 0, 0]}]"
-    both = load("walk", ["fidelity=pendulum", "gait.steps=8", pushes, "criteria={fell: true}"])
+    both = load("walk-level", ["fidelity=pendulum", "gait.steps=8", pushes, "criteria={fell: true}"])
     verdict = run_scenario(both, tmp_path).verdict
     assert verdict.metrics["fell"] is True
     assert not verdict.passed

@@ -16,7 +16,7 @@ PUSH = "pushes=[{time: 1.5, duration: 0.2, impulse: 0.1}]"
 
 
 def force(*settings):
-    (push,) = resolve(load("walk", [PUSH, *settings])).pushes
+    (push,) = resolve(load("walk-level", [PUSH, *settings])).pushes
     return push.force
 
 
@@ -62,6 +62,6 @@ def test_the_pendulum_changes_its_speed_by_the_impulse_whatever_it_weighs(tmp_pa
 @pytest.mark.parametrize(("fidelity", "elevation"), [("pendulum", 0.0), ("full", -0.6)])
 def test_a_log_of_it_is_run_again_as_it_was(tmp_path, fidelity, elevation):
     short = (f"fidelity={fidelity}", "duration=1.8", "criteria={fell: false}", f"pushes.0.elevation={elevation}")
-    run = run_scenario(load("walk", [PUSH, *short]), tmp_path)
+    run = run_scenario(load("walk-level", [PUSH, *short]), tmp_path)
     (push,) = load(run.log).pushes
     assert (push.impulse, push.elevation, push.force) == (0.1, elevation, None)

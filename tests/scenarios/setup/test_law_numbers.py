@@ -18,7 +18,7 @@ PUSHED = {"duration": 4.0, "fidelity": "pendulum", "pushes": [{"time": 2.0, "dur
 
 
 def parameters(**keys):
-    return resolve(surefoot.load("walk", {f"planner.{name}": value for name, value in keys.items()})).parameters
+    return resolve(surefoot.load("walk-level", {f"planner.{name}": value for name, value in keys.items()})).parameters
 
 
 @pytest.mark.parametrize("name", LAW_NUMBERS)
@@ -38,10 +38,10 @@ def test_null_is_the_profiles_own(name):
 def test_a_law_takes_what_it_reads_and_refuses_the_rest(profile, name):
     given = {"planner.profile": profile, f"planner.{name}": 20.0}
     if name in PROFILES[profile].numbers:
-        assert getattr(resolve(surefoot.load("walk", given)).parameters, name) == 20.0
+        assert getattr(resolve(surefoot.load("walk-level", given)).parameters, name) == 20.0
         return
     with pytest.raises(surefoot.ScenarioError, match=rf"planner.{name} with profile '{profile}'.*does not read it"):
-        resolve(surefoot.load("walk", given))
+        resolve(surefoot.load("walk-level", given))
 
 
 @pytest.mark.parametrize("profile", ["default", "lti", "paper", "repaired", "preview", "dcm"])
@@ -52,7 +52,7 @@ def test_a_law_reads_the_numbers_that_its_profile_names_and_no_others(profile, n
     far = {"jerk_limit": 0.1, "jerk_rate_limit": 0.02}.get(name, 1e-3 if own == 0.0 else 100.0 * own)
     law = PROFILES[profile].law
     moved = replace(PROFILES[profile], law=lambda given, height: law(replace(given, **{name: far}), height))
-    scenario = surefoot.load("walk", {**PUSHED, "planner.profile": profile})
+    scenario = surefoot.load("walk-level", {**PUSHED, "planner.profile": profile})
     assert (com(scenario, PROFILES[profile]) != com(scenario, moved)) == (name in PROFILES[profile].numbers)
 
 
@@ -73,7 +73,7 @@ def test_a_weight_of_zero_is_one():
 
 
 def test_numbers_of_a_file_for_another_robot_are_translated(tmp_path):
-    usual = resolve(surefoot.load("walk", {"robot": "g1"})).parameters
+    usual = resolve(surefoot.load("walk-level", {"robot": "g1"})).parameters
     file = tmp_path / "sized.yaml"
     file.write_text(f"robot: g1\nsized_for: humanoid100\nplanner: {{jerk_weight: {PlannerParameters().jerk_weight}}}\n")
     found = resolve(surefoot.load(file)).parameters

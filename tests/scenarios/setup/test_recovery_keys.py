@@ -17,7 +17,7 @@ USUAL = RecoveryParameters()
 
 def recovery(**keys):
     given = {f"planner.recovery.{name}": value for name, value in keys.items()}
-    return resolve(surefoot.load("walk", given)).parameters.recovery
+    return resolve(surefoot.load("walk-level", given)).parameters.recovery
 
 
 def test_without_a_key_the_numbers_are_the_planners_own():
@@ -49,7 +49,7 @@ def test_every_key_says_its_unit():
 
 
 def test_numbers_of_a_file_for_another_robot_are_translated_and_set_ones_literal(tmp_path):
-    usual = resolve(surefoot.load("walk", {"robot": "g1", "sized_for": "humanoid100"})).parameters.recovery
+    usual = resolve(surefoot.load("walk-level", {"robot": "g1", "sized_for": "humanoid100"})).parameters.recovery
     file, changes = tmp_path / "sized.yaml", list(USUAL.time_changes)
     file.write_text(
         f"robot: g1\nsized_for: {REFERENCE}\n"

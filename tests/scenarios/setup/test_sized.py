@@ -45,7 +45,7 @@ def read(text, *settings):
 
 
 def test_a_catalogue_walk_is_the_same_walk_for_a_similar_robot():
-    full, walk = load("walk"), load("walk", {"robot": "small"})
+    full, walk = load("walk-level"), load("walk-level", {"robot": "small"})
     assert walk.gait.steps == full.gait.steps
     for name in ("step_length", "step_width", "swing_height", "com_height", "apex_single"):
         assert getattr(walk.gait, name) == pytest.approx(0.25 * getattr(full.gait, name), rel=1e-12)
@@ -70,7 +70,7 @@ def test_pushes_grow_with_mass_and_impulses_with_speed():
 
 def test_what_is_set_is_literal_and_the_rest_follows():
     settings = ("robot=small", "gait.step_length=0.1", "planner.jerk_limit=70", "criteria.speed_mean={min: 0.1}")
-    walk = load("walk", (*settings, "pushes=[{time: 2, force: [5, 0, 0]}]", "wbc.schedule.felt_force=3"))
+    walk = load("walk-level", (*settings, "pushes=[{time: 2, force: [5, 0, 0]}]", "wbc.schedule.felt_force=3"))
     assert (walk.gait.step_length, walk.planner.jerk_limit, walk.criteria["speed_mean"].min) == (0.1, 70.0, 0.1)
     (push,) = walk.pushes
     assert (push.force, push.duration) == ((5.0, 0.0, 0.0), 0.05)
@@ -127,7 +127,7 @@ def test_what_makes_no_sense_is_told_as_for_any_robot(text, told):
     assert told in str(error.value), str(error.value)
 
 
-@pytest.mark.parametrize("name", ["walk", "stairs-up", "paper-push", "waypoints", "commanded"])
+@pytest.mark.parametrize("name", ["walk-level", "stairs-up", "paper-push", "waypoints", "commanded"])
 def test_for_its_own_robot_nothing_changes(name, monkeypatch):
     monkeypatch.setattr("surefoot.scenarios.setup.load.say_for", lambda *given: None)
     plain = load(name)
@@ -164,7 +164,7 @@ def test_a_robot_that_nobody_knows_is_refused():
     with pytest.raises(ScenarioError, match=r"f\.yaml:1:12: unknown robot 'humanoid10' in sized_for; did you mean"):
         read("sized_for: humanoid10", "robot=small")
     with pytest.raises(ScenarioError, match="unknown robot 'smal'; did you mean 'small'"):
-        load("walk", {"robot": "smal"})
+        load("walk-level", {"robot": "smal"})
 
 
 def test_a_file_for_a_robot_that_cannot_be_read_is_refused(tmp_path):

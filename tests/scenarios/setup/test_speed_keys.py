@@ -13,7 +13,7 @@ pytestmark = pytest.mark.unit
 
 def walk(*overrides, speed=0.8, **beside):
     gait = {"speed": speed, "steps": 6, **beside}
-    return load("walk", {"gait": gait, "criteria": {"fell": False}, **dict(overrides)})
+    return load("walk-level", {"gait": gait, "criteria": {"fell": False}, **dict(overrides)})
 
 
 def value(scenario, key):
@@ -23,7 +23,7 @@ def value(scenario, key):
 
 
 def test_a_speed_is_a_whole_gait():
-    keys, plain = walk(), load("walk")
+    keys, plain = walk(), load("walk-level")
     gait = keys.gait
     assert gait.step_length / (gait.single_support + gait.double_support) == pytest.approx(0.8)
     assert gait.heel_off > gait.heel_strike > 0.1
@@ -54,7 +54,7 @@ def test_bent_knees_have_the_same_steps_and_no_task_that_straightens_them():
 
 def test_numbers_that_contradict_it_are_refused():
     with pytest.raises(ScenarioError, match=r"--set gait\.speed: speed 0\.8 m/s beside steps of 0\.3 m in 0\.66 s"):
-        load("walk", {"gait.speed": 0.8})
+        load("walk-level", {"gait.speed": 0.8})
 
 
 @pytest.mark.parametrize("speed", [0, -0.5, 7, "fast", float("inf")])

@@ -108,7 +108,7 @@ def test_a_page_with_too_many_frames_has_fewer_of_each_second(log):
 @pytest.fixture(scope="module")
 def twenty_minutes(tmp_path_factory) -> Path:
     folder = tmp_path_factory.mktemp("twenty")
-    walk = surefoot.run("walk", out=folder).log
+    walk = surefoot.run("walk-level", out=folder).log
     return lengthened(walk, folder / "twenty.mcap", 1200.0)
 
 

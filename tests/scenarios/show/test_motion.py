@@ -25,7 +25,7 @@ SHORT = {"gait.steps": 3, "gait.initial_stand": 0.2, "duration": 1.5}
 @pytest.fixture(scope="module", params=ROBOTS)
 def walked(request, tmp_path_factory):
     """A log of the first steps of a robot."""
-    scenario = surefoot.load("walk", {"robot": request.param, **SHORT})
+    scenario = surefoot.load("walk-level", {"robot": request.param, **SHORT})
     path = tmp_path_factory.mktemp(request.param) / "log.mcap"
     with surefoot.Simulation(scenario, log=path) as sim:
         while not sim.done:
@@ -157,7 +157,7 @@ def test_what_is_no_motion_is_refused_in_a_sentence(walked, tmp_path, monkeypatc
 
 
 def test_a_pendulum_has_no_motion(tmp_path, capsys):
-    scenario = surefoot.load("walk", {"fidelity": "pendulum", "duration": 0.2, "criteria": {"fell": False}})
+    scenario = surefoot.load("walk-level", {"fidelity": "pendulum", "duration": 0.2, "criteria": {"fell": False}})
     result = surefoot.run(scenario, out=tmp_path)
     assert main(["motion", str(result.log), "--out", str(tmp_path / "walk.npz")]) == 2
     assert "a pendulum has no joints" in capsys.readouterr().err

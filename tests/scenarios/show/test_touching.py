@@ -20,4 +20,4 @@ def test_bodies_that_touch_are_named_with_the_time_of_the_first_touch(tmp_path):
 @pytest.mark.unit
 def test_a_pendulum_touches_nothing(tmp_path):
     keys = {"fidelity": "pendulum", "gait.steps": 1, "duration": 1.0, "criteria": {"fell": False}}
-    assert touching(surefoot.read(surefoot.run(surefoot.load("walk", keys), out=tmp_path).log)) == ()
+    assert touching(surefoot.read(surefoot.run(surefoot.load("walk-level", keys), out=tmp_path).log)) == ()

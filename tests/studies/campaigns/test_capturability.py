@@ -24,7 +24,7 @@ from surefoot.studies.campaigns.points import cells
 pytestmark = pytest.mark.unit
 
 SPEC = """
-scenario: walk
+scenario: walk-level
 set:
   fidelity: pendulum
   rates.control: 100

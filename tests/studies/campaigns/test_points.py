@@ -42,7 +42,7 @@ def walked(cell, passes=lambda point: True, status="fail"):
 
 def test_every_combination_has_every_seed_once(campaign):
     made = campaign(
-        "scenario: walk\nset: {gait.turn: 0.1}\ngrid: {gait.steps: [3, 4], errors.friction: [0, 1]}\nseeds: 2"
+        "scenario: walk-level\nset: {gait.turn: 0.1}\ngrid: {gait.steps: [3, 4], errors.friction: [0, 1]}\nseeds: 2"
     )
     points = [point for cell in cells(made) for point in walked(cell)[0]]
     found = [(p.settings["gait.steps"], p.settings["errors.friction"], p.settings["seed"]) for p in points]
@@ -51,14 +51,14 @@ def test_every_combination_has_every_seed_once(campaign):
     assert all(point.settings["gait.turn"] == 0.1 for point in points)
     assert (
         points[0].command
-        == "surefoot run walk --set gait.turn=0.1 --set gait.steps=3 --set errors.friction=0 --set seed=0"
+        == "surefoot run walk-level --set gait.turn=0.1 --set gait.steps=3 --set errors.friction=0 --set seed=0"
     )
 
 
 MINE = "gait: {steps: 1, single_support: 0.6}\nfidelity: pendulum\nrates: {control: 100}\n"
 
 
-@pytest.mark.parametrize("name", ["walk", "mine.yaml", "mine.yml", "it's mine/mine.yaml", "log.mcap"])
+@pytest.mark.parametrize("name", ["walk-level", "mine.yaml", "mine.yml", "it's mine/mine.yaml", "log.mcap"])
 @pytest.mark.parametrize("place", ["c.yaml", "below/c.yaml"])
 def test_the_command_makes_the_run_wherever_its_scenario_is(tmp_path, monkeypatch, name, place):
     monkeypatch.chdir(tmp_path)
@@ -66,7 +66,7 @@ def test_the_command_makes_the_run_wherever_its_scenario_is(tmp_path, monkeypatc
     scenario.parent.mkdir(parents=True, exist_ok=True)
     if name.endswith(".mcap"):
         run_scenario(load("paper-walk", {**SHORT, "gait.turn": 0.1}), tmp_path / "run").log.rename(scenario)
-    elif name != "walk":
+    elif name != "walk-level":
         scenario.write_text(MINE)
     spec.write_text(f'scenario: "{name}"\nset: {{gait.step_length: 0.11}}\n')
     (cell,) = cells(read_campaign(place))
@@ -80,13 +80,13 @@ def test_the_same_run_has_the_same_name_and_another_scenario_another(campaign):
     def first(text):
         return walked(next(iter(cells(campaign(text)))))[0][0]
 
-    assert first("scenario: walk").id == first("scenario: walk\nseeds: 5").id
-    assert first("scenario: walk").id != first("scenario: diagonal-walk").id
-    assert first("scenario: walk").id != first("scenario: walk\nset: {gait.steps: 3}").id
+    assert first("scenario: walk-level").id == first("scenario: walk-level\nseeds: 5").id
+    assert first("scenario: walk-level").id != first("scenario: diagonal-walk").id
+    assert first("scenario: walk-level").id != first("scenario: walk-level\nset: {gait.steps: 3}").id
 
 
 def test_a_drawn_value_depends_on_key_and_seed_alone(campaign):
-    text = "scenario: walk\nseed: {}\nseeds: 3\nsample: {{{}terrain.friction: {{uniform: [0.4, 1.2]}}}}"
+    text = "scenario: walk-level\nseed: {}\nseeds: 3\nsample: {{{}terrain.friction: {{uniform: [0.4, 1.2]}}}}"
     draws = [
         [walked(cell)[0][0].settings["terrain.friction"] for cell in cells(campaign(text.format(seed, more)))]
         for seed, more in ((0, ""), (0, "errors.friction: {normal: [0, 1]}, "), (1, ""))
@@ -115,7 +115,7 @@ def impulse(point):
     return point.settings["errors.friction"]
 
 
-LADDER = "scenario: walk\nbisect: {key: errors.friction, low: 0.1, high: 1.0, ratio: 1.1}\nseeds: 3"
+LADDER = "scenario: walk-level\nbisect: {key: errors.friction, low: 0.1, high: 1.0, ratio: 1.1}\nseeds: 3"
 
 
 def test_a_ladder_stops_at_its_first_hole(campaign):
@@ -142,7 +142,7 @@ def test_a_threshold_outside_the_ladder_is_said_to_be(campaign, limit, found):
     assert threshold.value is None or 1.0 / 1.1 < threshold.value <= 1.0 + 1e-9
 
 
-HALVES = "scenario: walk\nbisect: {key: errors.friction, low: 0.0, high: 1.0, tolerance: 0.01}\nseeds: 2"
+HALVES = "scenario: walk-level\nbisect: {key: errors.friction, low: 0.0, high: 1.0, tolerance: 0.01}\nseeds: 2"
 
 
 @pytest.mark.parametrize("limit", [0.003, 0.377, 0.999])
@@ -163,7 +163,7 @@ def test_halving_says_on_which_side_of_the_range_it_is(campaign):
 
 
 def test_the_first_value_that_is_not_refused(campaign):
-    made = campaign("scenario: walk\nfirst: {gait.com_height: [1.0, 0.9, 0.8]}")
+    made = campaign("scenario: walk-level\nfirst: {gait.com_height: [1.0, 0.9, 0.8]}")
     (cell,) = cells(made)
     points, _ = walked(cell, lambda p: p.settings["gait.com_height"] < 0.95, "refused")
     assert [p.settings["gait.com_height"] for p in points] == [1.0, 0.9]
@@ -174,7 +174,9 @@ def test_the_first_value_that_is_not_refused(campaign):
 
 
 def test_folders_have_names_that_file_systems_take(campaign):
-    made = campaign("scenario: walk\ngrid: {a: {'x/../: y': {gait.steps: 3}, " + "z" * 300 + ": {gait.steps: 4}}}")
+    made = campaign(
+        "scenario: walk-level\ngrid: {a: {'x/../: y': {gait.steps: 3}, " + "z" * 300 + ": {gait.steps: 4}}}"
+    )
     names = [walked(cell)[0][0].name for cell in cells(made)]
     assert all(len(name) <= 120 and "/" not in name and ":" not in name for name in names)
 
@@ -192,7 +194,7 @@ def test_folders_have_names_that_file_systems_take(campaign):
     ],
 )
 def test_no_two_runs_have_the_same_folder(campaign, grid):
-    made = campaign(f"scenario: walk\ngrid: {{{grid}}}")
+    made = campaign(f"scenario: walk-level\ngrid: {{{grid}}}")
     points = [walked(cell)[0][0] for cell in cells(made)]
     assert len({point.name for point in points}) == len({point.id for point in points}) == len(points)
     assert all(point.name.isascii() for point in points)

@@ -17,7 +17,7 @@ from surefoot.studies.campaigns.sweep import Swept
 pytestmark = pytest.mark.unit
 
 LAWS = """
-scenario: walk
+scenario: walk-level
 set: {fidelity: pendulum, pushes: [{time: 1.0, impulse: 0.1}], criteria: {fell: false}}
 grid:
   law: {soft: {pendulum.feedback: 2.0}, hard: {pendulum.feedback: 3.0}, other: {pendulum.feedback: 4.0}}
@@ -26,7 +26,7 @@ seeds: 20
 """
 
 SEARCH = """
-scenario: walk
+scenario: walk-level
 set: {fidelity: pendulum, pushes: [{time: 1.0, impulse: 0.1, direction: 0.0}], criteria: {fell: false}}
 grid:
   law: {soft: {pendulum.feedback: 2.0}, hard: {pendulum.feedback: 3.0}}

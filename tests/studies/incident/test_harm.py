@@ -61,7 +61,7 @@ def pendulum(tmp_path_factory):
     for name, pushes in {"walks": [], "falls": [1.6], "later": [1.62], "stands": [0.3]}.items():
         push = [{"time": time, "impulse": 3.0, "duration": 0.1} for time in pushes]
         values = {"fidelity": "pendulum", "gait.steps": 3, "pushes": push, "criteria": {"fell": False}}
-        scenario = surefoot.load("walk", values)
+        scenario = surefoot.load("walk-level", values)
         found[name] = surefoot.read(surefoot.run(scenario, out=folder / name).log)
     return found
 
@@ -96,7 +96,7 @@ def test_likeness_is_of_the_motion_until_the_fall(pendulum):
 
 def test_a_pendulum_comes_back_smaller_and_its_scenario_is_one_that_any_command_reads(pendulum, tmp_path):
     scenario = surefoot.load(
-        "walk",
+        "walk-level",
         {
             "fidelity": "pendulum",
             "gait.steps": 3,
@@ -130,7 +130,7 @@ def test_a_log_without_an_incident_is_refused(pendulum):
 
 def test_a_missed_criterion_comes_back(tmp_path):
     scenario = surefoot.load(
-        "walk",
+        "walk-level",
         {"fidelity": "pendulum", "gait.steps": 2, "criteria": {"speed_mean": {"min": 5.0}}, "sensing.com_noise": 1e-4},
     )
     incident = Incident.of(surefoot.run(scenario, out=tmp_path).log)

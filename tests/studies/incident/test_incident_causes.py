@@ -44,7 +44,7 @@ EXPECTED = [
 
 @pytest.fixture(scope="module")
 def values():
-    return values_of(surefoot.load("walk", FULL))
+    return values_of(surefoot.load("walk-level", FULL))
 
 
 def test_every_key_that_acts_is_a_cause_and_the_walk_is_none(values):
@@ -115,6 +115,6 @@ def without_log(scenario):
 
 @pytest.mark.parametrize("name", [*catalogue.OURS, "truth", "full"])
 def test_values_make_the_same_scenario(name):
-    changes = {"truth": ("walk", {"sensing.source": "truth"}), "full": ("walk", FULL)}
+    changes = {"truth": ("walk-level", {"sensing.source": "truth"}), "full": ("walk-level", FULL)}
     scenario = surefoot.load(*changes.get(name, (name, {})))
     assert without_log(checked(values_of(scenario), "again")) == without_log(scenario)

@@ -63,7 +63,7 @@ def test_it_begins_in_the_state_of_the_log(kind, tmp_path):
 
 
 def test_live_pushes_come_back_by_the_command_in_a_process_of_its_own(tmp_path):
-    scenario = surefoot.load("walk", {"gait.steps": 4, "sensing.source": "truth"})
+    scenario = surefoot.load("walk-level", {"gait.steps": 4, "sensing.source": "truth"})
     with surefoot.Simulation(scenario, log=tmp_path / "live.mcap") as sim:
         while sim.time < 1.6:
             sim.step()
@@ -108,7 +108,7 @@ def of_a_program(**changed):
 def test_a_fault_of_a_program_does_not_come_back_with_sound_parts(tmp_path):
     values = {"gait.steps": 5, "sensing.source": "truth", "motors.noise": 0.05}
     parts = of_a_program(height_stiffness=8000.0, height_damping=0.01)
-    log = surefoot.run(surefoot.load("walk", values), out=tmp_path, parts=parts).log
+    log = surefoot.run(surefoot.load("walk-level", values), out=tmp_path, parts=parts).log
     before = harm_of(surefoot.read(log), {})
     assert before is not None
     words = ["scenario", "from", str(log), "--out", "weak.yaml", "--json"]
@@ -129,7 +129,7 @@ def test_a_run_that_cannot_be_repeated_begins_where_it_comes_closest(tmp_path):
     push = [{"time": 2.4, "impulse": 1.7, "direction": 1.3}, {"time": 0.4, "impulse": 0.05}]
     values = {"gait.steps": 4, "sensing.source": "truth", "pushes": push}
     parts = of_a_program(height_stiffness=70.0)
-    log = surefoot.run(surefoot.load("walk", values), out=tmp_path, parts=parts).log
+    log = surefoot.run(surefoot.load("walk-level", values), out=tmp_path, parts=parts).log
     incident = Incident.of(log)
     found = regression(incident, Trials(incident, "closest"))
     apart = {begin: trial.likeness.distance for begin, trial in found.starts if trial.same}

@@ -23,7 +23,7 @@ def folder(tmp_path_factory):
     """A log that falls and one that does not."""
     made = tmp_path_factory.mktemp("incident")
     for name, values in {"falls": FALLS, "walks": {**FALLS, "pushes": [], "criteria": {"fell": False}}}.items():
-        surefoot.run(surefoot.load("walk", values), out=made / "runs").log.rename(made / f"{name}.mcap")
+        surefoot.run(surefoot.load("walk-level", values), out=made / "runs").log.rename(made / f"{name}.mcap")
     (made / "taken.yaml").write_text("mine\n")
     return made
 

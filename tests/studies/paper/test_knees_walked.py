@@ -12,7 +12,7 @@ pytestmark = pytest.mark.physics
 
 def walked(gait, knee):
     experiment = Experiment(knee_study(gait, knee), "default", "full")
-    return surefoot.run(surefoot.load("walk", experiment.overrides)).verdict.metrics
+    return surefoot.run(surefoot.load("walk-level", experiment.overrides)).verdict.metrics
 
 
 def test_stretched_knees_spare_torque_and_energy_at_the_same_speed_with_the_same_feet():

@@ -67,11 +67,13 @@ def test_it_passes_the_checker(driver):
 @pytest.mark.parametrize("robot", ["humanoid100", "g1"])
 def test_under_the_built_in_controller_it_is_the_run_to_the_bit(robot, tmp_path, same_content):
     settings = {"duration": 1.4, "gait.initial_stand": 0.2, "pushes": [{"time": 0.9, "duration": 0.1, "impulse": 0.1}]}
-    env = made(scenario="walk", robot=robot, settings=settings, driver="built-in", verdict=True, log=tmp_path / "logs")
+    env = made(
+        scenario="walk-level", robot=robot, settings=settings, driver="built-in", verdict=True, log=tmp_path / "logs"
+    )
     *_, info = episode(env, seed=4)
     env.close()
     keys = {**settings, "robot": robot}
-    result = surefoot.run(surefoot.load("walk", keys), seed=4, out=tmp_path / "runs")
+    result = surefoot.run(surefoot.load("walk-level", keys), seed=4, out=tmp_path / "runs")
     assert same_content(info["log"], result.log) == []
     assert info["verdict"] == ("pass" if result.verdict.passed else "fail")
     same = {name for name, value in result.verdict.metrics.items() if info["metrics"][name] == value}
@@ -120,7 +122,7 @@ STEPS = {"duration": 1.4, "gait.initial_stand": 0.2}
     ("scenario", "driver", "settings", "moves"),
     [
         ("stand", "agent", {**STANDS, "commands": BOUTS}, [False, True, False, True, False]),
-        ("walk", "built-in", STEPS, [False, True]),
+        ("walk-level", "built-in", STEPS, [False, True]),
         ("stand", "built-in", STANDS, [False]),
     ],
 )

@@ -11,7 +11,7 @@ from surefoot.wbc.qp.solvers import Daqp, EqualityFirst
 pytestmark = pytest.mark.unit
 
 
-@pytest.mark.parametrize(("name", "robot"), [("walk-brisk", "humanoid100"), ("walk", "g1")])
+@pytest.mark.parametrize(("name", "robot"), [("walk-brisk", "humanoid100"), ("walk-level", "g1")])
 def test_the_minimisers_of_a_walk_are_those_of_daqp(name, robot):
     compared, daqp = [], Daqp()
     with surefoot.Simulation(surefoot.load(name, {"robot": robot})) as simulation:

@@ -35,7 +35,7 @@ def test_lower_hips_reach_farther():
 
 
 def test_who_walks_with_bent_knees_goes_down_less_for_a_long_step():
-    stretched, bent = (resolve(load("walk", {"planner.knee": knee})).legs for knee in ("stretched", "bent"))
+    stretched, bent = (resolve(load("walk-level", {"planner.knee": knee})).legs for knee in ("stretched", "bent"))
     assert bent.height == pytest.approx(stretched.height - BENT_KNEES)
     assert bent.lowering(0.7) == pytest.approx(max(stretched.lowering(0.7) - BENT_KNEES, 0.0))
     assert stretched.lowering(0.7) > 0.03

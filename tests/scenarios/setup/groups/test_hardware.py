@@ -99,15 +99,15 @@ def test_the_catalogue_walks_from_good_sensors_and_goes_back_to_the_truth_by_one
     assert {name for name, found in sensed.items() if found.source == "truth"} == {"paper-noise", "paper-push"}
     assert {found.preset for found in sensed.values()} == {"good", None}
     assert {name for name in CONTROLS if load(name).sensing.source != "truth"} == {"control-sensors"}
-    blind = resolve(load("walk", {"sensing.source": "truth"}))
+    blind = resolve(load("walk-level", {"sensing.source": "truth"}))
     assert "sensing.preset has no effect beside sensing.source truth, which reads no sensor" in notes(blind)
-    assert load("walk", {"sensing.preset": None}).sensing.source == "truth"
+    assert load("walk-level", {"sensing.preset": None}).sensing.source == "truth"
 
 
 def test_a_pendulum_has_no_sensors_and_one_note_tells_it():
     from surefoot.scenarios.setup.checks.notes import notes
 
-    told = [note for note in notes(resolve(load("walk", {"fidelity": "pendulum"}))) if "sensing" in note]
+    told = [note for note in notes(resolve(load("walk-level", {"fidelity": "pendulum"}))) if "sensing" in note]
     assert told == ["sensing.preset has no effect on a pendulum"]
     alone = resolve(load("paper-walk", {"fidelity": "pendulum", "sensing": {"source": "ekf"}}))
     assert "sensing.source has no effect on a pendulum" in notes(alone)
@@ -116,14 +116,14 @@ def test_a_pendulum_has_no_sensors_and_one_note_tells_it():
 def test_zeros_of_earlier_logs_are_taken():
     """Their scenarios have every key that was not null with its default."""
     kept = ("encoder_noise", "gyro_noise", "accelerometer_noise", "wrench_noise", "latency")
-    scenario = load("walk", {"sensing": dict.fromkeys(kept, 0.0)})
+    scenario = load("walk-level", {"sensing": dict.fromkeys(kept, 0.0)})
     assert resolve(scenario).hardware == Hardware(PERFECT, IDEAL)
     with pytest.raises(ScenarioError):
-        load("walk", {"sensing": {"gyro_bias": 0.0}})
+        load("walk-level", {"sensing": {"gyro_bias": 0.0}})
 
 
 def test_scenarios_without_these_keys_say_nothing_of_them():
-    written = yaml.safe_load(resolve(load("walk", {"sensing": {}})).text)
+    written = yaml.safe_load(resolve(load("walk-level", {"sensing": {}})).text)
     assert set(written["sensing"]) == {"source", "zmp_noise", "com_noise", "force_estimate"}
     assert "motors" not in written
     assert not {"torso_mass", "ground_pitch", "ground_roll"} & set(written["errors"])
@@ -164,14 +164,14 @@ def test_impossible_values_are_refused(wrong):
 
 def test_motors_act_with_the_truth_and_nobody_believes_in_them():
     keys = {"motors.damping": 2.0, "motors.friction_loss": 1.5, "motors.delay": "4 ms", "motors.noise": 0.5}
-    walk = resolve(load("walk", {**keys, "motors.torque_speed": 0.4}))
+    walk = resolve(load("walk-level", {**keys, "motors.torque_speed": 0.4}))
     assert walk.hardware.drives == DriveErrors(delay=0.004, noise=0.5, torque_speed=0.4)
     assert 'damping="2.0" frictionloss="1.5"' in walk.true_robot.mjcf
     assert "frictionloss" not in walk.robot.mjcf
 
 
 def test_motors_that_only_wait_leave_the_robot_as_it_is():
-    walk = resolve(load("walk", {"motors.delay": 0.002}))
+    walk = resolve(load("walk-level", {"motors.delay": 0.002}))
     assert walk.true_robot is walk.robot
 
 
@@ -184,13 +184,13 @@ def test_a_delay_of_less_than_half_a_step_of_the_physics_is_refused():
 @pytest.mark.parametrize("key", ["motors.noise", "errors.ground_pitch"])
 def test_sizes_that_change_nothing_are_refused(key):
     with pytest.raises(ScenarioError, match=f"{key} 1e-300 is too small to change anything"):
-        load("walk", {key: 1e-300})
+        load("walk-level", {key: 1e-300})
 
 
 def test_motors_of_a_pendulum_are_told_to_have_no_effect():
     from surefoot.scenarios.setup.checks.notes import notes
 
-    walk = resolve(load("walk", {"fidelity": "pendulum", "criteria": {"fell": False}, "motors.damping": 1.0}))
+    walk = resolve(load("walk-level", {"fidelity": "pendulum", "criteria": {"fell": False}, "motors.damping": 1.0}))
     assert "motors has no effect on a pendulum" in notes(walk)
 
 

@@ -22,7 +22,7 @@ STEP = 0.01
 
 def parameters_of(body, share=1.0):
     """A walk of a robot with this share of its torques, its ankle, and the parameters that its planner is given."""
-    walk = resolve(surefoot.load("walk"))
+    walk = resolve(surefoot.load("walk-level"))
     walk = replace(walk, described=replace(walk.robot, torque_limit=share * walk.robot.torque_limit))
     posture = start_posture(walk, body)
     leg = leg_inertia(body.model, body.frames, posture, body.leg_joints)

@@ -55,7 +55,7 @@ def test_a_log_needs_no_robot_file_to_be_judged(tmp_path) -> None:
 def test_a_path_that_is_set_starts_from_where_one_is(tmp_path, monkeypatch) -> None:
     files(tmp_path)
     monkeypatch.chdir(tmp_path)
-    assert load("walk", {"robot": "half.yaml"}).robot == str(tmp_path / "half.yaml")
+    assert load("walk-level", {"robot": "half.yaml"}).robot == str(tmp_path / "half.yaml")
 
 
 @pytest.mark.parametrize(
@@ -70,7 +70,7 @@ def test_what_is_wrong_with_the_robot_is_told_at_its_key(tmp_path, monkeypatch, 
     monkeypatch.chdir(tmp_path)
     (tmp_path / "broken.yaml").write_text("name: broken\nmodle: a.urdf\n")
     with pytest.raises(ScenarioError, match=sentence) as refused:
-        load("walk", {"robot": robot})
+        load("walk-level", {"robot": robot})
     assert [problem.startswith("--set robot: ") for problem in refused.value.problems] == [True]
 
 
@@ -78,7 +78,7 @@ def test_an_option_is_told_at_its_own_key(tmp_path, monkeypatch) -> None:
     monkeypatch.chdir(tmp_path)
     files(tmp_path)
     with pytest.raises(ScenarioError, match=r"--set robot_options\.payload_body: unknown body 'xyz'"):
-        load("walk", {"robot": "half.yaml", "robot_options.payload_body": "xyz"})
+        load("walk-level", {"robot": "half.yaml", "robot_options.payload_body": "xyz"})
 
 
 def test_the_schema_takes_names_and_files() -> None:
@@ -105,7 +105,7 @@ def test_facts_are_of_straight_legs_and_not_of_zero_angles(g1) -> None:
 
 @pytest.mark.parametrize("name", ["talos", "g1"])
 def test_a_robot_starts_on_level_soles_with_its_legs_as_links(name) -> None:
-    walk = resolve(load("walk", {"robot": name}))
+    walk = resolve(load("walk-level", {"robot": name}))
     body = body_of(walk.robot)
     q = start_posture(walk, body)
     chain = leg_inertia(body.model, body.frames, q, body.leg_joints).chain
@@ -118,10 +118,10 @@ def test_a_robot_starts_on_level_soles_with_its_legs_as_links(name) -> None:
 
 def test_a_log_says_where_knees_are_straight(g1) -> None:
     """Only where that is not at zero, so that logs of other robots are as they were."""
-    constants = run_constants(resolve(load("walk", {"robot": "g1"})))
+    constants = run_constants(resolve(load("walk-level", {"robot": "g1"})))
     place = g1.joint_names.index(g1.roles.knees[0])
     assert constants.knee_straight == pytest.approx(np.full(2, g1.straight_joint_positions[place]), abs=1e-6)
-    assert "knee_straight" not in run_constants(resolve(load("walk"))).to_metadata()
+    assert "knee_straight" not in run_constants(resolve(load("walk-level"))).to_metadata()
 
 
 def test_every_name_has_facts_fast_enough_to_be_asked_for_twice() -> None:

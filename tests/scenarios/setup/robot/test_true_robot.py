@@ -17,7 +17,7 @@ POINT = ("fidelity=pendulum", "duration=0.1", ALIVE)
 
 
 def walk(*settings):
-    return resolve(load("walk", [ALIVE, *settings]))
+    return resolve(load("walk-level", [ALIVE, *settings]))
 
 
 @pytest.mark.parametrize(
@@ -70,13 +70,13 @@ def test_a_hidden_load_is_as_heavy_as_it_says_beside_other_errors_and_a_known_on
 
 @pytest.mark.parametrize(("setting", "mass"), [("errors.payload={mass: 6}", 106.0), ("errors.mass_scale=1.25", 80.0)])
 def test_the_pendulum_has_the_true_mass(setting, mass, tmp_path):
-    truth = run_scenario(load("walk", [setting, *POINT]), tmp_path).log
+    truth = run_scenario(load("walk-level", [setting, *POINT]), tmp_path).log
     assert read(truth)["/contact"].field("normal_force").sum(axis=1)[0] == pytest.approx(9.81 * mass)
 
 
 def test_what_a_pendulum_does_not_feel_is_told():
     settings = ("sensing={}", "errors.torso_com=[0.01, 0, 0]", "errors.link_mass_noise=0.1", "errors.payload={mass: 6}")
-    told = [note for note in notes(Walk(load("walk", [*settings, *POINT]))) if "no effect" in note]
+    told = [note for note in notes(Walk(load("walk-level", [*settings, *POINT]))) if "no effect" in note]
     assert told == ["errors.torso_com has no effect on a pendulum"]
 
 

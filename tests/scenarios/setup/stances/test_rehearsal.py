@@ -33,7 +33,7 @@ def slowed(walk: Walk, share: float) -> Walk:
 
 @pytest.fixture(scope="module")
 def brisk():
-    return legs_of(resolve(surefoot.load("walk", QUICK)))
+    return legs_of(resolve(surefoot.load("walk-level", QUICK)))
 
 
 def test_a_joint_that_would_be_too_fast_is_named_with_the_speeds(brisk):
@@ -68,7 +68,7 @@ def test_slow_walks_on_level_ground_are_not_gone_through(brisk, monkeypatch: pyt
 
 
 def test_pitch_joints_are_found_by_their_axes():
-    robot = resolve(surefoot.load("walk")).robot
+    robot = resolve(surefoot.load("walk-level")).robot
     for foot, leg in zip(Foot, (robot.roles.left_leg, robot.roles.right_leg), strict=True):
         names = pitch_joints(robot, foot)
         assert names[1] == robot.roles.knees[foot]
@@ -77,7 +77,7 @@ def test_pitch_joints_are_found_by_their_axes():
 
 
 def test_a_shank_that_would_meet_the_riser_ahead_is_refused(monkeypatch: pytest.MonkeyPatch):
-    walk, feet, leg = legs_of(resolve(surefoot.load("walk", {**QUICK, **STAIRS, "gait.single_support": 0.6})))
+    walk, feet, leg = legs_of(resolve(surefoot.load("walk-level", {**QUICK, **STAIRS, "gait.single_support": 0.6})))
     check_legs(walk, feet, leg)
     outline = shank_outline(walk.robot, Foot.LEFT)
     assert np.ptp(outline[:, 0]) < 0.2 < np.ptp(outline[:, 1])
@@ -88,7 +88,7 @@ def test_a_shank_that_would_meet_the_riser_ahead_is_refused(monkeypatch: pytest.
 
 
 def test_an_edge_is_where_it_is_wherever_it_is_seen_from():
-    walk = resolve(surefoot.load("walk", {**QUICK, **STAIRS}))
+    walk = resolve(surefoot.load("walk-level", {**QUICK, **STAIRS}))
     ahead = np.array([1.0, 0.0])
     seen = [x + _edges(walk, np.array([x, 0.1, 0.0]), ahead)[0, 0] for x in np.linspace(0.0, 0.005, 11)]
     assert np.ptp(seen) < 1e-4
@@ -96,7 +96,7 @@ def test_an_edge_is_where_it_is_wherever_it_is_seen_from():
 
 def test_a_shank_so_near_to_the_riser_that_it_may_meet_it_is_refused(monkeypatch: pytest.MonkeyPatch):
     """Two millimetres are too few to be sure of."""
-    walk, feet, leg = legs_of(resolve(surefoot.load("walk", {**QUICK, **STAIRS, "gait.single_support": 0.6})))
+    walk, feet, leg = legs_of(resolve(surefoot.load("walk-level", {**QUICK, **STAIRS, "gait.single_support": 0.6})))
     outline = shank_outline(walk.robot, Foot.LEFT)
 
     def said(ahead: float) -> str:

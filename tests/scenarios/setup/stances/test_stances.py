@@ -59,7 +59,7 @@ def test_the_com_at_the_ends_of_double_support_is_that_of_the_periodic_pendulum(
 
 
 def test_the_reference_robot_reaches_its_catalogue() -> None:
-    for name in ("walk", "stairs-tall", "stairs-down", "walk-sideways", "diagonal-walk"):
+    for name in ("walk-level", "stairs-tall", "stairs-down", "walk-sideways", "diagonal-walk"):
         walk = resolve(surefoot.load(name))
         assert len(list(_stances(walk))) > 2
         walked_by(walk, walk.robot)
@@ -71,7 +71,7 @@ def test_an_ankle_without_the_range_for_stairs_is_named_with_the_footstep() -> N
     with pytest.raises(ParameterError, match=r"footstep \d+ .*ankle_pitch.*lower stairs") as refusal:
         walked_by(walk, stiff)
     assert refusal.value.key == ("terrain", "riser")
-    level = resolve(surefoot.load("walk"))
+    level = resolve(surefoot.load("walk-level"))
     walked_by(level, stiff)
 
 
@@ -82,7 +82,7 @@ def test_legs_that_cannot_spread_are_refused_a_wide_step() -> None:
 
 
 def test_alike_stances_are_looked_at_once() -> None:
-    few, many = (len(list(_stances(resolve(surefoot.load("walk", {"gait.steps": n}))))) for n in (20, 500))
+    few, many = (len(list(_stances(resolve(surefoot.load("walk-level", {"gait.steps": n}))))) for n in (20, 500))
     assert few == many
 
 
@@ -101,11 +101,11 @@ def test_a_knee_too_weak_for_stairs_is_named_with_its_torque_and_the_footstep() 
     ) as refusal:
         walked_by(walk, weak)
     assert refusal.value.key == ("terrain", "riser")
-    walked_by(resolve(surefoot.load("walk")), weak)
+    walked_by(resolve(surefoot.load("walk-level")), weak)
 
 
 def test_the_foot_that_stands_bears_at_a_touchdown_and_the_other_at_the_lift_off() -> None:
-    for stance in _stances(resolve(surefoot.load("walk"))):
+    for stance in _stances(resolve(surefoot.load("walk-level"))):
         ahead = int(np.argmax(stance.soles[:, 0]))
         if np.ptp(stance.soles[:, 0]) > 0.01:
             assert stance.bearing == (1 - ahead if stance.landing else ahead)

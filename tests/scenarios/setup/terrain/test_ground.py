@@ -59,7 +59,7 @@ UNEVEN = "errors.ground_noise=0.01"
 ALIVE = "criteria={fell: false}"
 
 
-@pytest.mark.parametrize("name", ["walk", "diagonal-walk", "walk-curve", "walk-sideways", "walk-backward"])
+@pytest.mark.parametrize("name", ["walk-level", "diagonal-walk", "walk-curve", "walk-sideways", "walk-backward"])
 def test_level_ground_is_uneven_in_truth_alone_and_under_every_footstep(name):
     walk = Walk(load_scenario(name, [UNEVEN]))
     assert walk.ground.terrain == flat()
@@ -76,7 +76,7 @@ def test_uneven_ground_is_that_of_the_seed_and_bears_hidden_steps_as_level_groun
     points = np.random.default_rng(0).uniform(-1.0, 1.0, (50, 2))
     step = "errors.ground=[{x: 0.5, length: 0.2, height: 0.03}]"
     one, same, other, stepped = (
-        Walk(load_scenario("walk", [UNEVEN, *more])).ground.true_terrain.heights(points)
+        Walk(load_scenario("walk-level", [UNEVEN, *more])).ground.true_terrain.heights(points)
         for more in (["seed=1"], ["seed=1", "gait.step_length=0.2"], ["seed=2"], ["seed=1", step])
     )
     np.testing.assert_array_equal(one, same)
@@ -88,12 +88,12 @@ def test_uneven_ground_is_that_of_the_seed_and_bears_hidden_steps_as_level_groun
 
 @pytest.mark.parametrize("level", ["errors.ground_noise=0", "errors.ground_noise=null", "seed=3"])
 def test_ground_without_noise_is_what_is_believed(level):
-    walk = Walk(load_scenario("walk", [level]))
+    walk = Walk(load_scenario("walk-level", [level]))
     assert walk.ground.true_terrain is walk.ground.terrain
 
 
 def test_a_log_says_where_the_plane_lies_only_where_it_lies_lower():
-    uneven, level = (run_constants(resolve(load_scenario("walk", more))) for more in ([UNEVEN], []))
+    uneven, level = (run_constants(resolve(load_scenario("walk-level", more))) for more in ([UNEVEN], []))
     assert "plane" not in level.to_metadata()
     for constants in (uneven, level):
         assert RunConstants.from_metadata({RECORD: constants.to_metadata()}, "log") == constants
@@ -104,7 +104,7 @@ def test_a_log_says_where_the_plane_lies_only_where_it_lies_lower():
     ("settings", "message"),
     [
         (
-            ["walk", "gait.steps=400"],
+            ["walk-level", "gait.steps=400"],
             "errors.ground_noise under 400 steps needs more than 1000 tiles; take fewer steps",
         ),
         (["stair-climbing"], "errors.ground_noise on terrain.kind stairs; use terrain.height_noise"),
@@ -118,7 +118,7 @@ def test_ground_that_cannot_be_uneven_is_refused_with_the_key_that_is_right(sett
 
 
 def test_a_pendulum_is_told_that_it_does_not_feel_the_ground():
-    walk = Walk(load_scenario("walk", ["fidelity=pendulum", UNEVEN, ALIVE]))
+    walk = Walk(load_scenario("walk-level", ["fidelity=pendulum", UNEVEN, ALIVE]))
     assert "errors.ground_noise has no effect on a pendulum" in notes(walk)
     assert walk.ground.true_terrain is walk.ground.terrain
 

@@ -22,17 +22,17 @@ def frictions(walk):
 
 
 def test_a_box_may_have_friction_of_its_own():
-    assert frictions(resolve(load("walk", [PATCH, "terrain.friction=0.7"]))) == {
+    assert frictions(resolve(load("walk-level", [PATCH, "terrain.friction=0.7"]))) == {
         "ground": 0.7, "terrain_0": 0.3, "terrain_1": 0.7
     }  # fmt: skip
 
 
 def test_the_controller_believes_in_the_grounds_friction():
-    assert resolve(load("walk", [PATCH])).friction == resolve(load("walk")).friction
+    assert resolve(load("walk-level", [PATCH])).friction == resolve(load("walk-level")).friction
 
 
 def test_ground_is_believed_level_and_is_tilted_where_the_walk_goes():
-    walk = resolve(load("walk", ["errors.ground_pitch=2 deg", "errors.ground_roll=-1 deg"]))
+    walk = resolve(load("walk-level", ["errors.ground_pitch=2 deg", "errors.ground_roll=-1 deg"]))
     assert not walk.ground.terrain.boxes
     true, stance = walk.ground.true_terrain, walk.ground.stance.position
     assert [true.height(*place[:2]) for place in stance] == pytest.approx([0.0, 0.0], abs=1e-12)
@@ -41,7 +41,7 @@ def test_ground_is_believed_level_and_is_tilted_where_the_walk_goes():
 
 
 def test_the_level_strip_goes_with_the_robot():
-    small = resolve(load("walk", {"robot": "g1", "sized_for": "humanoid100", "errors.ground_pitch": 0.02}))
+    small = resolve(load("walk-level", {"robot": "g1", "sized_for": "humanoid100", "errors.ground_pitch": 0.02}))
     strip, ahead, _ = small.ground.true_terrain.boxes
     assert strip.half_size[0] == pytest.approx(0.15 * small.size.length)
     assert ahead.friction is None
@@ -49,7 +49,7 @@ def test_the_level_strip_goes_with_the_robot():
 
 @pytest.mark.parametrize("nothing", ["errors.ground_pitch=0", "errors.ground_roll=0"])
 def test_no_tilt_is_the_ground_as_believed(nothing):
-    ground = resolve(load("walk", [nothing])).ground
+    ground = resolve(load("walk-level", [nothing])).ground
     assert ground.true_terrain is ground.terrain
 
 
@@ -62,6 +62,6 @@ def test_no_tilt_is_the_ground_as_believed(nothing):
     ],
 )
 def test_tilt_beside_other_ground_is_refused(others, words):
-    name = "stairs-up" if "stairs" in others[0] else "walk"
+    name = "stairs-up" if "stairs" in others[0] else "walk-level"
     with pytest.raises(ScenarioError, match=words):
         load(name, ["errors.ground_pitch=0.03", *others])

@@ -108,7 +108,7 @@ def test_a_name_of_two_packages(broken, site, at_hand):
 
 def test_a_class_where_an_object_is_wanted(documented, at_hand):
     documented.register("surefoot.terrains", moat="my_package.ground:Ditch")
-    answer = at_hand("run", "walk-level", "--set", "terrain.kind=moat", sites=[documented])
+    answer = at_hand("run", "walk", "--set", "terrain.kind=moat", sites=[documented])
     refused(answer, "'moat' of package my-package in surefoot.terrains is the class Ditch; register an instance of it")
 
 
@@ -119,7 +119,7 @@ def test_what_is_broken_and_not_asked_for_disturbs_nobody(broken, at_hand, tmp_p
     broken.register("surefoot.metrics", fell="broken:NUMBER")
     keys = ("fidelity=pendulum", "gait.steps=2", "duration=0.2", "criteria={fell: false}")
     settings = [word for key in keys for word in ("--set", key)]
-    answer = at_hand("run", "walk-level", *settings, "--json", "--out", str(tmp_path), sites=[broken])
+    answer = at_hand("run", "walk", *settings, "--json", "--out", str(tmp_path), sites=[broken])
     assert answer.code == 0, answer.err
     found = json.loads(answer.out)
     assert found["verdict"] == "pass"

@@ -9,7 +9,7 @@ import pytest
 
 pytestmark = pytest.mark.unit
 
-OF_THE_FLOORS = ("bench", "drive", "new", "paper", "policy", "robot", "scenario", "serve", "sweep", "walk-level")
+OF_THE_FLOORS = ("bench", "drive", "new", "paper", "policy", "robot", "scenario", "serve", "sweep", "walk")
 LAST_OF_THE_CORE = "history"
 
 MODULE = '''
@@ -183,7 +183,7 @@ def test_files_that_cannot_be_had_are_told_beside_the_others(at_hand, site, body
 @pytest.mark.parametrize(
     ("words", "module", "extra"),
     [
-        (("drive", "walk-level"), "viser", "replay"),
+        (("drive", "walk"), "viser", "replay"),
         (("sweep", "push-map-pendulum", "--cluster", "tcp://127.0.0.1:1"), "distributed", "cluster"),
     ],
 )

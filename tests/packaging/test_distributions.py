@@ -47,7 +47,7 @@ def test_the_wheel_holds_the_package_whole_and_nothing_beside_it(distributions):
         "scenarios/show/kit/page.css",
         "studies/paper/claims.yaml",
         "studies/paper/sections.yaml",
-        "scenarios/catalogue/walk-level.yaml",
+        "scenarios/catalogue/walk.yaml",
     )
     assert {f"surefoot/{name}" for name in data} <= set(packed)
 
@@ -113,7 +113,7 @@ def test_a_script_beside_namesakes_of_our_parts_gets_both(tmp_path, unpacked):
         "from surefoot.models.registry import describe\nfrom surefoot.sim.world import World\n"
         "from surefoot.wbc.controller import WholeBodyController\n"
         "from surefoot.scenarios.setup.load import load\n"
-        "load('walk-level')\nprint(surefoot.__file__, World.__module__)\n"
+        "load('walk')\nprint(surefoot.__file__, World.__module__)\n"
     )
     done = run(tmp_path, unpacked, "script.py")
     assert done.returncode == 0, done.stderr

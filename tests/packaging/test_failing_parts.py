@@ -199,7 +199,7 @@ def hop(site):
 
 def run(at_hand, tmp_path, made, *settings):
     words = [word for setting in settings for word in ("--set", setting)]
-    return at_hand("run", "walk-level", *words, "--json", "--out", str(tmp_path / "runs"), sites=[made])
+    return at_hand("run", "walk", *words, "--json", "--out", str(tmp_path / "runs"), sites=[made])
 
 
 RAISED = {

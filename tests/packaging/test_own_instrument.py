@@ -21,7 +21,7 @@ def log_of(documented, *words):
 
 @pytest.mark.unit
 @pytest.mark.parametrize(
-    "words", [("walk-level",), ("walk-level", *G1), ("stand", "--policy", "held")], ids=["humanoid100", "g1", "policy"]
+    "words", [("walk",), ("walk", *G1), ("stand", "--policy", "held")], ids=["humanoid100", "g1", "policy"]
 )
 def test_it_is_read_beside_whatever_controls_and_its_log_runs_again(documented, words):
     path, log = log_of(documented, *words, *SPEED, *BRIEF)

@@ -16,7 +16,7 @@ FINER = ("--set", "plant.name=finer", "--set", "gait.steps=2", "--set", "sensing
     "robot", [pytest.param((), id="humanoid100", marks=pytest.mark.long), pytest.param(G1, id="g1")]
 )
 def test_a_run_with_it_passes_and_its_log_walks_again(documented, robot):
-    done = documented.run("run", "walk-level", *FINER, *robot, *LOW, "--json")
+    done = documented.run("run", "walk", *FINER, *robot, *LOW, "--json")
     assert done.returncode == 0, (done.stdout, done.stderr)
     found = json.loads(done.stdout)
     path = documented.folder.parent / found["log"]
@@ -31,7 +31,7 @@ def test_a_run_with_it_passes_and_its_log_walks_again(documented, robot):
 def test_a_campaign_with_it_walks_in_other_processes(documented, tmp_path):
     spec = tmp_path / "spec.yaml"
     spec.write_text(
-        "about: two plants\nscenario: walk-level\n"
+        "about: two plants\nscenario: walk\n"
         "set: {plant.name: finer, sensing.source: truth, gait.steps: 1, duration: 0.5, criteria: {fell: false}}\n"
         "grid:\n  plant:\n    coarse: {plant.options.refined: 1}\n    fine: {plant.options.refined: 3}\n"
     )
@@ -51,7 +51,7 @@ REFUSED = {
 @pytest.mark.parametrize("settings", REFUSED, ids=" ".join)
 def test_what_it_cannot_do_is_refused_in_one_sentence(documented, at_hand, settings):
     words = [word for setting in settings for word in ("--set", setting)]
-    code, out, err = at_hand("run", "walk-level", *words, sites=[documented])
+    code, out, err = at_hand("run", "walk", *words, sites=[documented])
     assert (code, out) == (2, ""), err
     assert "Traceback" not in err
     assert err.count("\n") == 1
@@ -61,6 +61,6 @@ def test_what_it_cannot_do_is_refused_in_one_sentence(documented, at_hand, setti
 @pytest.mark.unit
 def test_on_a_pendulum_it_has_no_effect(at_hand):
     _, out, err = at_hand(
-        "run", "walk-level", "--set", "plant.name=mujoco", "--set", "fidelity=pendulum", "--set", "duration=0.1"
+        "run", "walk", "--set", "plant.name=mujoco", "--set", "fidelity=pendulum", "--set", "duration=0.1"
     )
     assert "plant has no effect on a pendulum" in out + err

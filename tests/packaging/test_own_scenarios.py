@@ -72,8 +72,8 @@ def test_files_are_read_with_the_limits_of_any_other(brought, at_hand):
 
 def test_a_name_of_ours_means_ours_and_the_clash_is_said(brought, at_hand):
     brought(walk="gait: {steps: 1}\n", slow=SLOW)
-    assert load("walk-level").gait.steps == 20
-    said = "my_package_others:walk.yaml: 'walk-level' is a scenario of surefoot's own; give the file another name\n"
+    assert load("walk").gait.steps == 20
+    said = "my_package_others:walk.yaml: 'walk' is a scenario of surefoot's own; give the file another name\n"
     answer = at_hand("list")
     assert (answer.code, answer.err) == (0, said)
     assert answer.out.count("scenario   walk ") == 1
@@ -115,7 +115,7 @@ def test_packages_that_cannot_be_looked_at_are_named_with_what_was_not_found(sit
         "scenarios 'c': broken.alone is no package; name one in which YAML files lie",
     ]
     assert at_hand("list").err.splitlines() == rest
-    assert at_hand("show", "walk-level").err == ""
+    assert at_hand("show", "walk").err == ""
 
 
 def test_nobody_is_asked_for_a_name_of_ours_or_a_file(brought, monkeypatch, tmp_path):
@@ -123,5 +123,5 @@ def test_nobody_is_asked_for_a_name_of_ours_or_a_file(brought, monkeypatch, tmp_
     made.write("my_package_others/__init__.py", "raise RuntimeError\n")
     monkeypatch.setattr(catalogue, "_others", lambda: pytest.fail("packages were looked at"))
     (tmp_path / "mine.yaml").write_text(SLOW)
-    assert load("walk-level").name == "walk-level"
+    assert load("walk").name == "walk"
     assert load(tmp_path / "mine.yaml").name == "mine"

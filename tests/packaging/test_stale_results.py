@@ -51,9 +51,9 @@ def test_any_file_of_a_package_that_brings_a_part_is_in_it(mine, now, kind, file
 @pytest.mark.unit
 def test_what_no_run_uses_is_not_in_it_and_metrics_are_in_every_run(mine, now):
     mine.register("surefoot.tasks", part="my_package.parts:X")
-    assert now({"walk-level"}, mine) == {}
+    assert now({"walk"}, mine) == {}
     mine.register("surefoot.metrics", sway="my_package.parts:X")
-    assert list(now({"walk-level"})) == ["my-package"]
+    assert list(now({"walk"})) == ["my-package"]
 
 
 @pytest.mark.unit

@@ -47,7 +47,7 @@ FAULTS = {
     'KINDS.add("mine", TerrainKind())': 'KINDS.add("mine", TerrainKind)',
     'TASKS.add("hand", Hand)': 'TASKS.add("hand", Believing)',
     "kind: TerrainKind": "kind: Task",
-    'load("walk-level"': "load(4",
+    'load("walk"': "load(4",
     "steps: int": "steps: str",
     "tasks=(hand,)": "tasks=(whole,)",
     "planner=profile, parts": 'planner="mine", parts',

@@ -98,7 +98,7 @@ register(sway)
 KINDS.add("mine", TerrainKind())
 TASKS.add("hand", Hand)
 kind: TerrainKind = KINDS["mine"]
-scenario = surefoot.load("walk-level", {"gait.steps": 4})
+scenario = surefoot.load("walk", {"gait.steps": 4})
 steps: int = scenario.gait.steps
 parts = surefoot.Parts(tasks=(hand,), estimator=Believing, plant=Still)
 result = surefoot.run(scenario, seed=1, out="runs", planner=profile, parts=parts)

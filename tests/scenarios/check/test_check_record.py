@@ -91,7 +91,7 @@ def test_a_better_run_is_a_warning_and_a_scenario_of_the_catalogue_has_no_file(h
     from surefoot.scenarios.check.check import Case, Checked
     from surefoot.scenarios.setup.load import load
 
-    case = Case("walk-level", load("walk-level"), here)
+    case = Case("walk", load("walk"), here)
     (line,) = annotations([Checked(case, "better", ("100 % of it",)), Checked(case, "same")])
     assert line == "::warning title=walk%3A better::100 %25 of it"
 

@@ -45,5 +45,5 @@ def test_a_metric_of_another_package_is_in_it():
 
 
 def test_a_scenario_to_start_from_is_the_same_kept():
-    assert starter("walk-level") == starter("walk-level")
-    assert "# footsteps to take" in starter("walk-level")
+    assert starter("walk") == starter("walk")
+    assert "# footsteps to take" in starter("walk")

@@ -90,3 +90,11 @@ def test_ramps_grow_evenly_to_the_step_length_and_back():
 def test_fast_walks_have_a_ramp_and_slow_ones_none():
     assert speed_gait(1.0, LEG, ABOVE).ramp == 0
     assert speed_gait(0.5 * math.sqrt(GRAVITY * LEG), LEG, ABOVE).ramp >= 1
+
+
+def test_feet_roll_off_as_far_as_the_time_of_double_support_allows():
+    slow, usual, fast = (speed_gait(speed, LEG, ABOVE) for speed in (0.2, 0.7, 1.5))
+    assert slow.heel_off < usual.heel_off == 0.8 > fast.heel_off
+    assert fast.heel_off / fast.double_support == pytest.approx(2.15 * math.sqrt(GRAVITY / LEG))
+    longer = speed_gait(1.5, LEG, ABOVE, double_support=1.3 * fast.double_support)
+    assert longer.heel_off > fast.heel_off

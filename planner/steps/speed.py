@@ -18,10 +18,10 @@ _DOUBLE = 0.24
 _HEEL_OFF, _HEEL_STRIKE = 2.2, 0.95
 """Pitch of a foot at toe-off over step length per leg length, and at heel strike over its square [rad]."""
 
-_MOST_OFF, _MOST_STRIKE = 0.8, 0.6
+_MOST_OFF, _MOST_STRIKE = 0.7, 0.6
 """Greatest of both pitches, as far as ankles go at all [rad]."""
 
-_ROLLING = 2.15
+_ROLLING = 1.8
 """Greatest pitch at toe-off over double support in the leg's time √(l / g) [rad].
 
 A heel that leaves the ground faster throws the body: at 1.4 m/s the other foot landed with 2.3 body weights."""

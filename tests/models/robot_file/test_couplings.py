@@ -363,7 +363,7 @@ def test_without_the_equality_the_log_tells_that_nothing_holds(tmp_path):
     def lost(walk):
         return Lost(walk.true_robot, walk.ground.true_terrain, walk.rates.physics, (), walk.size)
 
-    walk = surefoot.load("walk", {"robot": str(tmp_path / "biped.yaml")})
+    walk = surefoot.load("walk", {"robot": str(tmp_path / "biped.yaml"), "sensing.source": "truth"})
     verdict = surefoot.run(walk, out=tmp_path / "lost", parts=surefoot.Parts(plant=lost)).verdict
     assert robot.couplings and not verdict.passed
     assert verdict["coupling_error"] > 0.1

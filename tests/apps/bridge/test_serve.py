@@ -15,8 +15,8 @@ from surefoot.apps.bridge.remote import Remote
 from surefoot.apps.bridge.serve import MOST_LATE, Server
 from surefoot.apps.bridge.walk import walk_on
 from surefoot.joints import JointCommand
-from surefoot.scenarios.judge.verdict import judge
-from surefoot.scenarios.run import run
+from surefoot.scenarios.judge.metric import metric
+from surefoot.scenarios.judge.metrics import METRICS, register
 from surefoot.scenarios.setup.walk import resolve
 
 pytestmark = pytest.mark.unit
@@ -77,7 +77,7 @@ def test_an_end_after_a_command_that_nobody_may_obey_is_no_end_in_order(walk):
     assert "a command whose numbers are not finite" in end.said
 
 
-def test_a_plant_is_told_that_the_walk_is_over_before_the_log_is_judged(monkeypatch, tmp_path):
+def test_a_plant_is_told_that_the_walk_is_over_before_the_log_is_judged(tmp_path):
     """Its joints would be damped meanwhile by the wall clock."""
     scenario = surefoot.load("stand", {"duration": 0.05, "criteria": {}})
     server = Server(Host(resolve(scenario), Care()), "127.0.0.1", 0, lambda said: None)
@@ -85,13 +85,18 @@ def test_a_plant_is_told_that_the_walk_is_over_before_the_log_is_judged(monkeypa
     serving = threading.Thread(target=lambda: ends.append(server.run(lambda: False)))
     serving.start()
 
-    def judged(log):
+    @metric()
+    def still_served(run):
+        """Truth of whether the plant is still served while the log is judged."""
         serving.join(PATIENCE)
-        return judge(log)
+        return serving.is_alive()
 
-    monkeypatch.setattr(run, "judge", judged)
-    remote = Remote(server.address, {})
-    assert walk_on(remote, scenario, tmp_path).verdict.passed
+    register(still_served)
+    try:
+        verdict = walk_on(Remote(server.address, {}), scenario, tmp_path).verdict
+    finally:
+        METRICS.discard("still_served")
+    assert verdict.passed and verdict["still_served"] is False
     (end,) = ends
     assert (end.in_order, end.said, end.time) == (True, "the walk is over", 0.05)
 

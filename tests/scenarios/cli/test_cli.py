@@ -22,7 +22,8 @@ from surefoot.scenarios.cli.program import app
 from surefoot.scenarios.cli.starter import commented, starter
 from surefoot.scenarios.errors import SetupError
 from surefoot.scenarios.file.schema import Scenario
-from surefoot.scenarios.judge.metrics import OWN
+from surefoot.scenarios.judge.metric import metric
+from surefoot.scenarios.judge.metrics import METRICS, OWN, register
 from surefoot.scenarios.log import LogWriter, read
 from surefoot.scenarios.record.foxglove.views import EventLog
 from surefoot.scenarios.run import interrupts, run
@@ -470,7 +471,7 @@ def test_names_that_are_no_text(surefoot, scenario, tmp_path):
 @pytest.mark.usefixtures("heeding")
 @pytest.mark.parametrize(("number", "code"), [(signal.SIGTERM, 143), (signal.SIGHUP, 129), (signal.SIGINT, 130)])
 @pytest.mark.parametrize("moment", ["set-up", "loop", "judging"])
-def test_every_signal_ends_a_run_in_order(surefoot, scenario, tmp_path, motion, monkeypatch, number, code, moment):
+def test_every_signal_ends_a_run_in_order(surefoot, scenario, tmp_path, motion, number, code, moment):
     def loop(walk, writer, on_progress):
         if moment == "set-up":
             signal.raise_signal(number)
@@ -479,14 +480,18 @@ def test_every_signal_ends_a_run_in_order(surefoot, scenario, tmp_path, motion, 
             signal.raise_signal(number)
         return end
 
-    def judge(log):
+    @metric()
+    def signalled(run):
+        """Truth of whether the signal came while the log was judged."""
         if moment == "judging":
             signal.raise_signal(number)
-        return judged(log)
+        return moment == "judging"
 
-    judged = run.judge
-    monkeypatch.setattr(run, "judge", judge)
-    ended, out, err = surefoot("run", scenario, "--out", tmp_path, loop=loop)
+    register(signalled)
+    try:
+        ended, out, err = surefoot("run", scenario, "--out", tmp_path, loop=loop)
+    finally:
+        METRICS.discard("signalled")
     interrupts._received.clear()
     assert (ended, err.count("Traceback")) == (code, 0)
     log = read(tmp_path / "two-steps-0" / "log.mcap")

@@ -20,7 +20,7 @@ TIME = "time_ns"
 
 @dataclass(frozen=True, slots=True)
 class Memory:
-    """How much of a log is held at once.
+    """Bounds on what is held of a log at once.
 
     Attributes:
         held: most bytes of one topic, and of all columns together: by default a minute of a walk [bytes].

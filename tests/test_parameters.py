@@ -1,4 +1,4 @@
-"""What belongs together is given as one value: functions that take more than seven arguments by position are few."""
+"""Functions that take more than seven arguments by position are few: a value holds what belongs together."""
 
 import ast
 from pathlib import Path

@@ -85,7 +85,7 @@ def rows(
 
 
 def longest_first(looked: Iterable[Looked]) -> list[Looked]:
-    """Those that are not refused, in the order in which they are run."""
+    """Scenarios that are not refused, in the order in which they are run."""
     return sorted((one for one in looked if one.scenario is not None), key=lambda one: -one.row.duration)
 
 

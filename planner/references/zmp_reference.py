@@ -59,10 +59,10 @@ def support_table(
 ) -> Array:
     """Tabulate the support points (see `PhaseSamples`) in the plan frame, that of the stance foot as planned.
 
-    The box of a point is the largest axis-aligned one, of the foot's proportions, inscribed in the foot turned by its
-    heading in the plan frame; without turning it is the foot itself. Between two feet it is as much wider as both
-    together are. A convex combination of two such boxes lies in the convex hull of the two feet, so the box that moves
-    with the reference is legal throughout double support.
+    The box of a point is the largest axis-aligned one, of the foot's proportions, that lies in the foot at its heading
+    in the plan frame. Without turning it is the foot itself. Between two feet it is as much wider as both together are.
+    A convex combination of two such boxes lies in the convex hull of the two feet. So the box that moves with the
+    reference is legal throughout double support.
 
     Args:
         schedule: the steps in sight.

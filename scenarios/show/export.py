@@ -39,7 +39,7 @@ class Selection:
 
     @property
     def memory(self) -> Memory:
-        """How much of the log is held at once."""
+        """Bounds on what is held of the log at once."""
         return self.log.memory
 
     def __iter__(self) -> Iterator[ChannelData]:
@@ -62,7 +62,7 @@ class Joined:
 
     @property
     def memory(self) -> Memory:
-        """How much of the log is held at once."""
+        """Bounds on what is held of the log at once."""
         return self.selections[0].memory
 
     @property

@@ -62,7 +62,7 @@ def test_joint_speeds_are_those_of_the_walk(brisk):
 
 
 def test_slow_walks_on_level_ground_are_not_gone_through(brisk):
-    """Of feet that nobody knows no walk could be gone through."""
+    """No walk could be gone through on feet that nobody knows."""
     walk, _, leg = brisk
     check_legs(walk, None, leg)
     climbing = resolve(surefoot.load("walk", {**QUICK, **STAIRS}))

@@ -12,7 +12,7 @@ table of before, and the exit code is 1 where one has moved.
 import argparse
 import csv
 import re
-from collections.abc import Iterable, Iterator, Mapping, Sequence
+from collections.abc import Callable, Iterable, Iterator, Mapping, Sequence
 from dataclasses import dataclass, replace
 from pathlib import Path
 
@@ -41,8 +41,8 @@ DATA = "package://example-robot-data/robots"
 FOURIER = "package://fourier_robot_descriptions/assets/urdf"
 
 
-_PROPOSAL = re.compile(r"take for example ([^;(]+)")
-_SETTING = re.compile(r"--set '?(\w+\.\w+)=(-?[\d.]+|\[[^\]]*\])")
+PROPOSAL = re.compile(r"take for example ([^;(]+)")
+SETTING = re.compile(r"--set '?(\w+\.\w+)=(-?[\d.]+|\[[^\]]*\])")
 """Proposal of a refusal, with a key and its value."""
 
 
@@ -179,12 +179,12 @@ def with_lines(text: str, added: Iterable[str]) -> str:
 def _moved(row: Row, robot: Mapping[str, str], out: Path) -> Row:
     """The row with what it did; where `walk` is refused, all is done with the gait that the refusal proposes."""
     stood = _run("stand", robot, out)
-    walked, gait = _followed("walk-level", robot, out)
+    walked, gait = followed("walk-level", robot, out)
     settings = tuple(f"{key}={value}" for key, value in gait.items())
     row = replace(row, stands=stood.stayed, walks=walked.stayed, gait=settings, missed=walked.missed)
     if not walked.stayed:
         return replace(row, why=(*row.why, *stood.refused, *walked.refused))
-    turned, _ = _followed("walk-turn", robot, out)
+    turned, _ = followed("walk-turn", robot, out)
     survived, why = 0, [*row.why, *turned.refused]
     for side in SIDES:
         push = f"[{{step: 5, phase: single, fraction: 0.5, impulse: {IMPULSE}, direction: {side} deg}}]"
@@ -195,7 +195,7 @@ def _moved(row: Row, robot: Mapping[str, str], out: Path) -> Row:
 
 
 @dataclass(frozen=True, slots=True)
-class _Walked:
+class Walked:
     """A run.
 
     Attributes:
@@ -209,27 +209,31 @@ class _Walked:
     refused: tuple[str, ...] = ()
 
 
-def _followed(name: str, robot: Mapping[str, str], out: Path) -> tuple[_Walked, dict[str, str]]:
-    """A run, or if it is refused that with what the refusals propose, and these settings."""
-    settings: dict[str, str] = {}
-    while True:
-        walked = _run(name, {**robot, **settings}, out)
-        proposed = dict(_SETTING.findall(" ".join(_PROPOSAL.findall(" ".join(walked.refused)))))
-        if not proposed.keys() - settings.keys():
-            return walked, settings
-        settings |= proposed
-
-
-def _run(name: str, settings: Mapping[str, str], out: Path) -> _Walked:
+def _run(name: str, settings: Mapping[str, str], out: Path) -> Walked:
     try:
         result = run_scenario(
             load(name, ["sensing.source=truth", *(f"{key}={value}" for key, value in settings.items())]), out / "logs"
         )
     except (ScenarioError, SetupError, LogError) as refusal:
-        return _Walked(refused=tuple(str(refusal).splitlines()))
+        return Walked(refused=tuple(str(refusal).splitlines()))
     metrics = result.verdict.metrics
     stayed = not metrics["fell"] and metrics["steps_taken"] == metrics["steps_planned"]
-    return _Walked(stayed, tuple(result.verdict.reasons))
+    return Walked(stayed, tuple(result.verdict.reasons))
+
+
+Run = Callable[[str, Mapping[str, str], Path], Walked]
+"""Runs a scenario with settings, and keeps its log in a folder."""
+
+
+def followed(name: str, robot: Mapping[str, str], out: Path, run: Run = _run) -> tuple[Walked, dict[str, str]]:
+    """A run, or if it is refused that with what the refusals propose, and these settings."""
+    settings: dict[str, str] = {}
+    while True:
+        walked = run(name, {**robot, **settings}, out)
+        proposed = dict(SETTING.findall(" ".join(PROPOSAL.findall(" ".join(walked.refused)))))
+        if not proposed.keys() - settings.keys():
+            return walked, settings
+        settings |= proposed
 
 
 def _lost(model: Model, place: str, out: Path, why: str) -> Row:
@@ -295,7 +299,7 @@ def _remarks(row: Row) -> Iterator[str]:
     yield from row.why
 
 
-def main() -> None:
+def main(arguments: Sequence[str] | None = None, models: Sequence[Model] = MODELS) -> None:
     parser = argparse.ArgumentParser(description=__doc__, formatter_class=argparse.RawDescriptionHelpFormatter)
     parser.add_argument("folders", nargs="*", type=Path, metavar="FOLDER", help="with models that no package brings")
     parser.add_argument("--only", action="append", metavar="NAME", help="of the robots this one alone; repeatable")
@@ -303,8 +307,8 @@ def main() -> None:
     parser.add_argument("--out", type=Path, default=Path("runs/robots"), help="directory of robot files and logs")
     parser.add_argument("--csv", type=Path, help="also write the table to this file, as docs/results keeps it")
     parser.add_argument("--against", type=Path, metavar="FILE", help="a table of before, as --csv writes it")
-    given = parser.parse_args()
-    chosen = [model for model in MODELS if not given.only or model.name in given.only]
+    given = parser.parse_args(arguments)
+    chosen = [model for model in models if not given.only or model.name in given.only]
     places = {model.name: found(model, given.folders) for model in chosen}
     for name in (name for name, place in places.items() if place is None):
         print(f"{name}: in none of the folders")

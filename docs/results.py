@@ -149,7 +149,7 @@ def _environment() -> dict[str, str]:
     return {**os.environ, "PATH": f"{Path(sys.executable).parent}{os.pathsep}{os.environ['PATH']}"}
 
 
-def make_all(chosen: Iterable[Result], path: Path = KEPT, root: Path = ROOT) -> int:
+def make_all(chosen: Iterable[Result], path: Path = KEPT, root: Path = ROOT, after: Iterable[str] = AFTER) -> int:
     """Make results one after the other, then what follows from them; the number that could not be made.
 
     A second one of these waits for nothing: it says that one runs.
@@ -168,7 +168,7 @@ def make_all(chosen: Iterable[Result], path: Path = KEPT, root: Path = ROOT) -> 
             said, some = make(result, path, root), True
             failed += ": made in " not in said
             print(said, flush=True)
-        for command in AFTER if some else ():
+        for command in after if some else ():
             failed += subprocess.run(command, shell=True, cwd=root, env=_environment(), check=False).returncode != 0
     return failed
 

@@ -6,7 +6,7 @@
     plan = planner.update(CentroidalState(0.0, com, com_velocity), feet)
     sample = PlanSampler(plan).sample(0.01)
 
-What varies is an object: a `MotionPlanner` is a law of motion, a `Profile` of `PROFILES` makes one, and anything that
+What varies is an object. A `MotionPlanner` is a law of motion, and a `Profile` of `PROFILES` makes one. Anything that
 is a `Planner` can stand in a closed loop. The names below are imported when they are first asked for, since a part of
 the layer is wanted more often than its solvers.
 """

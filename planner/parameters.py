@@ -15,8 +15,8 @@ from surefoot.tunable import check, number, positive
 SOLVERS = ("daqp", "piqp")
 """The solvers of qpsolvers that are tried, in this order.
 
-DAQP, a dual active-set method, is exact and the fastest. What it calls infeasible is asked of a second one of another
-kind, which must agree and lose no time: profile `paper` has such ticks in thousands. PIQP, a proximal interior-point
+DAQP, a dual active-set method, is exact and the fastest. A second solver of another kind must agree on what it calls
+infeasible. That one must be fast, since profile `paper` has thousands of such ticks. PIQP, a proximal interior-point
 method (BSD-2), said so in all 245 of them that were recorded, in 0.5 ms at most, missed no optimum, and with the
 tolerances of `planner.laws.qp` meets DAQP's cost to 1e-10 (its jerk to 4e-4 m/s^3 where the cost is flat, else to
 1e-5). ProxQP missed 12 of 170 optima; Clarabel takes ten times as long.
@@ -61,8 +61,8 @@ class GroundSearch:
     def for_deviation(self, deviation: float, over: float = 0.0) -> tuple["GroundSearch", float]:
         """The search for ground of unsure height, and how far below it the footstep is to be aimed [m].
 
-        A foot that is lower than it is believed waits for nothing; one that is higher waits the longer the more gently
-        it goes on, while the DCM does not wait.
+        A foot that is lower than it is believed waits for nothing. One that is higher waits the longer, the more gently
+        it goes on, and the DCM does not wait.
 
         Args:
             deviation: standard deviation of the sole's height over the stance foot [m].
@@ -169,8 +169,8 @@ class RecoveryParameters:
     """Every number of step adjustment, leg reach, capture margin and height transition, for the reference robot.
 
     Each is a key ``planner.recovery.*`` of a scenario, described as here. Those with a unit beside their default follow
-    the robot's size. What each moves when it is halved or doubled is measured by the campaign ``recovery-numbers`` and
-    reported in docs/recovery-results.md, with the tests that notice those which move no threshold.
+    the robot's size. The campaign ``recovery-numbers`` measures what each moves when it is halved or doubled.
+    docs/recovery-results.md reports it, with the tests that notice those which move no threshold.
     """
 
     second_weight: float = positive(
@@ -232,10 +232,12 @@ class RecoveryParameters:
         least=-math.inf,
     )
     least_double: float = positive(
-        0.02, "s", "time left of a double support below which none is cut; the load goes over in a plan or two"
+        0.02,
+        "s",
+        "least time to which the rest of a double support is shortened; the load changes feet in one or two plans",
     )
     least_single: float = positive(
-        0.10, "s", "time left of a single support below which none is cut; a foot has to lift and land"
+        0.10, "s", "least time to which the rest of a single support is shortened; a foot has to lift and land in it"
     )
     apart: float = positive(
         0.03, "m", "distance of a foot from its place beside the other at which it is brought back there"

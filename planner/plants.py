@@ -90,8 +90,8 @@ class CartTable:
     def advance(self, duration: float, jerk: Array, stiffness: float, force: Array) -> None:
         """Exact motion under constant jerk and force.
 
-        A push changes the velocity by F/m dt and not the acceleration, which is the jerk's integral; so the ZMP does
-        not show it, as a measured contact force would not.
+        A push changes the velocity by F/m dt. It does not change the acceleration, which is the integral of the jerk.
+        So the ZMP does not show it, as a measured contact force would not.
 
         Args:
             duration: [s].

@@ -2,6 +2,7 @@
 
 import tempfile
 from collections.abc import Callable, Collection, Hashable, Iterator, Mapping, Sequence
+from dataclasses import dataclass
 from typing import IO, Any, Protocol
 
 import numpy as np
@@ -16,8 +17,24 @@ Reads = Mapping[str, tuple[str, ...]]
 TIME = "time_ns"
 """Key of the times of a topic's messages, among those of its fields."""
 
-HELD_BYTES = 16 << 20
-"""Most memory of all columns together: a minute of a walk [bytes]."""
+
+@dataclass(frozen=True, slots=True)
+class Memory:
+    """Bounds on what is held of a log at once.
+
+    Attributes:
+        held: most bytes of one topic, and of all columns together: by default a minute of a walk [bytes].
+        window: simulated time that is read at once where a whole log is gone through [s].
+        drawn: simulated time of which the widest channels are drawn at once [s].
+    """
+
+    held: int = 16 << 20
+    window: float = 4.0
+    drawn: float = 60.0
+
+
+USUAL = Memory()
+"""The memory of a log of which nothing else is said."""
 
 
 class Columns:
@@ -27,7 +44,9 @@ class Columns:
     dropped, however long the log.
     """
 
-    def __init__(self) -> None:
+    def __init__(self, memory: Memory = USUAL) -> None:
+        """Gather in memory up to its `Memory.held`, then in temporary files."""
+        self._most = memory.held
         self._parts: dict[Hashable, list[NDArray[Any]]] = {}
         self._files: dict[Hashable, IO[bytes]] = {}
         self._kinds: dict[Hashable, tuple[tuple[int, ...], np.dtype[Any]]] = {}
@@ -57,7 +76,7 @@ class Columns:
             return
         self._parts.setdefault(key, []).append(values)
         self._held += values.nbytes
-        if self._held > HELD_BYTES:
+        if self._held > self._most:
             self._spill()
 
     def forget(self, key: Hashable) -> None:

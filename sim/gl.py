@@ -7,6 +7,7 @@ the libraries at the time of use keeps rendering optional and independent of the
 import ctypes
 import importlib
 import os
+from collections.abc import Mapping
 from typing import Any
 
 BACKENDS = {"egl": "libEGL.so.1", "osmesa": "libOSMesa.so.8"}
@@ -17,13 +18,18 @@ class RenderingUnavailableError(RuntimeError):
     """No off-screen OpenGL on this machine."""
 
 
-def make_context(width: int, height: int) -> Any:
-    """A current off-screen context of at least this many pixels; `free()` it after use.
+def make_context(width: int, height: int, backends: Mapping[str, str] | None = None) -> Any:
+    """A current off-screen context of at least this many pixels, `free()` it after use.
+
+    Args:
+        width: of pictures [pixels].
+        height: of pictures [pixels].
+        backends: libraries that are tried, in this order; `BACKENDS` if None.
 
     Raises:
         RenderingUnavailableError: no library works; names the packages that bring one.
     """
-    for backend, library in BACKENDS.items():
+    for backend, library in (BACKENDS if backends is None else backends).items():
         if _loads(library) and (context := _try_backend(backend, width, height)) is not None:
             return context
     raise RenderingUnavailableError(

@@ -1,6 +1,6 @@
 """A robot, robots and a closed loop that need neither engine: the log is filled with motion of known metrics."""
 
-from collections.abc import Callable
+from collections.abc import Callable, Mapping
 from dataclasses import dataclass, replace
 from pathlib import Path
 from types import SimpleNamespace
@@ -26,6 +26,7 @@ CHANNELS = (
     *(channels.plan, channels.footstep, channels.wbc, channels.torque, channels.timing),
 )
 FOOT = 0.075
+Changes = Mapping[tuple[str, int], Callable[[float, Any], Any]]
 
 
 class FakeRobots:
@@ -50,7 +51,8 @@ class Motion:
 
     Each half second: stand, step on the left foot, step on the right foot, stand. The soles turn from the first yaw by
     the second over the run; the pause holds the CoM on both feet from 1 s on. The margins of the plans are told, untold
-    (NaN) or absent, as before there were any; a fall is known 0.2 s before.
+    (NaN) or absent, as before there were any; a fall is known 0.2 s before. Fields may be changed, by topic and number
+    of the field: each by a function of the time [s] and of the value.
     """
 
     duration: float = 4.0
@@ -65,6 +67,7 @@ class Motion:
     stop_at: float = np.inf
     end: End | None = None
     raises: BaseException | None = None
+    changes: Changes | None = None
 
     def __call__(self, walk: Any, writer: LogWriter, on_progress: Callable[[Progress], None]) -> End:
         _Loop(self, writer).run(on_progress)
@@ -76,13 +79,29 @@ class Motion:
         return End("fall", self.fall_at, "the robot fell") if fell else End("completed", self.duration)
 
 
+class _Changed:
+    """A channel some of whose fields are changed before they are written."""
+
+    def __init__(self, channel: Any, topic: str, changes: Changes) -> None:
+        self._channel = channel
+        self._changes = {index: change for (of, index), change in changes.items() if of == topic}
+
+    def append(self, ns: int, *values: Any) -> None:
+        changed = list(values)
+        for index, change in self._changes.items():
+            changed[index] = change(ns * 1e-9, np.array(values[index], float))
+        self._channel.append(ns, *changed)
+
+
 class _Loop:
     def __init__(self, motion: Motion, writer: LogWriter) -> None:
         self.motion = motion
         specs = {make.__name__: make(SIZES) for make in CHANNELS}
         if motion.margins == "absent":
             specs["plan"] = replace(specs["plan"], fields=specs["plan"].fields[:-4])
-        self.out = {name: writer.channel(spec) for name, spec in specs.items()}
+        self.out = {
+            name: _Changed(writer.channel(spec), spec.topic, motion.changes or {}) for name, spec in specs.items()
+        }
 
     def run(self, on_progress: Callable[[Progress], None]) -> None:
         motion = self.motion

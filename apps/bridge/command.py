@@ -65,7 +65,7 @@ class ServeOptions:
 def serve(options: ServeOptions) -> None:
     """Serve the simulated robot to a controller in another process."""
     with importing():
-        from surefoot.apps.bridge.host import Care
+        from surefoot.apps.bridge.host import Care, Host
         from surefoot.apps.bridge.limits import TORQUE_RATE
         from surefoot.apps.bridge.line import Disturbance
         from surefoot.apps.bridge.serve import Server
@@ -88,7 +88,7 @@ def serve(options: ServeOptions) -> None:
             apart = options.real_time or not disturbance.none
             soft = (SOFT_START if options.real_time else 0.0) if options.soft_start is None else options.soft_start
             care = Care(disturbance, options.watchdog, soft, TORQUE_RATE if apart else math.inf)
-            server = Server(found, options.bind, options.port, _say, care, options.real_time)
+            server = Server(Host(found, care), options.bind, options.port, _say, options.real_time)
     except SetupError as refusal:
         raise locate(reference, asked, refusal) from None
     typer.echo(

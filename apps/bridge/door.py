@@ -33,6 +33,7 @@ class Door:
         examine: is given what a controller says of itself, and returns why it is refused; empty if it is not.
         welcome: message to a controller that is let in.
         say: called with one sentence on each that is refused.
+        patience: time within which a controller that comes has to say who it is [s].
 
     Attributes:
         address: that is listened at.
@@ -49,7 +50,9 @@ class Door:
         examine: Callable[[Mapping[str, Any]], str],
         welcome: Mapping[str, Any],
         say: Callable[[str], None],
+        patience: float = PATIENCE,
     ) -> None:
+        self._patience = patience
         self._examine, self._welcome, self._say = examine, json_bytes(welcome), say
         try:
             self._listener = socket.create_server((host, port))
@@ -82,8 +85,8 @@ class Door:
                         self._hear(selector, key.fileobj)  # type: ignore[arg-type]
                 now = time.monotonic()
                 for connection, (_, since) in list(self._waiting.items()):
-                    if now - since > PATIENCE:
-                        self._refuse(selector, connection, f"has not said who it is in {PATIENCE:g} s")
+                    if now - since > self._patience:
+                        self._refuse(selector, connection, f"has not said who it is in {self._patience:g} s")
 
     def _accept(self, selector: selectors.BaseSelector) -> None:
         try:
@@ -127,7 +130,7 @@ class Door:
         del self._waiting[connection]
         try:
             guest = Link(connection, reader)
-            guest.send(Kind.WELCOME, self._welcome, PATIENCE)
+            guest.send(Kind.WELCOME, self._welcome, self._patience)
         except (LinkError, OSError):
             connection.close()
             return

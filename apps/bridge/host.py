@@ -50,6 +50,7 @@ class Host:
         tick: control ticks since the start.
         rate: of them [Hz].
         damped: why the joints are damped, whatever they are commanded; empty as long as they are not.
+        care: that is taken of commands.
 
     Raises:
         ParameterError: it has what only one process can have.
@@ -63,7 +64,7 @@ class Host:
         drives = None if errors == IDEAL else Drives(walk.robot, errors, rate, walk.seed)
         self._world = World(robot, walk.ground.true_terrain, rate, (), size, drives)
         self.joints = len(robot.joint_names)
-        self._care, self._line = care, Line(care.disturbance)
+        self.care, self._line = care, Line(care.disturbance)
         self._limits = Limits(walk.robot, size, 1.0 / self.rate, care.torque_rate)
         self.tick, self.damped = 0, ""
         self._command = self._held = self._limits.damping
@@ -149,7 +150,7 @@ class Host:
         elif answered.tick >= 0:
             self._answered = replace(answered, missed=answered.missed + 1)
         age = (self.tick - self._answered.tick) / self.rate
-        if self._answered.tick >= 0 and age > self._care.watchdog + _SOON:
+        if self._answered.tick >= 0 and age > self.care.watchdog + _SOON:
             self.damp(f"no command answers a state of the last {age:.3f} s")
 
     def _obeyed(self) -> JointCommand:
@@ -161,8 +162,8 @@ class Host:
         command, bent = self._limits.within(self._command, self._world.angles)
         if bent:
             self._answered = replace(self._answered, limited=self._answered.limited + 1)
-        if self.time < self._care.soft_start:
-            return blended(self._held, command, self.time / self._care.soft_start)
+        if self.time < self.care.soft_start:
+            return blended(self._held, command, self.time / self.care.soft_start)
         return command
 
 

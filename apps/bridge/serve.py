@@ -9,10 +9,9 @@ from typing import Any
 
 from surefoot.apps.bridge.door import Door
 from surefoot.apps.bridge.frames import Frame, Kind, Link
-from surefoot.apps.bridge.host import Care, Host
+from surefoot.apps.bridge.host import Host
 from surefoot.apps.bridge.messages import command_of, end_bytes, push_of, start_of, state_bytes, why_of
 from surefoot.scenarios.errors import LinkClosedError, LinkError
-from surefoot.scenarios.setup.walk import Walk
 
 PATIENCE, GETTING_READY = 10.0, 300.0
 """Times that a controller may take for an answer, and to get ready [s]."""
@@ -47,11 +46,10 @@ class Server:
     """A plant that is served.
 
     Args:
-        walk: its robot and world.
+        plant: the robot.
         host: address to be bound to.
         port: to be bound to; 0 for any free one.
         say: called with sentences on what happens.
-        care: that is taken of commands.
         real_time: whether it goes by the wall clock, and waits for nobody.
 
     Attributes:
@@ -59,14 +57,12 @@ class Server:
         address: that is listened at.
 
     Raises:
-        ParameterError: the walk cannot be served.
         LinkError: the address cannot be had.
     """
 
-    def __init__(
-        self, walk: Walk, host: str, port: int, say: Callable[[str], None], care: Care, real_time: bool = False
-    ) -> None:
-        self.plant, self._walk, self._say = Host(walk, care), walk, say
+    def __init__(self, plant: Host, host: str, port: int, say: Callable[[str], None], real_time: bool = False) -> None:
+        walk = plant.walk
+        self.plant, self._walk, self._say = plant, walk, say
         self._real_time, self._late = real_time, 0.0
         robot = walk.robot
         welcome = {
@@ -76,7 +72,7 @@ class Server:
             "name": walk.name,
             "scenario": walk.text,
             "real_time": real_time,
-            "disturbed": not care.disturbance.none,
+            "disturbed": not plant.care.disturbance.none,
         }
         self._door = Door(host, port, self._examine, welcome, say)
         self.address = self._door.address

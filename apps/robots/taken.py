@@ -47,7 +47,7 @@ class CatalogueRow:
         return {"scenario": self.scenario, "outcome": self.outcome, "why": list(self.why), "log": log}
 
 
-class _Looked(NamedTuple):
+class Looked(NamedTuple):
     """A row before any run, and the scenario that a run takes; None where it is refused."""
 
     row: CatalogueRow
@@ -77,20 +77,25 @@ def rows(
         yield from (_look(name, robot).row for name in names)
         return
     looked = list(side_by_side(_look, [(name, robot) for name in names], jobs, _unseen))
-    runs = sorted((one for one in looked if one.scenario is not None), key=lambda one: -one.row.duration)
+    runs = longest_first(looked)
     begun(len(runs), sum(one.row.duration for one in runs))
     yield from (one.row for one in looked if one.scenario is None)
     if runs:
         yield from side_by_side(_run, [(*one, out) for one in runs], jobs, _lost)
 
 
-def _look(name: str, robot: str) -> _Looked:
+def longest_first(looked: Iterable[Looked]) -> list[Looked]:
+    """Scenarios that are not refused, in the order in which they are run."""
+    return sorted((one for one in looked if one.scenario is not None), key=lambda one: -one.row.duration)
+
+
+def _look(name: str, robot: str) -> Looked:
     try:
         scenario = load(name, {"robot": robot})
         with Simulation(scenario) as simulation:
-            return _Looked(CatalogueRow(name, "accepted", duration=simulation.walk.duration), scenario)
+            return Looked(CatalogueRow(name, "accepted", duration=simulation.walk.duration), scenario)
     except (ScenarioError, SetupError) as refusal:
-        return _Looked(CatalogueRow(name, "refused", tuple(str(refusal).splitlines())), None)
+        return Looked(CatalogueRow(name, "refused", tuple(str(refusal).splitlines())), None)
 
 
 def _run(row: CatalogueRow, scenario: Scenario, out: Path) -> CatalogueRow:
@@ -104,8 +109,8 @@ def _run(row: CatalogueRow, scenario: Scenario, out: Path) -> CatalogueRow:
     return replace(row, outcome=outcome, why=tuple(result.verdict.reasons), log=result.log)
 
 
-def _unseen(name: str, robot: str, why: str) -> _Looked:
-    return _Looked(CatalogueRow(name, "fails", (why,)), None)
+def _unseen(name: str, robot: str, why: str) -> Looked:
+    return Looked(CatalogueRow(name, "fails", (why,)), None)
 
 
 def _lost(row: CatalogueRow, scenario: Scenario, out: Path, why: str) -> CatalogueRow:

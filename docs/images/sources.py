@@ -53,15 +53,15 @@ SOURCES: dict[str, tuple[str, ...]] = {
 """Files beside its run that a picture follows from: colours, camera, drawing code, and results that are kept."""
 
 
-def digest(name: str) -> str:
+def digest(name: str, root: Path = ROOT) -> str:
     """Digest of the sources of a picture, without their docstrings and comments, which draw nothing."""
-    return hashlib.sha256("".join(map(_drawing, SOURCES[name])).encode()).hexdigest()[:16]
+    return hashlib.sha256("".join(_drawing(root / source) for source in SOURCES[name]).encode()).hexdigest()[:16]
 
 
-def _drawing(source: str) -> str:
+def _drawing(source: Path) -> str:
     """The part of a file that draws: of Python its lines without prose."""
-    text = (ROOT / source).read_text(encoding="utf-8")
-    if not source.endswith(".py"):
+    text = source.read_text(encoding="utf-8")
+    if source.suffix != ".py":
         return text
     lines = text.splitlines()
     for token in tokenize.generate_tokens(io.StringIO(text).readline):
@@ -74,9 +74,9 @@ def _drawing(source: str) -> str:
     return "".join(f"{line.rstrip()}\n" for line in lines if line.strip())
 
 
-def noted(name: str) -> str:
+def noted(name: str, folder: Path = FOLDER) -> str:
     """The digest that a picture was drawn with; empty where it has none."""
-    path = FOLDER / name
+    path = folder / name
     if path.suffix == ".svg":
         return path.read_text(encoding="utf-8").partition(f"{KEY}: ")[2][:16]
     with Image.open(path) as picture:

@@ -73,7 +73,7 @@ def _derived(made_of: Originals, path: Path) -> Explanation:
         ("srdf", made_of.srdf),
     )
     signatures = tuple(() if place is None else signature(place) for _, place in files)
-    return _unchanged(_Unchanged(files, signatures, made_of))
+    return unchanged(_Unchanged(files, signatures, made_of))
 
 
 @dataclass(frozen=True, slots=True)
@@ -92,8 +92,8 @@ class _Unchanged:
 
 
 @lru_cache(maxsize=16)
-def _unchanged(made_of: _Unchanged) -> Explanation:
-    """Once per process."""
+def unchanged(made_of: _Unchanged) -> Explanation:
+    """The description of what has not changed, made or read once per process."""
     key = cache.digest(made_of.files)
     kept = cache.load(key)
     if kept is None:

@@ -25,13 +25,17 @@ _KEPT = 64
 _ENTRY = Kind((), "", MESH.most, "")
 
 
-def digest(files: Iterable[tuple[str, Path | None]]) -> str:
+def digest(files: Iterable[tuple[str, Path | None]], code: bytes | None = None) -> str:
     """Digest of files, each with what refers to it, of the code that reads them and of the engines' versions.
+
+    Args:
+        files: each with what refers to it.
+        code: digest of code and versions, those of this process if None.
 
     Raises:
         RobotError: a file cannot be read.
     """
-    sha, read = hashlib.sha256(_code()), dict[tuple[int, ...], str]()
+    sha, read = hashlib.sha256(_code() if code is None else code), dict[tuple[int, ...], str]()
     for reference, file in files:
         key = () if file is None else signature(file)
         if file is not None and key not in read:

@@ -60,7 +60,7 @@ class Bare:
             spec = mujoco.MjSpec.from_string(self._document.text, files, files)
             self._leave_out(spec, self._faults(spec))
             found = {name: content for name, content in self._contents.items() if not isinstance(content, RobotError)}
-            spec.assets = files | _moderate(spec, self._path, self._document, found, self._notes)
+            spec.assets = files | moderate(spec, self._path, self._document, found, self._notes)
             while True:
                 try:
                     return spec.compile()
@@ -149,7 +149,7 @@ def _read(mesh: Path, ending: str) -> _Content | RobotError:
     return _Content((mesh, ending), data, burden(ending, data))
 
 
-def _moderate(
+def moderate(
     spec: mujoco.MjSpec, path: Path, document: Assembled, contents: dict[str, _Content], notes: list[str]
 ) -> dict[str, bytes]:
     """Contents of a document's mesh files, dense ones made coarser where they say nothing of inertia or size.

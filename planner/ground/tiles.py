@@ -29,7 +29,7 @@ class Tiles:
     """Square tiles around the footsteps of a walk, on a plane as low as the lowest of them may be.
 
     They lie askew to the walk, so that soles land across their edges every way. Seed and place alone decide how high
-    one is: two gaits have the same ground, and a longer walk has that of the shorter one and more of it.
+    one is. So two gaits have the same ground, and a longer walk has the ground of the shorter one and more.
 
     Attributes:
         noise: half range of the heights about 0 [m].

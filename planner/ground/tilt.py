@@ -17,8 +17,8 @@ FAR = 50.0
 class Tilt:
     """Two tilted faces, ahead of a level strip across the start and behind it.
 
-    On the way along which the walk starts they are as high as the strip, and to its sides higher or lower where the
-    ground rolls.
+    Along the line on which the walk starts, they are as high as the strip. To its sides they are higher or lower where
+    the ground rolls.
 
     Attributes:
         pitch: angle by which it rises ahead [rad].

@@ -1,8 +1,8 @@
 """A law of motion: one problem in, one motion out, with a QP per axis between them or without.
 
 A law of another package needs nothing but this module: a class with `plan`, and a `planner.laws.profiles.Profile` that
-makes it. Laws that solve QPs do so in three public steps, `build`, `solve` and `interpret`, so that each can be looked
-at and tested without the others.
+makes it. Laws that solve QPs do so in three public steps, `build`, `solve` and `interpret`. Each step can be looked at
+and tested without the others.
 """
 
 from collections.abc import Sequence
@@ -46,8 +46,8 @@ class StepContext:
 class MotionProblem:
     """The data of one tick, in the plan frame (origin and heading of the stance foot, or of the last landed one).
 
-    The window is the horizon of N samples and a preview of M more. The pendulum is c'' = λ (c - p) for the ZMP p of
-    the reference; what the swing leg adds to the ZMP is already taken out of the reference.
+    The window is the horizon of N samples and a preview of M more. The pendulum is c'' = λ (c - p) for the ZMP p of the
+    reference. The ZMP that the swing leg adds is already taken out of it.
 
     Attributes:
         state: CoM position, velocity, acceleration per axis, shape (2, 3) [m, m/s, m/s^2].

@@ -1,10 +1,10 @@
 """The paper's TVMPC in the Δu form with hard constraints: profiles `paper` and `repaired`.
 
 `paper` is the paper's: two moves over fifty samples and no terminal constraint. With the paper's own limits its hard
-problem has no solution at a third of the ticks, and on a true pendulum the walk falls. Its step law makes it fall
-even earlier, without any push (see `planner.laws.tvmpc.paper_shift`); `step_adaptation` none leaves the law out.
-`repaired` changes what the paper needed: ten blocks of moves over the same horizon, the terminal DCM constraint and the
-corrected step law; horizon, limits, cost and hard constraints are the paper's.
+problem has no solution at a third of the ticks, and on a true pendulum the walk falls. Its step law makes it fall even
+earlier, without any push (see `planner.laws.tvmpc.paper_shift`); `step_adaptation` none leaves the law out. `repaired`
+changes what the paper needed: ten blocks of moves over the same horizon, the terminal DCM constraint and the corrected
+step law. Horizon, limits, cost and hard constraints are those of the paper.
 """
 
 import math
@@ -51,12 +51,12 @@ def paper_shift(problem: MotionProblem, parameters: PlannerParameters) -> Array:
 def corrected_shift(problem: MotionProblem, parameters: PlannerParameters) -> Array:
     """The law that a walk needs: f = ξ_T - b, with the DCM ξ_T at touchdown that the CoP can no longer prevent.
 
-    Erratum: eq. (14) counts until T_ss + T_ds and steps onto the DCM; here the horizon ends at touchdown, and b is the
+    Erratum: eq. (14) counts until T_ss + T_ds and steps onto the DCM. Here the horizon ends at touchdown, and b is the
     offset of the DCM from the foot in the nominal gait. Only what the CoP cannot correct until then is left to the
-    foot, because a gain of e^{ω (T_ss + T_ds)} turns 0.1 mm of DCM error into a step of 5 cm.
+    foot. Otherwise a gain of e^{ω (T_ss + T_ds)} would turn 0.1 mm of DCM error into a step of 5 cm.
 
     Without DCM error the step is the nominal one. A shift d of the foot moves the DCM that its future ZMP keeps bounded
-    by g d at touchdown, with g < 1 as the ZMP reaches the new foot only during double support. The shift stays within
+    by g d at touchdown. There g < 1, as the ZMP reaches the new foot only during double support. The shift stays within
     reach and swing speed, and is not renewed shortly before touchdown.
 
     Args:

@@ -1,7 +1,8 @@
 """A walking body as a trunk on two legs of thigh, shank and foot: its posture and angular momentum from CoM and soles.
 
 The trunk does not tilt, each knee bends to where its ankle lets it, the feet stay level. Then the hips follow from the
-CoM, the knees from hips and soles, and with them the mass of every link: a rod whose momentum is bilinear in its ends.
+CoM, the knees from hips and soles, and with them the mass of every link. A link is a rod whose momentum is bilinear in
+its ends.
 """
 
 import math

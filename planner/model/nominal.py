@@ -1,8 +1,8 @@
 """The CoM motion with nothing to correct: what of a plan's motion is known before anything is optimised.
 
-A few blocks of jerk cannot follow a ZMP that jumps half a metre in a tenth of a second at the far end of the horizon.
-Nor do they follow a leg that swings in a third of a second. Planned with them alone, fast steps are shortened for no
-physical reason. So the optimiser plans only what differs from this motion.
+A few blocks of jerk cannot follow the ZMP at the far end of the horizon, where it jumps half a metre in 0.1 s. Nor do
+they follow a leg that swings in a third of a second. Planned with them alone, fast steps are shortened for no physical
+reason. So the optimiser plans only what differs from this motion.
 """
 
 import numpy as np

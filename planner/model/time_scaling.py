@@ -1,7 +1,7 @@
 """Time scaling: how the clock of the gait goes, one sample a tick or, for some time, faster or slower.
 
-The clock counts planner samples, as a real number: a phase may last any time. Where a phase is to end at another time
-the clock follows a quintic to that instant, and goes at its own rate again from there on.
+The clock counts planner samples, as a real number: a phase may last any time. Where a phase is to end at another time,
+the clock follows a quintic to that instant. Then it goes at its own rate again.
 """
 
 from dataclasses import dataclass, replace

@@ -30,11 +30,11 @@ _NO_SWING = np.zeros((6, 6))
 class PlanSampler:
     """Evaluates a plan between its samples.
 
-    The horizontal CoM is the exact cubic of the sample's jerk, its height the quintic through both samples' z, z', z'';
-    ω, λ, ZMP reference, ZMP offset and load are linear. Each interval's polynomials are prepared when it is entered,
-    and anew where the swing touches down within it: its descent would go on to accelerate a foot that is to rest. Where
-    a single support ends within an interval its foot is from then on planned to bear load. After the end of the horizon
-    the last sample is held.
+    The horizontal CoM is the exact cubic of the sample's jerk. Its height is the quintic through z, z' and z'' of both
+    samples. ω, λ, ZMP reference, ZMP offset and load are linear. The polynomials of an interval are prepared when it is
+    entered, and anew where the swing touches down within it. Otherwise its descent would go on to accelerate a foot
+    that is to rest. Where a single support ends within an interval its foot is from then on planned to bear load. After
+    the end of the horizon the last sample is held.
 
     Args:
         plan: the plan.

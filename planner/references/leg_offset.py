@@ -1,7 +1,7 @@
 """The ZMP that the body's own motion adds: the pendulum with legs that have mass.
 
-The paper's pendulum carries all mass in the CoM. A real leg weighs a sixth of the body, and swinging it turns angular
-momentum L over at up to hundreds of N·m, which moves the ZMP by decimetres. The moment balance about the ZMP,
+The paper's pendulum carries all mass in the CoM. A real leg weighs a sixth of the body. Its swing changes the angular
+momentum L at up to hundreds of N·m, which moves the ZMP by decimetres. The moment balance about the ZMP,
 (c - p) x m (c'' + g e_z) + L' = 0, gives with h = c_z - p_z and λ = (g + z'') / h
 
     p_x = c_x - c_x'' / λ - L_y' / (m (g + z'')),      p_y = c_y - c_y'' / λ + L_x' / (m (g + z'')).

@@ -59,10 +59,10 @@ def support_table(
 ) -> Array:
     """Tabulate the support points (see `PhaseSamples`) in the plan frame, that of the stance foot as planned.
 
-    The box of a point is the largest axis-aligned one, of the foot's proportions, inscribed in the foot turned by its
-    heading in the plan frame; without turning it is the foot itself. Between two feet it is as much wider as both
-    together are. A convex combination of two such boxes lies in the convex hull of the two feet, so the box that moves
-    with the reference is legal throughout double support.
+    The box of a point is the largest axis-aligned one, of the foot's proportions, that lies in the foot at its heading
+    in the plan frame. Without turning it is the foot itself. Between two feet it is as much wider as both together are.
+    A convex combination of two such boxes lies in the convex hull of the two feet. So the box that moves with the
+    reference is legal throughout double support.
 
     Args:
         schedule: the steps in sight.
@@ -282,6 +282,27 @@ def _share_load(samples: PhaseSamples, on_left: Array, load: Array) -> None:
         load[k] = (1.0 - share) * on_left[i] + share * on_left[min(i + 1, last)]
 
 
+@dataclass(frozen=True)
+class EdgeContact:
+    """The contact of a foot that rolls in a phase: an edge of its sole.
+
+    Attributes:
+        phase: its number among those of the window.
+        start: begin of the contact [samples].
+        end: of the contact [samples].
+        on_left: true for the left foot.
+        along: from the sole's centre to the edge, along the heading of the stance foot [m].
+        aside: from the sole's centre to the edge, to the left of that heading [m].
+    """
+
+    phase: int
+    start: float
+    end: float
+    on_left: bool
+    along: float
+    aside: float
+
+
 def on_edges(reference: ZmpReference, samples: PhaseSamples, support: Support, count: int) -> ZmpReference:
     """The reference with its box on what is down of feet that roll; the same one where none does.
 
@@ -308,34 +329,22 @@ def on_edges(reference: ZmpReference, samples: PhaseSamples, support: Support, c
                 step = schedule.step(phase.step - 1)
             turned, edge = step.place.yaw - heading, math.copysign(ahead, roll.angle)
             along, aside, on_left = edge * math.cos(turned), edge * math.sin(turned), roll.foot is Foot.LEFT
-            _roll(
-                samples,
-                number,
-                roll.start,
-                roll.end,
-                load,
-                on_left,
-                along,
-                aside,
-                reference.half_size,
-                half_size,
-                middle,
-            )
+            edge_contact = EdgeContact(number, roll.start, roll.end, on_left, along, aside)
+            _roll(samples, edge_contact, load, reference.half_size, half_size, middle)
     _reach(middle, half_size)
     return ZmpReference(reference.point, reference.gain, half_size, reference.height, middle)
 
 
 def _roll(
-    samples: PhaseSamples, phase: int, start: float, end: float, load: Array, on_left: bool, along: float, aside: float,
-    whole: Array, half_size: Array, middle: Array,
-) -> None:  # fmt: skip
-    """Take a foot that rolls in a phase, from a start to an end [samples], to its edge so far along and aside [m]."""
+    samples: PhaseSamples, contact: EdgeContact, load: Array, whole: Array, half_size: Array, middle: Array
+) -> None:
+    """Take the boxes of a foot that rolls to its edge."""
     which, clock = samples.which, samples.clock
     for k in range(load.shape[0]):
-        if which[k] == phase and start < clock[k] < end:
-            share = load[k] if on_left else 1.0 - load[k]
-            middle[k, 0] += share * along
-            middle[k, 1] += share * aside
+        if which[k] == contact.phase and contact.start < clock[k] < contact.end:
+            share = load[k] if contact.on_left else 1.0 - load[k]
+            middle[k, 0] += share * contact.along
+            middle[k, 1] += share * contact.aside
             half_size[k, 0] = max(0.0, half_size[k, 0] - share * whole[k, 0])
 
 

@@ -3,7 +3,7 @@
 A judge whose bounds are wider than they say lets every sound run pass, so no baseline shows it.
 """
 
-from collections.abc import Iterator, Mapping
+from collections.abc import Callable, Iterator, Mapping
 from typing import Any
 
 from surefoot.scenarios.file.criteria import Bound
@@ -16,13 +16,13 @@ _LEAST = 1e-9
 """The same for a value of zero, in its unit."""
 
 
-def blunt(verdict: Verdict) -> list[str]:
-    """Criteria of a verdict whose bounds the judge does not hold to a percent, a sentence each."""
+def blunt(verdict: Verdict, judge: Callable[[Mapping[str, Any], Mapping[str, Bound]], list[str]] = missed) -> list[str]:
+    """Criteria of a verdict whose bounds a judge does not hold to a percent, a sentence each."""
     return [
         f"the judge lets {name} pass with a bound that it misses by {100 * MARGIN:.0f} %"
         for name, bound in verdict.criteria.items()
         for tight, misses in _tightened(bound, _value(verdict, name))
-        if len(missed(verdict.metrics, {name: tight})) < misses
+        if len(judge(verdict.metrics, {name: tight})) < misses
     ]
 
 

@@ -22,7 +22,7 @@ from surefoot.scenarios.file.schema import Scenario
 from surefoot.scenarios.judge.verdict import Verdict
 from surefoot.scenarios.log import read
 from surefoot.scenarios.run.processes import side_by_side
-from surefoot.scenarios.run.run import run_scenario
+from surefoot.scenarios.run.run import Result, run_scenario
 from surefoot.scenarios.setup.load import load
 
 if TYPE_CHECKING:
@@ -196,11 +196,11 @@ def _name(file: Path) -> str:
         return file.stem
 
 
-def run_case(case: Case, out: Path) -> Checked:
-    """Run a case and compare it with its baseline."""
+def run_case(case: Case, out: Path, run: Callable[[Scenario, Path], Result] = run_scenario) -> Checked:
+    """Run a case by a function of its scenario and a folder, and compare it with its baseline."""
     begin = time.perf_counter()
     try:
-        result = run_scenario(case.scenario, out)
+        result = run(case.scenario, out)
         metrics, criteria = result.verdict.metrics, case.scenario.criteria
         now = Baseline.of(case.scenario.name, case.settings, metrics, read(result.log), criteria)
     except (ScenarioError, SetupError, PluginError, LogError) as refusal:

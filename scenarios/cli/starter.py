@@ -30,7 +30,11 @@ def starter(name: str) -> str:
         for files, _ in brought()[0].values():
             if name in files:
                 return content(files[name])
-    text = catalogue.text(name)[0]
+    return commented(catalogue.text(name)[0])
+
+
+def commented(text: str) -> str:
+    """The text of a scenario with the meaning of each key; one that cannot be explained as it is."""
     lines = text.splitlines(keepends=True)
     head = next((number for number, line in enumerate(lines) if not line.startswith("#")), len(lines))
     made = "".join((*lines[:head], _EDITOR, *_explained(lines[head:])))

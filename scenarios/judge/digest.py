@@ -115,7 +115,7 @@ class Digest(Window):
         """Go through the log once, reducing every part and holding narrow fields; its damage is then known."""
         held, self.constants = _found_under_gait(_united((HELD, *reads)), log), constants
         topics = [topic for topic in held if topic in log.numeric]
-        kept, self.reduced = Columns(), Columns()
+        kept, self.reduced = Columns(log.memory), Columns(log.memory)
         for number, channels in enumerate(in_step(log.windows(topics))):
             if number and not any(map(len, channels.values())):
                 continue  # nothing was put off: of nothing, the first part has shown all kinds of fields

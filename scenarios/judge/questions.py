@@ -125,8 +125,8 @@ def stretches(
     asked = conditions(question)
     for condition in asked:
         values, unit = _quantity(log, condition, start, end, topics)
-        found, last = _holding(values, condition)
-        common = found if len(asked) == 1 else list(_both(common, found))
+        found, last = holding(values, condition)
+        common = found if len(asked) == 1 else list(both(common, found))
         units.append(unit)
         until = min(until, last)
     closed = (one._replace(end=min(one.end, until)) for one in common if one.start <= until)
@@ -197,8 +197,11 @@ def _meant(name: str, names: set[str]) -> str:
     return said if len(names) <= _MOST_NAMED or said.startswith("did") else "--topic lists the fields of one"
 
 
-def _holding(parts: _Parts, condition: Condition) -> tuple[list[Stretch], float]:
-    """Stretches in which one condition holds, without end if it holds at the last message, and the time of that [s]."""
+def holding(parts: _Parts, condition: Condition) -> tuple[list[Stretch], float]:
+    """Stretches in which one condition holds, without end if it holds at the last message, and the time of that [s].
+
+    The parts have times [s] and values, shape (n,) each, in order of time.
+    """
     compared = _COMPARED[condition.sign]
     worst_of = np.argmin if condition.sign in ("<", "<=") else np.argmax
     found: list[Stretch] = []
@@ -229,7 +232,7 @@ def _joined(one: Stretch, other: Stretch, worst_of: Callable[[Any], Any]) -> Str
     return other._replace(start=one.start, worst=worse.worst, at=worse.at)
 
 
-def _both(some: Sequence[Stretch], others: Sequence[Stretch]) -> Iterator[Stretch]:
+def both(some: Sequence[Stretch], others: Sequence[Stretch]) -> Iterator[Stretch]:
     """The common parts of two lists of stretches in order of time."""
     one = other = 0
     while one < len(some) and other < len(others):

@@ -12,8 +12,8 @@ from numpy.typing import NDArray
 from surefoot.scenarios.log.messages import MESSAGE_BYTES, numbered_at
 from surefoot.scenarios.log.scan import INDEX_ENTRY, Buffer, ChunkPlace, Contents, release
 
-_GROUP = 256
-"""Chunks whose index is looked at together: some twenty seconds of a run."""
+_GROUP = 64
+"""Chunks whose index is looked at together: some five seconds of a run."""
 
 Decompress = Callable[[ChunkPlace], bytes | None]
 """Gives the bytes of a chunk; None where they cannot be had."""

@@ -15,7 +15,7 @@ import numpy as np
 from mcap.records import Attachment, Metadata
 
 from surefoot.pointers import IS_A_POINTER, POINTER_BYTES, is_pointer
-from surefoot.scenarios.columns import HELD_BYTES, Columns, KeptChannel, Reads, in_order, keep
+from surefoot.scenarios.columns import USUAL, Columns, KeptChannel, Memory, Reads, in_order, keep
 from surefoot.scenarios.errors import LogError, nearest, require
 from surefoot.scenarios.log.chunk_reader import ChunkReader
 from surefoot.scenarios.log.encoding import GREATEST_CHUNK, MAGIC
@@ -37,9 +37,6 @@ RECOVERED = "recovered"
 GREATEST_RATIO = 100
 """Greatest ratio of a log's content to its size; those of standing robots reach ten."""
 
-WINDOW = 4.0
-"""Simulated time that is read at once where a whole log is gone through [s]."""
-
 
 class Log:
     """A log file.
@@ -55,10 +52,11 @@ class Log:
         damage: what could not be read, in words; grows as channels are loaded; `losses` knows all.
         contents: records of the file and their places.
         data: bytes of the file.
+        memory: how much of it is held at once.
     """
 
-    def __init__(self, path: Path, data: Buffer) -> None:
-        self.path = path
+    def __init__(self, path: Path, data: Buffer, memory: Memory = USUAL) -> None:
+        self.path, self.memory = path, memory
         self.size = len(data)
         self.data = data
         self.contents = contents = scan(data)
@@ -81,9 +79,9 @@ class Log:
         if twice := apart or twice_named(contents) or twin(contents, data, self._is_of_ticks, self._file.decompressed):
             raise LogError(f"{path}: not the log of one run, {twice}; give the log of each run by itself")
 
-    def __reduce__(self) -> tuple[Callable[[Path], "Log"], tuple[Path]]:
+    def __reduce__(self) -> tuple[Callable[[Path, Memory], "Log"], tuple[Path, Memory]]:
         """Go to another process by its place, where it is read again."""
-        return read, (self.path.absolute(),)
+        return read, (self.path.absolute(), self.memory)
 
     def __contains__(self, topic: str) -> bool:
         return topic in self._ids
@@ -98,7 +96,7 @@ class Log:
     def __getitem__(self, topic: str) -> ChannelData:
         """Messages of a topic: held if they are few, else each field is read when it is asked for.
 
-        Few are those that take up to 16 MB, such as half a minute of a channel of the control rate.
+        Few are those that take up to `Memory.held`, by default 16 MB, such as half a minute of the control rate.
 
         Raises:
             LogError: there is no such topic, or its messages are not of a fixed layout.
@@ -124,7 +122,7 @@ class Log:
             LogError: there is no such topic, or its messages are not of a fixed layout.
         """
         sizes = {topic: record_dtype(self.fields(topic)).itemsize for topic in topics if topic not in self._loaded}
-        wanted = [topic for topic, size in sizes.items() if size * self.count(topic) <= HELD_BYTES]
+        wanted = [topic for topic, size in sizes.items() if size * self.count(topic) <= self.memory.held]
         if wanted:
             self._loaded.update(self._read(wanted, self.contents.chunks))
 
@@ -153,7 +151,7 @@ class Log:
     def windows(
         self,
         topics: Collection[str],
-        duration: float = WINDOW,
+        duration: float | None = None,
         start: float | None = None,
         end: float | None = None,
         verify: bool = True,
@@ -162,7 +160,7 @@ class Log:
 
         Args:
             topics: that are read.
-            duration: of a part [s].
+            duration: of a part, `Memory.window` if None [s].
             start: time of the first messages, those of the log if None [s].
             end: time of the last messages, those of the log if None [s].
             verify: leave out chunks that do not agree with their checksum, and note them in `damage`.
@@ -171,7 +169,7 @@ class Log:
             LogError: there is no such topic, its messages are not of a fixed layout, or the times are not finite.
         """
         span = self._span(start, end)
-        for group in grouped(self._chunks(span), duration):
+        for group in grouped(self._chunks(span), self.memory.window if duration is None else duration):
             yield between(self._read(topics, group, verify, loose=False), span)
         yield between(self._read(topics, (), verify), span)
 
@@ -204,7 +202,7 @@ class Log:
         """
         span, numbers = self._span(start, end), {self._number(topic) for topic in topics}
         chunks = sorted((c for c in self._chunks(span) if not c.channels.isdisjoint(numbers)), key=START)
-        rest, groups = self._read(topics, ()), list(grouped(chunks, WINDOW))
+        rest, groups = self._read(topics, ()), list(grouped(chunks, self.memory.window))
         for group, following in zip_longest(groups, groups[1:]):
             found = self._read(topics, group, loose=False)
             until = min(following[0].start_ns, LAST) if following else LAST
@@ -227,7 +225,7 @@ class Log:
         Raises:
             LogError: messages are not of a fixed layout, times are not finite, or there is no room for the files.
         """
-        kept, topics = Columns(), [topic for topic in reads if topic in self.numeric]
+        kept, topics = Columns(self.memory), [topic for topic in reads if topic in self.numeric]
         for channels in self.windows(topics, start=start, end=end, verify=False):
             keep(kept, channels, reads)
         for topic in topics:
@@ -417,8 +415,8 @@ def _joints(metadata: Mapping[str, Mapping[str, str]]) -> tuple[str, ...]:
     return tuple(names) if sound else ()
 
 
-def read(path: str | Path) -> Log:
-    """Open a log.
+def read(path: str | Path, memory: Memory = USUAL) -> Log:
+    """Open a log, of which so much is held at once.
 
     Raises:
         LogError: there is no such file, or it is no MCAP file.
@@ -433,7 +431,7 @@ def read(path: str | Path) -> Log:
                 raise LogError(f"{path}: {IS_A_POINTER}")
             if magic != MAGIC:
                 raise LogError(f"{path}: not an MCAP file; give a log that `surefoot run` has written")
-            return Log(path, mmap.mmap(file.fileno(), 0, access=mmap.ACCESS_READ))
+            return Log(path, mmap.mmap(file.fileno(), 0, access=mmap.ACCESS_READ), memory)
     except IsADirectoryError:
         inside = next(iter(sorted(path.glob("*.mcap"))), None)
         raise LogError(f"{path}: a directory; give {'a log file' if inside is None else inside}") from None

@@ -11,7 +11,7 @@ from pathlib import Path
 import numpy as np
 from numpy.typing import NDArray
 
-from surefoot.scenarios.columns import Columns
+from surefoot.scenarios.columns import Columns, Memory
 from surefoot.scenarios.errors import LogError, require
 from surefoot.scenarios.log import ChannelData, FieldSpec, Log
 from surefoot.scenarios.output import refuse_existing, write_whole
@@ -37,6 +37,11 @@ class Selection:
     end: float | None
     fields: tuple[FieldSpec, ...]
 
+    @property
+    def memory(self) -> Memory:
+        """Bounds on what is held of the log at once."""
+        return self.log.memory
+
     def __iter__(self) -> Iterator[ChannelData]:
         every = len(self.fields) != 1
         for part in self.log.parts(self.topic, self.start, self.end):
@@ -54,6 +59,11 @@ class Joined:
     """
 
     selections: tuple[Selection, ...]
+
+    @property
+    def memory(self) -> Memory:
+        """Bounds on what is held of the log at once."""
+        return self.selections[0].memory
 
     @property
     def fields(self) -> tuple[FieldSpec, ...]:
@@ -150,7 +160,7 @@ def _csv(selection: Selection | Joined, path: Path) -> int:
 
 
 def _npz(selection: Selection | Joined, path: Path) -> int:
-    names, kept = ("time", *(field.name for field in selection.fields)), Columns()
+    names, kept = ("time", *(field.name for field in selection.fields)), Columns(selection.memory)
     for part in selection:
         kept.add("time", part.time)
         for name, values in part.values(names[1:]).items():

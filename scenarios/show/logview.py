@@ -43,9 +43,6 @@ DRAWN: Reads = {
 STANCES: Reads = {"/reference": ("stance",), "/footsteps": ("current_left", "current_right")}
 """Fields by which `LogView.from_stance` knows where the feet stand."""
 
-PART = 60.0
-"""Stretch of time of which the widest channels are held at once [s]."""
-
 FOOT_NAMES = ("left", "right")
 """Names of the feet, by their numbers."""
 
@@ -92,8 +89,8 @@ class LogView:
         return part
 
     def parts(self) -> Iterator["LogView"]:
-        """The window in parts of at most `PART`, one after the other: what is wide need not be held for all of it."""
-        count = max(math.ceil((self.end - self.start) / PART - 1e-9), 1)
+        """The window in parts of at most `Memory.drawn`, one after the other: what is wide is held for a part alone."""
+        count = max(math.ceil((self.end - self.start) / self.log.memory.drawn - 1e-9), 1)
         bounds = [self.start, *np.linspace(self.start, self.end, count + 1)[1:-1].tolist(), self.end]
         return (self.within(*between) for between in pairwise(bounds)) if count > 1 else iter((self,))
 

@@ -13,7 +13,7 @@ from surefoot.planner.types import PhaseKind
 from surefoot.scenarios.run.planning import RunFault
 from surefoot.studies.tour.draws import DRAWS, Steps
 from surefoot.studies.tour.robot import ARM_JOINTS, TourRobot, arms_of, tour_robot
-from surefoot.studies.tour.rules import DURATION, LOWEST, SLOT, ArmWalk, Punch
+from surefoot.studies.tour.rules import DURATION, LOWEST, SLOT, ArmWalk, Punch, Tour
 from surefoot.studies.tour.walker import Entrant, Goal
 from surefoot.studies.tour.world import RATE, TourWorld
 
@@ -109,19 +109,20 @@ class Ride:
         entrant: that takes part.
         seed: of the tour.
         setting: how it begins, and what draws it.
+        tour: places and punches in place of those of the seed.
 
     Attributes:
-        tour: what was drawn.
+        tour: places and punches.
         world: that is simulated.
         walker: in its seat.
     """
 
-    def __init__(self, entrant: Entrant, seed: int, setting: Setting = OWN) -> None:
+    def __init__(self, entrant: Entrant, seed: int, setting: Setting = OWN, tour: Tour | None = None) -> None:
         self.entrant, robot = entrant, tour_robot()
         self.walker, draws = entrant.walker(), DRAWS[setting.draws]
         description = self.walker.robot
         self._names, self._mass = description.joint_names, float(description.mass)
-        self.world, self.tour = TourWorld(description, robot), draws.tour(seed, len(self._names))
+        self.world, self.tour = TourWorld(description, robot), tour or draws.tour(seed, len(self._names))
         if not setting.punched:
             self.tour = replace(self.tour, punches=())
         steps = draws.arm_steps(seed)

@@ -92,29 +92,29 @@ class Tour:
         return punch if punch.acts(time) else None
 
 
-def drawn(seed: int, joints: int) -> Tour:
-    """The tour of a seed for a robot with so many joints."""
+def greatest(time: float) -> float:
+    """Greatest force of a punch at an instant [N]."""
+    grown = min((time - DELAY) / RAMP, 1.0)
+    return STRONGEST * (WEAKEST + (1.0 - WEAKEST) * grown)
+
+
+def drawn(seed: int, joints: int, most: Callable[[float], float] = greatest) -> Tour:
+    """The tour of a seed for a robot with so many joints; ``most`` is the greatest force at an instant [N]."""
     slots = round(DURATION / SLOT)
     rng = generator(seed, Stream.TOUR, 0)
     radius, bearing = RADIUS * np.sqrt(rng.random(slots)), rng.uniform(0.0, math.tau, slots)
     x, y = CENTRE[0] + radius * np.cos(bearing), CENTRE[1] + radius * np.sin(bearing)
     places = np.column_stack((x, y, rng.uniform(-math.pi, math.pi, slots)))
     rng = generator(seed, Stream.TOUR, 1)
-    return Tour(seed, places, tuple(_punch(SLOT * k + DELAY, joints, rng) for k in range(slots)))
+    return Tour(seed, places, tuple(_punch(SLOT * k + DELAY, joints, rng, most) for k in range(slots)))
 
 
-def _punch(time: float, joints: int, rng: np.random.Generator) -> Punch:
+def _punch(time: float, joints: int, rng: np.random.Generator, most: Callable[[float], float]) -> Punch:
     joint = int(rng.integers(joints))
     z, turn = rng.uniform(-1.0, 1.0), rng.uniform(0.0, math.tau)
     level = math.sqrt(1.0 - z * z)
     direction = np.array([level * math.cos(turn), level * math.sin(turn), z])
-    return Punch(time, joint, direction, greatest(time) * rng.uniform(LEAST, 1.0))
-
-
-def greatest(time: float) -> float:
-    """Greatest force of a punch at an instant [N]."""
-    grown = min((time - DELAY) / RAMP, 1.0)
-    return STRONGEST * (WEAKEST + (1.0 - WEAKEST) * grown)
+    return Punch(time, joint, direction, most(time) * rng.uniform(LEAST, 1.0))
 
 
 class ArmWalk:

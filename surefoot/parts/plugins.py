@@ -84,6 +84,10 @@ class Registry(Mapping[str, T]):
         """Take back what was added, if it was."""
         self._added.pop(name, None)
 
+    def forget(self) -> None:
+        """Forget what was loaded of other packages; each is loaded again when it is asked for."""
+        self._loaded.clear()
+
     def __getitem__(self, name: str) -> T:
         """The object of that name.
 

@@ -48,12 +48,11 @@ def test_a_picture_has_no_colour_but_those_of_the_palette(script):
     assert not re.findall(r"#[0-9a-fA-F]{6}", script.read_text(encoding="utf-8"))
 
 
-def test_a_moving_picture_carries_the_digest_of_its_name(make, sources, tmp_path, monkeypatch):
+def test_a_moving_picture_carries_the_digest_of_its_name(make, sources, tmp_path):
     webp = importlib.import_module("webp")
     images = [make.Image.new("RGB", (8, 8), colour) for colour in ("red", "blue")]
-    monkeypatch.setattr(sources, "FOLDER", tmp_path)
     webp.save_webp(tmp_path / "front.webp", images, 40)
-    assert sources.noted("front.webp") == sources.digest("front.webp") != sources.digest("drive.webp")
+    assert sources.noted("front.webp", tmp_path) == sources.digest("front.webp") != sources.digest("drive.webp")
 
 
 def test_curves_of_the_figure_have_the_colours_of_the_palette(make):
@@ -64,19 +63,18 @@ def test_curves_of_the_figure_have_the_colours_of_the_palette(make):
         assert np.sum(np.abs(pixels - color).max(axis=1) < 0.02) > 30
 
 
-def test_the_digest_follows_the_sources(sources, tmp_path, monkeypatch):
+def test_the_digest_follows_the_sources(sources, tmp_path):
     before = sources.digest("figures.png")
     for source in sources.SOURCES["figures.png"]:
         (tmp_path / source).parent.mkdir(parents=True, exist_ok=True)
         (tmp_path / source).write_bytes((ROOT / source).read_bytes())
-    monkeypatch.setattr(sources, "ROOT", tmp_path)
-    assert sources.digest("figures.png") == before
+    assert sources.digest("figures.png", tmp_path) == before
     palette = tmp_path / sources.PALETTE
     told = palette.read_text(encoding="utf-8").replace('"""', '"""Another sentence. ', 1) + "\n# And a comment.\n"
     palette.write_text(told, encoding="utf-8")
-    assert sources.digest("figures.png") == before
+    assert sources.digest("figures.png", tmp_path) == before
     palette.write_text("ZMP = (0.0, 0.0, 0.0)\n", encoding="utf-8")
-    assert sources.digest("figures.png") != before
+    assert sources.digest("figures.png", tmp_path) != before
 
 
 def test_the_moving_picture_of_the_readme_is_smooth_and_small(make):

@@ -106,12 +106,12 @@ def test_what_changes_while_it_is_made_is_not_fresh(one, tree):
     assert one.state() == "unknown"
 
 
-def test_those_that_are_stale_are_made_and_then_the_tables(one, tree, results, monkeypatch, capsys):
-    monkeypatch.setattr(results, "AFTER", ("touch tables",))
-    assert results.make_all([one.result], one.path, tree) == 0
+def test_those_that_are_stale_are_made_and_then_the_tables(one, tree, results, capsys):
+    after = ("touch tables",)
+    assert results.make_all([one.result], one.path, tree, after) == 0
     assert (tree / "tables").exists()
     (tree / "tables").unlink()
-    assert results.make_all([one.result], one.path, tree) == 0
+    assert results.make_all([one.result], one.path, tree, after) == 0
     assert not (tree / "tables").exists()
     assert capsys.readouterr().out.endswith("one: fresh\n")
 

@@ -1,12 +1,11 @@
 import sys
 from dataclasses import replace
-from importlib.metadata import EntryPoint
 
 import pytest
+from sites import Site
 
 from surefoot.models import ROBOTS, Robot, RobotError, RobotOptions, UnknownRobotError, describe, robot_names
 from surefoot.models.names import SHIPPED
-from surefoot.parts import plugins
 
 pytestmark = pytest.mark.unit
 
@@ -58,15 +57,16 @@ def shorty(options: RobotOptions):
 SHORTY = Robot("shorty", shorty)
 
 
-def test_a_robot_of_another_package_is_found_by_its_entry_point(monkeypatch) -> None:
-    entry = EntryPoint("shorty", f"{__name__}:SHORTY", "surefoot.robots")
-    monkeypatch.setattr(plugins, "entry_points", lambda group: [entry] if group == entry.group else [])
-    monkeypatch.setattr(ROBOTS, "_loaded", {})
+def test_a_robot_of_another_package_is_found_by_its_entry_point(monkeypatch, tmp_path) -> None:
+    site = Site(tmp_path / "site", "my-robots")
+    site.register("surefoot.robots", shorty=f"{__name__}:SHORTY")
+    monkeypatch.syspath_prepend(str(site.folder))
     assert robot_names() == ("humanoid100", *SHIPPED, "shorty")
     options = RobotOptions(foot_length=0.2)
     found = describe("shorty", options)
     assert (found.name, found.sole_length) == ("shorty", 0.2)
     assert (found.torque_limit < describe("humanoid100", options).torque_limit).all()
+    ROBOTS.forget()
 
 
 def test_a_robot_that_calls_itself_otherwise_is_refused() -> None:

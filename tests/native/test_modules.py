@@ -209,18 +209,24 @@ def field_orders(source: str, types: str) -> list[str]:
     return wrong
 
 
-def test_a_change_of_types_makes_stale_who_knows_them(checkout, monkeypatch):
+DIGESTS = "import json, runpy; print(json.dumps(runpy.run_path('surefoot/native/modules.py')['digests']()))"
+
+
+def test_a_change_of_types_makes_stale_who_knows_them(checkout):
     package = checkout / "surefoot"
     for name, types in (("other", "from surefoot cimport law\n"), ("third", "cimport surefoot.other\n"), ("alone", "")):
         (package / f"{name}.py").touch()
         (package / f"{name}.pxd").write_text(types)
-    monkeypatch.setattr(modules, "ROOT", checkout)
-    before = modules.digests()
+
+    def digests():
+        return json.loads(python(checkout, "-c", DIGESTS))
+
+    before = digests()
     (package / "law.pxd").write_text(TYPES + "\n")
-    moved = {name for name, digest in modules.digests().items() if digest != before[name]}
+    moved = {name for name, digest in digests().items() if digest != before[name]}
     assert moved == {"surefoot.law", "surefoot.other", "surefoot.third"}
     (package / "law.py").write_text(LAW + "\n")
-    again = modules.digests()
+    again = digests()
     assert {name for name in again if again[name] != before[name]} == moved
 
 

@@ -1,5 +1,6 @@
 """Dependencies of the package: declared, pinned, free of the GPL, and named if missing."""
 
+import importlib
 import re
 import shlex
 import subprocess
@@ -7,12 +8,12 @@ import sys
 import tomllib
 from importlib.metadata import PackageNotFoundError, distribution
 from pathlib import Path
-from types import SimpleNamespace
 
 import pytest
 from packaging.requirements import Requirement
 from packaging.specifiers import SpecifierSet
 from packaging.utils import canonicalize_name
+from sites import Site
 
 from surefoot import version
 from surefoot.scenarios.errors import MissingExtraError, require
@@ -128,9 +129,14 @@ def test_a_missing_extra_says_how_to_install_it(module, extra, monkeypatch):
 
 
 def installed(monkeypatch, tmp_path, origin):
-    """Have Surefoot installed below `tmp_path`, as pip says it was."""
-    monkeypatch.setattr(version, "__file__", str(tmp_path / "surefoot" / "version.py"))
-    monkeypatch.setattr(version, "distribution", lambda name: SimpleNamespace(read_text=lambda file: origin))
+    """The module of a Surefoot that is installed below `tmp_path`, as pip says it was."""
+    site = Site(tmp_path, "surefoot")
+    if origin is not None:
+        site.write("surefoot-1.0.dist-info/direct_url.json", origin)
+    site.write("installed_version.py", Path(version.__file__).read_text(encoding="utf-8"))
+    monkeypatch.syspath_prepend(str(tmp_path))
+    monkeypatch.delitem(sys.modules, "installed_version", raising=False)
+    return importlib.import_module("installed_version")
 
 
 @pytest.mark.parametrize(
@@ -143,8 +149,7 @@ def installed(monkeypatch, tmp_path, origin):
     ],
 )
 def test_the_install_command_is_of_where_it_came_from(monkeypatch, tmp_path, origin, named):
-    installed(monkeypatch, tmp_path, origin)
-    command = install_command("video")
+    command = installed(monkeypatch, tmp_path / "site", origin).install_command("video")
     assert command.endswith(f"pip install {named}")
     requirement = Requirement(shlex.split(command)[-1])
     assert (requirement.name, requirement.extras) == ("surefoot", {"video"})
@@ -152,12 +157,16 @@ def test_the_install_command_is_of_where_it_came_from(monkeypatch, tmp_path, ori
 
 def test_the_install_command_of_a_clone_is_that_of_the_readme(monkeypatch, tmp_path):
     readme = (ROOT / "README.md").read_text(encoding="utf-8")
-    monkeypatch.setattr(version.shutil, "which", lambda name: str(Path(sys.executable).with_name(name)))
+    for folder in ("own", "other"):
+        (tmp_path / folder).mkdir()
+        (tmp_path / folder / "pip").touch(0o755)
+    monkeypatch.setattr(sys, "executable", str(tmp_path / "own" / "python"))
+    monkeypatch.setenv("PATH", str(tmp_path / "own"))
     monkeypatch.chdir(ROOT)
     assert install_command("replay,video") in readme
     monkeypatch.chdir(tmp_path)
     assert install_command("video") == f"pip install -c {ROOT}/constraints.txt -e '{ROOT}[video]'"
-    monkeypatch.setattr(version.shutil, "which", lambda name: "/usr/bin/pip")
+    monkeypatch.setenv("PATH", str(tmp_path / "other"))
     assert install_command("video").startswith(f"{sys.executable} -m pip install -c ")
 
 

@@ -118,10 +118,12 @@ def test_packages_that_cannot_be_looked_at_are_named_with_what_was_not_found(sit
     assert at_hand("show", "walk").err == ""
 
 
-def test_nobody_is_asked_for_a_name_of_ours_or_a_file(brought, monkeypatch, tmp_path):
+def test_nobody_is_asked_for_a_name_of_ours_or_a_file(brought, tmp_path):
     made = brought(slow=SLOW)
-    made.write("my_package_others/__init__.py", "raise RuntimeError\n")
-    monkeypatch.setattr(catalogue, "_others", lambda: pytest.fail("packages were looked at"))
+    made.write("my_package_others/__init__.py", "from pathlib import Path\nPath(__file__).with_name('seen').touch()\n")
+    seen = made.folder / "my_package_others" / "seen"
     (tmp_path / "mine.yaml").write_text(SLOW)
     assert load("walk").name == "walk"
     assert load(tmp_path / "mine.yaml").name == "mine"
+    assert not seen.exists()
+    assert load("slow").name and seen.exists(), "who is asked is seen"

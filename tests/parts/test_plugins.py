@@ -1,13 +1,12 @@
 """The registry of what is plugged in: ours win, others are found by name and loaded once, what is wrong is named."""
 
 import sys
-from importlib.metadata import EntryPoint
 from pathlib import Path
 
 import pytest
+from sites import Site
 
 from surefoot.models.registry import ROBOTS
-from surefoot.parts import plugins
 from surefoot.parts.plugins import AFRESH, OWN_PACKAGE, At, Declared, PluginError, Registry
 from surefoot.planner.laws.profiles import PROFILES
 from surefoot.scenarios.catalogue import SCENARIOS
@@ -41,11 +40,12 @@ def others(monkeypatch, tmp_path):
     monkeypatch.syspath_prepend(str(tmp_path))
     monkeypatch.setitem(sys.modules, "tests_lengths", sys.modules[__name__])
     LOADS.clear()
-    points: list[EntryPoint] = []
-    monkeypatch.setattr(plugins, "entry_points", lambda group: points if group == GROUP else [])
+    brought: list[Site] = []
 
     def bring(**targets):
-        points.extend(EntryPoint(name, target, GROUP) for name, target in targets.items())
+        brought.append(Site(tmp_path / f"site{len(brought)}", f"brings{len(brought)}"))
+        brought[-1].register(GROUP, **targets)
+        monkeypatch.syspath_prepend(str(brought[-1].folder))
 
     yield bring
     for name in ("counted", "noisy"):
@@ -98,7 +98,7 @@ def test_a_name_of_ours_is_ours_and_a_clash_is_said(lengths, others):
     assert lengths["own"] == 1.0
     assert list(lengths) == ["own", "also", "long"]
     assert {name: str(clash) for name, clash in lengths.clashes().items()} == {
-        "own": f"'own' of package noisy:X in {GROUP} has the name of one of surefoot's own; "
+        "own": f"'own' of package brings0 in {GROUP} has the name of one of surefoot's own; "
         "give it another name there, or remove it"
     }
     with pytest.raises(PluginError, match=r"'own' of surefoot\.lengths is surefoot's own; choose another name"):
@@ -109,7 +109,7 @@ def test_a_package_that_cannot_be_loaded_is_named_in_one_line(lengths, others, c
     others(noisy="noisy:X")
     with pytest.raises(PluginError) as refused:
         lengths["noisy"]
-    assert refused.value.what == "'noisy' of package noisy:X cannot be loaded, OSError: no disk"
+    assert refused.value.what == "'noisy' of package brings0 cannot be loaded, OSError: no disk"
     assert refused.value.right == "mend or remove it"
     assert str(refused.value) == f"{refused.value.what}; {refused.value.right}"
     assert capsys.readouterr() == ("", "noise\n")
@@ -137,7 +137,7 @@ def test_without_a_kind_it_must_be_called(others):
 def test_a_name_of_two_packages_is_refused(lengths, others):
     others(long="counted:LONG")
     others(long="noisy:X")
-    with pytest.raises(PluginError, match=r"'long' in \S+ is of packages counted:LONG and noisy:X; remove one of them"):
+    with pytest.raises(PluginError, match=r"'long' in \S+ is of packages brings1 and brings0; remove one of them"):
         lengths["long"]
     assert list(lengths).count("long") == 1
     assert LOADS == []

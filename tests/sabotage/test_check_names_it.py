@@ -6,7 +6,6 @@ import pytest
 from controllers import SABOTAGES
 
 import surefoot
-from surefoot.scenarios.check import check as checking
 from surefoot.scenarios.check.check import cases, run_case, updated
 from surefoot.scenarios.check.report import lines_of
 
@@ -51,10 +50,9 @@ def test_the_unbroken_controller_is_the_same(case, tmp_path):
 
 
 @pytest.mark.parametrize("sabotage", SABOTAGES)
-def test_a_worse_controller_is_named(sabotage, case, tmp_path, monkeypatch):
+def test_a_worse_controller_is_named(sabotage, case, tmp_path):
     parts = surefoot.Parts(controller=SABOTAGES[sabotage])
-    monkeypatch.setattr(checking, "run_scenario", lambda scenario, out: surefoot.run(scenario, out=out, parts=parts))
-    found = run_case(case, tmp_path)
+    found = run_case(case, tmp_path, lambda scenario, out: surefoot.run(scenario, out=out, parts=parts))
     text, figure = NAMES[sabotage]
     assert found.status == "moved"
     assert re.match(text, found.partings[0].text)

@@ -19,9 +19,8 @@ class Separation:
     d' = n·(a' - b') = J v, and d'' = J q̈ but for products of velocities (the points slide, the normal turns): below
     1 m/s^2 in walking, against (d - clearance) / T² of 8 m/s^2 at two centimetres. The approach is that of the joint
     limits, T² d'' + 2 T d' + (d - clearance) >= 0, which never comes closer than the clearance. A pair inside it is not
-    pushed apart (its last term counts as zero), because two standing feet could not obey, and one that touches is left
-    to the contact forces. (Faverjon and Tournassoud,
-    ICRA 1987, is the first such damper on distances.)
+    pushed apart: its last term counts as zero, because two standing feet could not obey. A pair that touches is left to
+    the contact forces. (Faverjon and Tournassoud, ICRA 1987, is the first such damper on distances.)
 
     Attributes:
         is_clear: whether the rows that were written last hold no pair.

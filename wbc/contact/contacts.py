@@ -36,8 +36,8 @@ class ContactSchedule:
     - A swing foot that feels the ground after ``early_progress`` becomes active at once and stays so. It gets a small
       load until its planned touchdown, whether or not it feels the ground: to lift it again would only shake the ZMP.
       The plan's clock does not move, but for a step that catches the body.
-    - A foot that comes to the ground before the next tick counts as one that feels it, lest a command swings on a foot
-      that stands. So does one with which the planner has ended a single support.
+    - A foot that comes to the ground before the next tick counts as one that feels it. Otherwise a command would swing
+      on a foot that stands. So does one with which the planner has ended a single support.
     - A foot is released when the plan lifts it, unless it would be the last contact.
     - A foot that the plan rolls keeps an edge on the ground.
     - Allowed loads grow after touchdown and shrink before lift-off, so that no contact appears or ends with a jump in

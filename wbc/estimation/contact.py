@@ -36,8 +36,8 @@ _SPRUNG = (3, 4, 2)
 class SoleContact:
     """Contact of both soles, decided once for filter, controller and planner.
 
-    A normal force above a threshold is felt after some ticks, and until it falls below a lower one; a smaller one is
-    felt when it lasts. While a foot swings high its sensor is tared in all six axes, by a slow low pass.
+    A normal force above a threshold is felt after some ticks, until it falls below a lower one. A smaller force is felt
+    when it lasts. While a foot swings high its sensor is tared in all six axes, by a slow low pass.
 
     Args:
         parameters: thresholds.

@@ -25,8 +25,9 @@ def default_tasks(
         edges: toe edge and side edge from the sole's centre [m].
         ankles: where they end; None for nowhere.
         hips: where they end; None for nowhere.
-        waist: whether the torso can move against the pelvis. Without, they are one body, which the pelvis's task holds:
-            twice the weight would throw the CoM up for a friction about the vertical that its yaw is not worth.
+        waist: whether the torso can move against the pelvis. Without one, they are one body, which the task of the
+            pelvis holds. Twice the weight would throw the CoM up for a friction about the vertical that its yaw is not
+            worth.
         leaning: whether feet roll as their legs do (see `surefoot.wbc.body.leaning`).
     """
     weights, gains, length = parameters.weights, parameters.gains, parameters.size.length

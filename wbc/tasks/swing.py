@@ -113,11 +113,10 @@ class SwingFoot(TaskLaw):
 
     A foot that rolls is seen from its edge (see ``RobotTerms.shift_foot``). A foot that cannot be as level as it should
     (see `AnkleStops`) is from then on seen from its ankle. If it turns about the ankle, the shank stays where it was
-    planned, and with it the momentum of the leg that the planner counts on. While a step catches the body, the joint
-    that has come to its end is to rest as well. Otherwise the QP would turn the foot as a flywheel for the trunk. It is
-    then lifted by what its side edge hangs lower, or that edge would meet the ground at
-    full speed. Any foot is lifted by a few millimetres of what its toe or heel hangs lower. All of that would take the
-    shank off its way again.
+    planned. So does the momentum of the leg, which the planner counts on. While a step catches the body, the joint that
+    has come to its end is to rest as well. Otherwise the QP would turn the foot as a flywheel for the trunk. It is then
+    lifted by what its side edge hangs lower, or that edge would meet the ground at full speed. Any foot is lifted by a
+    few millimetres of what its toe or heel hangs lower. All of that would take the shank off its way again.
     """
 
     name, size = "swing foot", 6

@@ -100,11 +100,11 @@ def _rolls(model: pin.Model, frames: BodyFrames) -> tuple[tuple[int, float], ...
 class Upright(TaskLaw):
     """Angular acceleration of a body towards upright at the heading of the reference.
 
-    While a step catches the body its heading counts for less. What a push beside the CoM and a leg that is swung hard
-    turn, one sole holds by friction alone, the better the harder it is pressed down. So it was cheap to jump, and to
-    tilt and miss the landing as well. The steps after it turn the body back. Its uprightness counts for less, too: the
-    trunk is the flywheel by which the ground pushes the body back harder than a CoP in the sole does (Pratt, Carff,
-    Drakunov and Goswami, Capture point: a step toward humanoid push recovery, Humanoids 2006).
+    While a step catches the body its heading counts for less. A push beside the CoM, and a leg that is swung hard, turn
+    the body. One sole holds that by friction alone, the better the harder it is pressed down. So it was cheap to jump,
+    and to tilt and miss the landing as well. The steps after it turn the body back. Its uprightness counts for less,
+    too: the trunk is the flywheel by which the ground pushes the body back harder than a CoP in the sole does (Pratt,
+    Carff, Drakunov and Goswami, Capture point: a step toward humanoid push recovery, Humanoids 2006).
     """
 
     size = 3

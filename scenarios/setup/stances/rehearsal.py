@@ -1,6 +1,7 @@
 """The first steps of a walk, gone through by the planner's chain of links: it finds what the legs cannot do."""
 
 import math
+from collections.abc import Callable
 from dataclasses import dataclass
 from typing import TYPE_CHECKING
 
@@ -58,8 +59,18 @@ class Rehearsed:
     standing: Array
 
 
-def check_legs(walk: Walk, feet: FeetState, leg: "LegInertia") -> None:
+Outline = Callable[["RobotDescription", int], Array]
+"""Gives the corners of the shank of a foot as `shank_outline` does."""
+
+
+def check_legs(walk: Walk, feet: FeetState, leg: "LegInertia", outline_of: Outline = shank_outline) -> None:
     """Refuse a walk whose first steps the legs cannot make from where the feet stand at the start.
+
+    Args:
+        walk: that is looked at.
+        feet: where they stand.
+        leg: masses and lengths of a leg.
+        outline_of: gives the outline of a shank.
 
     Raises:
         ParameterError: a joint would have to be faster than it can, or go farther, or a shank would meet an edge.
@@ -81,7 +92,7 @@ def check_legs(walk: Walk, feet: FeetState, leg: "LegInertia") -> None:
     if rolls:
         _check_ankles(walk.robot, angles[2], way)
     if walk.ground.terrain.has_edges:
-        _check_shanks(walk, way, joints)
+        _check_shanks(walk, way, joints, outline_of)
 
 
 def check_turns(walk: Walk) -> None:
@@ -192,10 +203,10 @@ def _check_ankles(robot: "RobotDescription", angles: Array, way: Rehearsed) -> N
             )
 
 
-def _check_shanks(walk: Walk, way: Rehearsed, joints: tuple[Array, Array, Array]) -> None:
+def _check_shanks(walk: Walk, way: Rehearsed, joints: tuple[Array, Array, Array], outline_of: Outline) -> None:
     _, knees, ankles = joints
     for foot in Foot:
-        outline = shank_outline(walk.robot, foot)
+        outline = outline_of(walk.robot, foot)
         if len(outline) < 3:
             continue
         depth, at = _overlap(walk, way, foot, convex_hull(outline), knees[foot], ankles[foot])
@@ -222,7 +233,7 @@ def _overlap(walk: Walk, way: Rehearsed, foot: int, outline: Array, knees: Array
     for k in np.flatnonzero(way.standing[foot]):
         sole, heading = way.soles[foot, k], np.array([math.cos(way.heading[foot, k]), math.sin(way.heading[foot, k])])
         if (sole[0], sole[1]) != known:
-            known, edges = (sole[0], sole[1]), _edges(walk, sole, heading)
+            known, edges = (sole[0], sole[1]), edges_ahead(walk, sole, heading)
         if not len(edges):
             continue
         up = np.array([(knees[k] - ankles[k])[:2] @ heading, (knees[k] - ankles[k])[2]])
@@ -236,7 +247,7 @@ def _overlap(walk: Walk, way: Rehearsed, foot: int, outline: Array, knees: Array
     return worst, when
 
 
-def _edges(walk: Walk, sole: Array, heading: Array) -> Array:
+def edges_ahead(walk: Walk, sole: Array, heading: Array) -> Array:
     """Upper edges ahead of a sole that are higher than it, shape (m, 2): ahead and up from its centre [m]."""
     grid = _GRID * walk.size.length
     ahead = np.arange(0.0, 0.6 * walk.robot.leg_length, grid)

@@ -3,6 +3,7 @@
 import contextlib
 import subprocess
 import sys
+from collections.abc import Callable
 from pathlib import Path
 
 from surefoot.scenarios.errors import LogError, require
@@ -28,6 +29,12 @@ def check(fidelity: str, *, video: Path | None, view: bool, replace: bool = Fals
         require("viser", "replay", "--view")
 
 
+def _beside(log: Path) -> "subprocess.Popen[bytes]":
+    """Open the replay of a log that grows."""
+    command = [sys.executable, "-m", "surefoot", "replay", str(log), "--live"]
+    return subprocess.Popen(command, stdout=sys.stderr)
+
+
 LEAVE = 3.0
 """Time that a replay may take to end when it is asked to [s]."""
 
@@ -36,10 +43,14 @@ class LiveView:
     """Progress of a run, passed on; the first of it opens the replay, since the log holds something from then on.
 
     The replay ends with the context, however that ends.
+
+    Args:
+        on_progress: gets the progress.
+        start: starts the process of a replay of a log.
     """
 
-    def __init__(self, on_progress: OnProgress) -> None:
-        self._log, self._on_progress = Path(), on_progress
+    def __init__(self, on_progress: OnProgress, start: "Callable[[Path], subprocess.Popen[bytes]]" = _beside) -> None:
+        self._log, self._on_progress, self._start = Path(), on_progress, start
         self._process: subprocess.Popen[bytes] | None = None
 
     def begin(self, log: Path) -> None:
@@ -49,8 +60,7 @@ class LiveView:
     def __call__(self, progress: Progress) -> None:
         """See `OnProgress`."""
         if self._process is None:
-            command = [sys.executable, "-m", "surefoot", "replay", str(self._log), "--live"]
-            self._process = subprocess.Popen(command, stdout=sys.stderr)
+            self._process = self._start(self._log)
         self._on_progress(progress)
 
     def wait(self) -> None:

@@ -19,9 +19,9 @@ HELLO = packed(Kind.HELLO, json_bytes({"robot": "g1"}))
 class Entrance:
     """A door, and what it has said."""
 
-    def __init__(self):
+    def __init__(self, patience=doors.PATIENCE):
         self.said = []
-        self.door = Door("127.0.0.1", 0, self.examine, {"robot": "g1"}, self.said.append)
+        self.door = Door("127.0.0.1", 0, self.examine, {"robot": "g1"}, self.said.append, patience)
 
     def examine(self, hello):
         return "" if hello.get("robot") == "g1" else "a controller of another robot"
@@ -109,11 +109,12 @@ def test_a_second_controller_is_refused_and_the_first_goes_on(entrance):
         guest.close()
 
 
-def test_one_who_says_nothing_is_sent_away(entrance, monkeypatch):
-    monkeypatch.setattr(doors, "PATIENCE", 0.1)
+def test_one_who_says_nothing_is_sent_away():
+    entrance = Entrance(patience=0.1)
     with entrance.come(HELLO[:9]) as slow, entrance.come(HELLO) as quick:
         assert entrance.hear(quick).kind is Kind.WELCOME
         assert "has not said who it is in 0.1 s" in why_of(entrance.hear(slow).payload)
+    entrance.door.close()
 
 
 def test_a_crowd_is_not_waited_for(entrance):

@@ -15,8 +15,8 @@ from surefoot.apps.bridge.remote import Remote
 from surefoot.apps.bridge.serve import MOST_LATE, Server
 from surefoot.apps.bridge.walk import walk_on
 from surefoot.joints import JointCommand
-from surefoot.scenarios.judge.verdict import judge
-from surefoot.scenarios.run import run
+from surefoot.scenarios.judge.metric import metric
+from surefoot.scenarios.judge.metrics import METRICS, register
 from surefoot.scenarios.setup.walk import resolve
 
 pytestmark = pytest.mark.unit
@@ -31,10 +31,10 @@ def walk_fixture():
     return resolve(surefoot.load("walk-level", {"gait.steps": 1}))
 
 
-def served(walk, *last, real_time=False, after=0.0, stays=False):
+def served(walk, *last, plant=Host, real_time=False, after=0.0, stays=False):
     """The end of serving a controller that sends commands, after a while [s] these frames, and is gone or stays."""
     n = len(walk.robot.joint_names)
-    server = Server(walk, "127.0.0.1", 0, lambda said: None, Care(), real_time)
+    server = Server(plant(walk, Care()), "127.0.0.1", 0, lambda said: None, real_time)
     ends = []
     serving = threading.Thread(target=lambda: ends.append(server.run(lambda: False)))
     serving.start()
@@ -77,34 +77,39 @@ def test_an_end_after_a_command_that_nobody_may_obey_is_no_end_in_order(walk):
     assert "a command whose numbers are not finite" in end.said
 
 
-def test_a_plant_is_told_that_the_walk_is_over_before_the_log_is_judged(monkeypatch, tmp_path):
+def test_a_plant_is_told_that_the_walk_is_over_before_the_log_is_judged(tmp_path):
     """Its joints would be damped meanwhile by the wall clock."""
     scenario = surefoot.load("stand", {"duration": 0.05, "criteria": {}})
-    server = Server(resolve(scenario), "127.0.0.1", 0, lambda said: None, Care())
+    server = Server(Host(resolve(scenario), Care()), "127.0.0.1", 0, lambda said: None)
     ends = []
     serving = threading.Thread(target=lambda: ends.append(server.run(lambda: False)))
     serving.start()
 
-    def judged(log):
+    @metric()
+    def still_served(run):
+        """Truth of whether the plant is still served while the log is judged."""
         serving.join(PATIENCE)
-        return judge(log)
+        return serving.is_alive()
 
-    monkeypatch.setattr(run, "judge", judged)
-    remote = Remote(server.address, {})
-    assert walk_on(remote, scenario, tmp_path).verdict.passed
+    register(still_served)
+    try:
+        verdict = walk_on(Remote(server.address, {}), scenario, tmp_path).verdict
+    finally:
+        METRICS.discard("still_served")
+    assert verdict.passed and verdict["still_served"] is False
     (end,) = ends
     assert (end.in_order, end.said, end.time) == (True, "the walk is over", 0.05)
 
 
-def test_a_plant_that_is_slower_than_the_wall_clock_says_by_how_much_and_does_not_catch_up(walk, monkeypatch):
-    slow, advance = 2.0 * MOST_LATE, Host.advance
+def test_a_plant_that_is_slower_than_the_wall_clock_says_by_how_much_and_does_not_catch_up(walk):
+    slow = 2.0 * MOST_LATE
 
-    def slowly(host):
-        time.sleep(slow)
-        advance(host)
+    class Slow(Host):
+        def advance(self):
+            time.sleep(slow)
+            super().advance()
 
-    monkeypatch.setattr(Host, "advance", slowly)
-    end = served(walk, END, real_time=True, after=0.5)
+    end = served(walk, END, plant=Slow, real_time=True, after=0.5)
     ticks = round(end.time * walk.rates.control)
     assert end.in_order and 0 < ticks <= 0.5 / slow + 1.0
     assert end.late > (ticks - 1) * (slow - 1.0 / walk.rates.control) - MOST_LATE

@@ -8,7 +8,7 @@ import pytest
 import surefoot
 from surefoot.apps.bridge import serve
 from surefoot.apps.bridge.frames import Kind, connected
-from surefoot.apps.bridge.host import Care
+from surefoot.apps.bridge.host import Care, Host
 from surefoot.apps.bridge.line import Disturbance
 from surefoot.apps.bridge.messages import (
     Start,
@@ -47,7 +47,7 @@ def walked_fixture(tmp_path, monkeypatch):
             return message.tobytes()
 
         monkeypatch.setattr(serve, "state_bytes", changed)
-        server = serve.Server(walk, "127.0.0.1", 0, lambda said: None, care or Care())
+        server = serve.Server(Host(walk, care or Care()), "127.0.0.1", 0, lambda said: None)
         serving = threading.Thread(target=server.run, args=(lambda: False,))
         serving.start()
         result = walk_on(Remote(server.address, {}), walk.keys, tmp_path)
@@ -105,7 +105,7 @@ def test_ticks_may_be_missed_within_reach_and_never_come_again():
 def test_a_command_that_cannot_be_is_refused_without_a_warning(changed, tick, said):
     walk = resolve(surefoot.load("walk-level", KEYS))
     n, ends = len(walk.robot.joint_names), []
-    server = serve.Server(walk, "127.0.0.1", 0, lambda said: None, Care())
+    server = serve.Server(Host(walk, Care()), "127.0.0.1", 0, lambda said: None)
     serving = threading.Thread(target=lambda: ends.append(server.run(lambda: False)))
     serving.start()
     numbers = {name: np.full(n, changed.get(name, 1.0)) for name in ("torque", "position", "stiffness", "damping")}

@@ -124,7 +124,7 @@ def test_a_xacro_that_cannot_be_expanded_says_how(surefoot, xacro, monkeypatch) 
     code, _, err = surefoot("robot", "new", str(broken))
     assert code == 2
     assert f"xacro cannot expand it here (undefined: m); expand it: xacro {broken} > robot.urdf" in err
-    monkeypatch.setattr("surefoot.apps.robots.expand.find_spec", lambda name: None)
+    monkeypatch.setitem(sys.modules, "xacro", None)
     code, _, err = surefoot("robot", "new", str(xacro))
     assert code == 2
     assert (

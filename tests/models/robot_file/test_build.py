@@ -8,13 +8,13 @@ import mjcf_biped
 import numpy as np
 import pinocchio as pin
 import pytest
+from opened import opened_files
 
 from surefoot.models import RobotError, RobotOptions, describe
 from surefoot.models.belief import with_com_raised, with_mass_scaled
 from surefoot.models.consistency import EnginePair
 from surefoot.models.pinocchio import pinocchio_model
-from surefoot.models.robot_file import build, cache, derive, document, schema
-from surefoot.models.robot_file.document import raw
+from surefoot.models.robot_file import build, cache
 from surefoot.models.similar import scaled
 
 pytestmark = pytest.mark.unit
@@ -23,13 +23,13 @@ HALF = "name: half\nmodel: humanoid100\nscale: 0.5\n"
 
 
 @pytest.fixture
-def derived(monkeypatch):
-    """Number of times that a description was derived and not read, from an empty memory."""
-    calls = []
-    plain = derive.derive
-    monkeypatch.setattr(derive, "derive", lambda *args: calls.append(1) or plain(*args))
-    build._unchanged.cache_clear()
-    return calls
+def derived(monkeypatch, tmp_path):
+    """Gives the number of descriptions that were derived and kept, from an empty memory and an empty cache."""
+    cache_home = tmp_path / "cache home"
+    monkeypatch.setenv("XDG_CACHE_HOME", str(cache_home))
+    build.unchanged.cache_clear()
+    with opened_files() as opened:
+        yield lambda: sum(writes and cache_home in path.parents and path.suffix != ".json" for path, writes in opened)
 
 
 def same(one, other) -> bool:
@@ -87,9 +87,9 @@ def test_impossible_options_are_refused(tmp_path, options, key) -> None:
 def test_what_is_cached_is_what_was_derived(tmp_path, derived) -> None:
     path = str(biped.write(tmp_path, None, biped.FILE + "# cached\n"))
     one = describe(path, RobotOptions())
-    build._unchanged.cache_clear()
+    build.unchanged.cache_clear()
     two = describe(path, RobotOptions())
-    assert len(derived) == 1
+    assert derived() == 1
     assert same(one, two)
     assert two.torque_limit.dtype == np.float64
     assert not two.torque_limit.flags.writeable
@@ -110,51 +110,48 @@ def test_no_other_content_is_ever_taken_for_it(tmp_path, derived) -> None:
         )
         (tmp_path / "cap.stl").write_bytes(b"solid cap\n" + faces + b"endsolid cap\n")
         describe(str(biped.write(tmp_path, body)), RobotOptions())
-        build._unchanged.cache_clear()
-    assert len(derived) == 2
+        build.unchanged.cache_clear()
+    assert derived() == 2
     describe(str(biped.write(tmp_path, body, biped.FILE + "com_height: 0.5\n")), RobotOptions())
     changed = body.urdf().replace('effort="80"', 'effort="81"')
     assert describe(str(biped.write(tmp_path, changed)), RobotOptions()).torque_limit[0] == 81.0
-    assert len(derived) == 4
+    assert derived() == 4
 
 
-def test_a_cache_that_cannot_be_read_is_made_anew(tmp_path, derived, monkeypatch) -> None:
-    monkeypatch.setenv("XDG_CACHE_HOME", str(tmp_path / "cache"))
+def test_a_cache_that_cannot_be_read_is_made_anew(tmp_path, derived) -> None:
     path = str(biped.write(tmp_path))
     one = describe(path, RobotOptions())
-    (kept,) = (tmp_path / "cache" / "surefoot" / "robots").glob("*.json")
+    (kept,) = (tmp_path / "cache home" / "surefoot" / "robots").glob("*.json")
     for text in ("", "[]", '{"description": {}}', kept.read_text().replace("mjcf", "mjfc")):
         kept.write_text(text)
-        build._unchanged.cache_clear()
+        build.unchanged.cache_clear()
         assert same(describe(path, RobotOptions()), one)
-    assert len(derived) == 5
+    assert derived() == 5
 
 
-def test_a_folder_that_cannot_be_written_keeps_nothing(tmp_path, derived, monkeypatch) -> None:
+def test_a_folder_that_cannot_be_written_keeps_nothing(tmp_path, monkeypatch) -> None:
     (tmp_path / "cache").write_text("no folder")
     monkeypatch.setenv("XDG_CACHE_HOME", str(tmp_path / "cache"))
     path = str(biped.write(tmp_path))
     assert describe(path, RobotOptions()).name == "biped"
-    build._unchanged.cache_clear()
-    describe(path, RobotOptions())
-    assert len(derived) == 2
+    build.unchanged.cache_clear()
+    assert describe(path, RobotOptions()).name == "biped"
+    assert (tmp_path / "cache").read_text() == "no folder"
 
 
-def test_a_file_of_many_references_is_read_once_for_the_key(tmp_path, monkeypatch) -> None:
+def test_a_file_of_many_references_is_read_once_for_the_key(tmp_path) -> None:
     """A mesh of 48 MB that two hundred elements named took 9 s."""
-    file, read = tmp_path / "a", []
-    file.write_text("same")
-    monkeypatch.setattr(cache, "raw", lambda *args: read.append(args) or raw(*args))
-    cache.digest([(f"{at}", file) for at in range(200)])
-    assert len(read) == 1
-
-
-def test_the_code_is_part_of_the_key(tmp_path, monkeypatch) -> None:
     file = tmp_path / "a"
     file.write_text("same")
-    one = cache.digest([("model", file)])
-    monkeypatch.setattr(cache, "_code", lambda: b"another importer")
-    assert cache.digest([("model", file)]) != one
+    with opened_files() as opened:
+        cache.digest([(f"{at}", file) for at in range(200)])
+    assert [path for path, _ in opened].count(file) == 1
+
+
+def test_the_code_is_part_of_the_key(tmp_path) -> None:
+    file = tmp_path / "a"
+    file.write_text("same")
+    assert cache.digest([("model", file)], b"another importer") != cache.digest([("model", file)])
 
 
 CHEST = (
@@ -192,19 +189,17 @@ def test_masses_that_are_believed_wrongly_take_their_moments_with_them(slanted) 
 
 
 @pytest.mark.parametrize("suffix", ["urdf", "xml"])
-def test_a_document_is_read_once_for_what_is_derived_of_it(tmp_path, monkeypatch, derived, suffix):
-    """Robot file and model alike, also where the cache has it already."""
-    seen = []
-    for module in (document, schema):
-        plain = module.text_of
-        monkeypatch.setattr(module, "text_of", lambda path, kind, of=plain: seen.append(path.name) or of(path, kind))
+def test_a_document_is_read_once_for_what_is_derived_of_it(tmp_path, derived, suffix):
+    """Robot file and model alike: once more for the key of the cache, and for what is known already once a time."""
     limits = mjcf_biped.LIMITS if suffix == "xml" else ""
     file = biped.FILE.replace("biped.urdf", f"biped.{suffix}") + limits
     path = biped.write(tmp_path, mjcf_biped.TEXT if suffix == "xml" else None, file, f"biped.{suffix}")
-    for times in (1, 2):
-        describe(str(path), RobotOptions())
+    for times in (2, 1):
+        with opened_files() as opened:
+            describe(str(path), RobotOptions())
+        seen = [file.name for file, _ in opened if tmp_path == file.parent]
         assert {name: seen.count(name) for name in seen} == {path.name: times, f"biped.{suffix}": times}
-        assert len(derived) == 1
+        assert derived() == 1
 
 
 def test_nothing_that_reads_robot_files_knows_their_registry():

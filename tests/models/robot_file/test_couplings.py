@@ -351,7 +351,7 @@ def test_damped_joints_give_way_more_and_the_log_tells_it(tmp_path):
 
 
 @pytest.mark.physics
-def test_without_the_equality_the_log_tells_that_nothing_holds(tmp_path, monkeypatch):
+def test_without_the_equality_the_log_tells_that_nothing_holds(tmp_path):
     """The negative control: a world that has lost what couples its joints is no walk, and no small error either."""
     robot = of_urdf(tmp_path)
 
@@ -360,9 +360,10 @@ def test_without_the_equality_the_log_tells_that_nothing_holds(tmp_path, monkeyp
             super().reset(*args, **kwargs)
             self.data.eq_active[:] = False
 
-    monkeypatch.setattr("surefoot.scenarios.run.full.World", Lost)
-    verdict = run_scenario(
-        surefoot.load("walk-level", {"robot": str(tmp_path / "biped.yaml")}), tmp_path / "lost"
-    ).verdict
+    def lost(walk):
+        return Lost(walk.true_robot, walk.ground.true_terrain, walk.rates.physics, (), walk.size)
+
+    walk = surefoot.load("walk-level", {"robot": str(tmp_path / "biped.yaml"), "sensing.source": "truth"})
+    verdict = surefoot.run(walk, out=tmp_path / "lost", parts=surefoot.Parts(plant=lost)).verdict
     assert robot.couplings and not verdict.passed
     assert verdict["coupling_error"] > 0.1

@@ -36,7 +36,7 @@ def obj(size: float) -> str:
 
 def text_of(path: Path) -> str:
     """As in another process, which remembers nothing."""
-    build._unchanged.cache_clear()
+    build.unchanged.cache_clear()
     return describe(str(path), RobotOptions()).mjcf
 
 
@@ -138,12 +138,12 @@ def test_an_entry_of_the_cache_that_was_edited_is_not_believed(tmp_path, monkeyp
     for edited in edits:
         assert edited != sound
         entry.write_bytes(edited)
-        build._unchanged.cache_clear()
+        build.unchanged.cache_clear()
         assert describe(str(path), RobotOptions()).mass == mass
         assert entry.read_bytes() == sound
     entry.unlink()
     os.mkfifo(entry)
-    build._unchanged.cache_clear()
+    build.unchanged.cache_clear()
     assert describe(str(path), RobotOptions()).mass == mass
 
 

@@ -88,8 +88,8 @@ def test_g1_of_an_mjcf_is_g1_of_its_urdf(tmp_path) -> None:
 
 def taken(monkeypatch):
     """Files that MuJoCo gets, by name, of each model that it compiles."""
-    got, before = [], compiled._moderate
-    monkeypatch.setattr(compiled, "_moderate", lambda *args: got.append(before(*args)) or got[-1])
+    got, before = [], compiled.moderate
+    monkeypatch.setattr(compiled, "moderate", lambda *args: got.append(before(*args)) or got[-1])
     return got
 
 

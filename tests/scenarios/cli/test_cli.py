@@ -19,10 +19,11 @@ from surefoot.models.names import SHIPPED
 from surefoot.scenarios import catalogue
 from surefoot.scenarios.cli import program as cli
 from surefoot.scenarios.cli.program import app
-from surefoot.scenarios.cli.starter import starter
+from surefoot.scenarios.cli.starter import commented, starter
 from surefoot.scenarios.errors import SetupError
 from surefoot.scenarios.file.schema import Scenario
-from surefoot.scenarios.judge.metrics import OWN
+from surefoot.scenarios.judge.metric import metric
+from surefoot.scenarios.judge.metrics import METRICS, OWN, register
 from surefoot.scenarios.log import LogWriter, read
 from surefoot.scenarios.record.foxglove.views import EventLog
 from surefoot.scenarios.run import interrupts, run
@@ -139,10 +140,9 @@ def test_what_show_prints_says_what_the_file_says(name):
     assert unexplained == [line for line in unexplained if line.lstrip().startswith(("-", "{"))]
 
 
-def test_a_file_that_cannot_be_explained_is_shown_as_it_is(monkeypatch):
+def test_a_file_that_cannot_be_explained_is_shown_as_it_is():
     for text in ("gait: {steps: [1\n", "robot: 'two\n  lines: 3'\n"):
-        monkeypatch.setattr(catalogue, "text", lambda name, text=text: (text, "x"))
-        assert starter("x") == text
+        assert commented(text) == text
 
 
 def test_schema_is_json(surefoot):
@@ -471,7 +471,7 @@ def test_names_that_are_no_text(surefoot, scenario, tmp_path):
 @pytest.mark.usefixtures("heeding")
 @pytest.mark.parametrize(("number", "code"), [(signal.SIGTERM, 143), (signal.SIGHUP, 129), (signal.SIGINT, 130)])
 @pytest.mark.parametrize("moment", ["set-up", "loop", "judging"])
-def test_every_signal_ends_a_run_in_order(surefoot, scenario, tmp_path, motion, monkeypatch, number, code, moment):
+def test_every_signal_ends_a_run_in_order(surefoot, scenario, tmp_path, motion, number, code, moment):
     def loop(walk, writer, on_progress):
         if moment == "set-up":
             signal.raise_signal(number)
@@ -480,14 +480,18 @@ def test_every_signal_ends_a_run_in_order(surefoot, scenario, tmp_path, motion, 
             signal.raise_signal(number)
         return end
 
-    def judge(log):
+    @metric()
+    def signalled(run):
+        """Truth of whether the signal came while the log was judged."""
         if moment == "judging":
             signal.raise_signal(number)
-        return judged(log)
+        return moment == "judging"
 
-    judged = run.judge
-    monkeypatch.setattr(run, "judge", judge)
-    ended, out, err = surefoot("run", scenario, "--out", tmp_path, loop=loop)
+    register(signalled)
+    try:
+        ended, out, err = surefoot("run", scenario, "--out", tmp_path, loop=loop)
+    finally:
+        METRICS.discard("signalled")
     interrupts._received.clear()
     assert (ended, err.count("Traceback")) == (code, 0)
     log = read(tmp_path / "two-steps-0" / "log.mcap")

@@ -10,7 +10,6 @@ from surefoot.scenarios.judge.health import findings
 from surefoot.scenarios.judge.loss import BEFORE, loss
 from surefoot.scenarios.judge.metrics import compute, digest
 from surefoot.scenarios.log import read
-from surefoot.scenarios.log.channel import ChannelWriter
 from surefoot.scenarios.record.provenance import SCENARIO_FILE
 from surefoot.scenarios.run.run import run_scenario
 
@@ -43,23 +42,13 @@ def astray(metres, begin=0.0):
 
 
 @pytest.fixture
-def fell(tmp_path, motion, robot, two_steps, monkeypatch):
+def fell(tmp_path, motion, robot, two_steps):
     """The digest of a fall after changes as of test_health, which carries a scenario with some keys."""
 
     def fall(changes=None, keys=None, **how):
-        original, told = ChannelWriter.append, {("/contact", 1): weight, ("/truth", 6): still, ("/truth", 5): still}
-
-        def append(self, time_ns, *values):
-            changed = list(values)
-            for (topic, index), change in {**told, **(changes or {})}.items():
-                if self.spec.topic == topic:
-                    changed[index] = change(time_ns * 1e-9, np.array(values[index], float))
-            original(self, time_ns, *changed)
-
-        made = motion(**{"duration": 2.3, "fall_at": FALL, **how})
-        with monkeypatch.context() as patched:
-            patched.setattr(ChannelWriter, "append", append)
-            found = digest(read(run_scenario(two_steps, tmp_path, simulate=made, robot=robot).log))
+        told = {("/contact", 1): weight, ("/truth", 6): still, ("/truth", 5): still, **(changes or {})}
+        made = motion(**{"duration": 2.3, "fall_at": FALL, "changes": told, **how})
+        found = digest(read(run_scenario(two_steps, tmp_path, simulate=made, robot=robot).log))
         # Keys of masses and motors ask for a model, which the robot of this folder has not.
         scenario = Scenario(name="two-steps", gait={"steps": 2}, **(keys or {}))
         found.attachments = {**found.attachments, SCENARIO_FILE: scenario_yaml(scenario).encode()}

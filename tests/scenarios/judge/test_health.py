@@ -7,28 +7,17 @@ from surefoot.scenarios.judge.health import findings
 from surefoot.scenarios.judge.inspection import inspect
 from surefoot.scenarios.judge.metrics import digest
 from surefoot.scenarios.log import read
-from surefoot.scenarios.log.channel import ChannelWriter
 from surefoot.scenarios.run.run import run_scenario
 
 pytestmark = pytest.mark.unit
 
 
 @pytest.fixture
-def health(tmp_path, motion, two_steps, robot, monkeypatch):
-    """Findings by name after changing what is appended: {(channel, field index): values(time, value)}."""
+def health(tmp_path, motion, two_steps, robot):
+    """Findings by name after changes of the motion."""
 
     def check(changes=None, **how):
-        original = ChannelWriter.append
-
-        def append(self, time_ns, *values):
-            changed = list(values)
-            for (topic, index), change in (changes or {}).items():
-                if self.spec.topic == topic:
-                    changed[index] = change(time_ns * 1e-9, np.array(values[index], float))
-            original(self, time_ns, *changed)
-
-        monkeypatch.setattr(ChannelWriter, "append", append)
-        path = run_scenario(two_steps, tmp_path, simulate=motion(**how), robot=robot).log
+        path = run_scenario(two_steps, tmp_path, simulate=motion(changes=changes, **how), robot=robot).log
         return {finding.check: finding for finding in findings(digest(read(path)))}
 
     return check

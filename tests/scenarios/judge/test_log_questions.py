@@ -9,10 +9,11 @@ import pytest
 from hypothesis import given
 from hypothesis import strategies as st
 
+from surefoot.scenarios.columns import Memory
 from surefoot.scenarios.errors import LogError
 from surefoot.scenarios.judge.balance import MARGIN, zmp_depth, zmp_edge
 from surefoot.scenarios.judge.digest import RunView
-from surefoot.scenarios.judge.questions import Condition, _both, _holding, conditions, stretches
+from surefoot.scenarios.judge.questions import Condition, both, conditions, holding, stretches
 from surefoot.scenarios.log import ChannelSpec, FieldSpec, LogWriter, read
 from surefoot.scenarios.run.run import run_scenario
 
@@ -22,9 +23,9 @@ TICK_NS = 2_000_000
 VALUES = st.lists(st.sampled_from([0.0, 1.0, 2.0, float("nan")]), min_size=1, max_size=30)
 
 
-def holding(time, values, condition, cuts=()):
+def found_in(time, values, condition, cuts=()):
     parts = zip(np.split(time, cuts), np.split(values, cuts), strict=True)
-    found, last = _holding(parts, condition)
+    found, last = holding(parts, condition)
     assert last == time[-1]
     return found
 
@@ -32,20 +33,20 @@ def holding(time, values, condition, cuts=()):
 @given(values=VALUES, cuts=st.lists(st.integers(0, 30), max_size=3), sign=st.sampled_from(["<", ">=", "==", "!="]))
 def test_a_tick_is_in_a_stretch_where_the_condition_holds_there(values, cuts, sign):
     time, condition = 0.1 * np.arange(len(values)), Condition("", "x", sign, 1.0)
-    found = holding(time, np.array(values), condition, sorted(min(cut, len(values)) for cut in cuts))
+    found = found_in(time, np.array(values), condition, sorted(min(cut, len(values)) for cut in cuts))
     holds = {"<": lambda v: v < 1, ">=": lambda v: v >= 1, "==": lambda v: v == 1, "!=": lambda v: v in (0.0, 2.0)}
     for at, value in zip(time[:-1], values[:-1], strict=True):
         assert any(one.start <= at < one.end for one in found) == holds[sign](value)
     assert any(one.end == np.inf for one in found) == holds[sign](values[-1])
-    assert found == holding(time, np.array(values), condition)
+    assert found == found_in(time, np.array(values), condition)
     assert all(one.end < other.start for one, other in pairwise(found))
 
 
 def test_the_worst_value_is_the_one_farthest_beyond_the_bound():
     time, values = np.arange(5.0), np.array([3.0, 0.5, 0.2, 0.4, 3.0])
-    (low,) = holding(time, values, Condition("", "x", "<", 1.0), [2])
+    (low,) = found_in(time, values, Condition("", "x", "<", 1.0), [2])
     assert low == (1.0, 4.0, 0.2, 2.0)
-    first, last = holding(time, values, Condition("", "x", ">", 1.0))
+    first, last = found_in(time, values, Condition("", "x", ">", 1.0))
     assert (first.end, last.start, last.end, last.worst) == (1.0, 4.0, np.inf, 3.0)
 
 
@@ -53,9 +54,9 @@ def test_the_worst_value_is_the_one_farthest_beyond_the_bound():
 def test_two_conditions_hold_where_both_do(some, others):
     """Held from message to message; topics of unlike rates."""
     quick, slow = 0.1 * np.arange(len(some)), 0.25 * np.arange(len(others))
-    one = holding(quick, np.array(some), Condition("", "x", "<", 1.5))
-    other = holding(slow, np.array(others), Condition("", "y", "<", 1.5))
-    common = list(_both(one, other))
+    one = found_in(quick, np.array(some), Condition("", "x", "<", 1.5))
+    other = found_in(slow, np.array(others), Condition("", "y", "<", 1.5))
+    common = list(both(one, other))
     middles = np.arange(0.0, 8.0, 0.01) + 0.005
 
     def within(found, at):
@@ -97,10 +98,9 @@ def test_what_holds_at_the_last_message_alone_is_a_stretch(log):
     assert stretches(log, "/x:a_1 >= 999 and n == 4")[0] == []
 
 
-def test_the_answer_is_that_of_a_log_in_parts(log, monkeypatch):
+def test_the_answer_is_that_of_a_log_in_parts(log):
     whole = stretches(log, "n == 3")
-    monkeypatch.setattr("surefoot.scenarios.log.reader.WINDOW", 0.11)
-    assert stretches(log, "n == 3") == whole
+    assert stretches(read(log.path, Memory(window=0.11)), "n == 3") == whole
     assert len(whole[0]) == 143
 
 

@@ -1,5 +1,7 @@
 """Metrics of a log whose motion is known, against their definitions."""
 
+from types import SimpleNamespace
+
 import numpy as np
 import pytest
 from mcap.reader import make_reader
@@ -101,12 +103,13 @@ def test_standing_between_steps(metrics, motion):
     assert metrics(motion(pause=0.3))["standing_time_between"] == pytest.approx(0.3)
 
 
-def test_knees_are_bent_from_where_they_are_straight(metrics, motion, robot, monkeypatch):
+def test_knees_are_bent_from_where_they_are_straight(tmp_path, two_steps, motion, robot):
     knees = [robot.joint_names.index(name) for name in robot.roles.knees]
     straight = robot.straight_joint_positions.copy()
     straight[knees] = (0.15, -0.05)
-    monkeypatch.setattr(robot, "straight_joint_positions", straight)
-    assert metrics(motion(speed=0.4))["knee_angle_mean"] == pytest.approx(0.4 - (0.15 + 0.05) / 2)
+    other = SimpleNamespace(**{**vars(robot), "straight_joint_positions": straight})
+    found = run_scenario(two_steps, tmp_path, None, motion(speed=0.4), other).verdict.metrics
+    assert found["knee_angle_mean"] == pytest.approx(0.4 - (0.15 + 0.05) / 2)
 
 
 def test_effort(metrics, motion):

@@ -3,15 +3,14 @@
 import json
 import re
 import sys
-from importlib.metadata import EntryPoint
 from pathlib import Path
 from types import SimpleNamespace
 
 import numpy as np
 import pytest
+from sites import Site
 
 from surefoot.errors import ParameterError
-from surefoot.parts import plugins
 from surefoot.parts.plugins import PluginError
 from surefoot.scenarios.errors import ScenarioError
 from surefoot.scenarios.judge.inspection import Inspection, inspect
@@ -58,15 +57,17 @@ def brought():
 
 
 @pytest.fixture
-def packaged(monkeypatch):
-    """Have the entry points of packages that are not there; a target is a dotted place in this module."""
+def packaged(monkeypatch, tmp_path):
+    """Have a package with these entry points; a target is a dotted place in this module."""
 
     def install(**targets):
-        points = [EntryPoint(name, f"{__name__}:{target}", METRICS.group) for name, target in targets.items()]
-        monkeypatch.setattr(plugins, "entry_points", lambda group: points if group == METRICS.group else [])
-        monkeypatch.setattr(METRICS, "_loaded", {})
+        site = Site(tmp_path / "site", "my-metrics")
+        site.register(METRICS.group, **{name: f"{__name__}:{target}" for name, target in targets.items()})
+        monkeypatch.syspath_prepend(str(site.folder))
 
-    return install
+    METRICS.forget()
+    yield install
+    METRICS.forget()
 
 
 @pytest.fixture

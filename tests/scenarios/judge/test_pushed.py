@@ -9,7 +9,7 @@ import pytest
 import surefoot
 from surefoot.apps.bridge.host import Care, Host
 from surefoot.apps.bridge.line import Disturbance
-from surefoot.apps.bridge.remote import Remote, RemotePlant
+from surefoot.apps.bridge.remote import Remote
 from surefoot.apps.bridge.serve import Server
 from surefoot.apps.bridge.shadow import walk_in_shadow
 from surefoot.apps.bridge.walk import walk_on
@@ -32,11 +32,13 @@ OVERLAPPING = [{"time": 0.5, "force": [9.0, 0.0, 0.0]}, {"time": 0.55, "force": 
 
 @pytest.fixture(name="acts")
 def acts_fixture(monkeypatch):
-    """Let other forces act on the pendulum than were asked for: a function of the time and of the mean force."""
+    """Let other forces act on the pendulum than were asked for: a function of the mean force, which may come late."""
 
-    def change(how):
+    def change(how, late=0.0):
         asked = pendulum.mean_force
-        monkeypatch.setattr(pendulum, "mean_force", lambda pushes, time, period: how(time, asked(pushes, time, period)))
+        monkeypatch.setattr(
+            pendulum, "mean_force", lambda pushes, time, period: how(asked(pushes, time - late, period))
+        )
 
     return change
 
@@ -49,7 +51,7 @@ def point(tmp_path, *pushes, **keys):
 @pytest.mark.parametrize("pushes", [[TIMED], [POINTED], OVERLAPPING, [TIMED, POINTED]])
 def test_pushes_that_act_pass_and_those_that_do_not_fail(tmp_path, acts, pushes):
     assert point(tmp_path, *pushes) == ()
-    acts(lambda time, force: 0.0 * force)
+    acts(lambda force: 0.0 * force)
     found = point(tmp_path, *pushes)
     assert found and all(reason.startswith("0 of ") and "N·s acted of the" in reason for reason in found)
 
@@ -57,12 +59,12 @@ def test_pushes_that_act_pass_and_those_that_do_not_fail(tmp_path, acts, pushes)
 @pytest.mark.parametrize(
     ("how", "words"),
     [
-        (lambda time, force: 0.5 * force, "0.4 of 0.8 N·s acted of the push at"),
-        (lambda time, force: 0.98 * force, "0.784 of 0.8 N·s"),
-        (lambda time, force: 1.5 * force, "1.2 of 0.8 N·s"),
-        (lambda time, force: -force, "-0.8 of 0.8 N·s"),
-        (lambda time, force: force[::-1], "0 of 0.8 N·s"),
-        (lambda time, force: force @ TURNED, "0.8 of 0.8 N·s acted of the push at"),
+        (lambda force: 0.5 * force, "0.4 of 0.8 N·s acted of the push at"),
+        (lambda force: 0.98 * force, "0.784 of 0.8 N·s"),
+        (lambda force: 1.5 * force, "1.2 of 0.8 N·s"),
+        (lambda force: -force, "-0.8 of 0.8 N·s"),
+        (lambda force: force[::-1], "0 of 0.8 N·s"),
+        (lambda force: force @ TURNED, "0.8 of 0.8 N·s acted of the push at"),
     ],
 )
 def test_an_impulse_that_is_another_is_no_pass(tmp_path, acts, how, words):
@@ -73,14 +75,13 @@ def test_an_impulse_that_is_another_is_no_pass(tmp_path, acts, how, words):
 
 
 @pytest.mark.parametrize(("late", "passes"), [(0.001, True), (0.05, False)])
-def test_a_push_may_be_late_by_a_step_of_the_plant_and_no_more(tmp_path, monkeypatch, late, passes):
-    asked = pendulum.mean_force
-    monkeypatch.setattr(pendulum, "mean_force", lambda pushes, time, period: asked(pushes, time - late, period))
+def test_a_push_may_be_late_by_a_step_of_the_plant_and_no_more(tmp_path, acts, late, passes):
+    acts(lambda force: force, late)
     assert (point(tmp_path, POINTED) == ()) == passes
 
 
 def test_pushes_that_cancel_one_another_for_a_while_do_not_make_up_for_one_another(tmp_path, acts):
-    acts(lambda time, force: 0.0 * force)
+    acts(lambda force: 0.0 * force)
     assert point(tmp_path, *OVERLAPPING) == ("0 of 0.9 N·s acted of the 2 pushes from 0.5 s on",)
 
 
@@ -116,7 +117,7 @@ def test_a_push_by_hand_is_compared_too_and_again_in_the_run_of_its_log(tmp_path
     log = driven("sound.mcap")
     assert judge(surefoot.read(log)).passed
     assert surefoot.run(str(log), out=tmp_path).verdict.passed
-    acts(lambda time, force: 0.5 * force)
+    acts(lambda force: 0.5 * force)
     halved = ("0.5 of 1 N·s acted of the push at 0.3 s", "0.25 of 0.5 N·s acted of the push at 0.55 s")
     assert judge(surefoot.read(driven("halved.mcap"))).reasons == halved
     assert surefoot.run(str(log), out=tmp_path).verdict.reasons == halved
@@ -178,10 +179,16 @@ def test_a_plant_of_ones_own_is_judged_by_what_it_says_that_acted(tmp_path, shar
     assert surefoot.run(surefoot.load("walk-level", STANDING), out=tmp_path, parts=parts).verdict.passed
 
 
-def bridged(tmp_path, scenario, **line):
-    """The verdict of a walk on a plant that is served over a line."""
-    care = Care(Disturbance(**line))
-    server = Server(resolve(surefoot.load("walk-level", STANDING)), "127.0.0.1", 0, lambda said: None, care)
+def bridged(tmp_path, scenario, pushed=lambda asked: asked, **line):
+    """The verdict of a walk on a plant that is served over a line and takes another push than it is asked for."""
+
+    class Pushed(Host):
+        def push(self, asked):
+            if (push := pushed(asked)) is not None:
+                super().push(push)
+
+    plant = Pushed(resolve(surefoot.load("walk-level", STANDING)), Care(Disturbance(**line)))
+    server = Server(plant, "127.0.0.1", 0, lambda said: None)
     serving = threading.Thread(target=server.run, args=(lambda: False,))
     serving.start()
     verdict = walk_on(Remote(server.address, {}), scenario, tmp_path).verdict
@@ -189,28 +196,27 @@ def bridged(tmp_path, scenario, **line):
     return verdict
 
 
-def test_a_push_that_gets_lost_over_the_bridge_is_no_pass(tmp_path, monkeypatch):
+def test_a_push_that_gets_lost_over_the_bridge_is_no_pass(tmp_path):
     scenario = surefoot.load("walk-level", {**STANDING, "pushes": [TIMED]})
     assert bridged(tmp_path, scenario).passed
-    push = Host.push
-    monkeypatch.setattr(Host, "push", lambda host, asked: push(host, replace(asked, force=0.5 * asked.force)))
-    assert bridged(tmp_path, scenario).reasons == ("0.526 of 1.05 N·s acted of the push at 0.1 s",)
-    monkeypatch.setattr(RemotePlant, "push", lambda plant, asked: None)
-    assert bridged(tmp_path, scenario).reasons == ("0 of 1.05 N·s acted of the push at 0.1 s",)
+    halved = bridged(tmp_path, scenario, lambda asked: replace(asked, force=0.5 * asked.force))
+    assert halved.reasons == ("0.526 of 1.05 N·s acted of the push at 0.1 s",)
+    assert bridged(tmp_path, scenario, lambda _: None).reasons == ("0 of 1.05 N·s acted of the push at 0.1 s",)
 
 
-def test_over_a_line_that_is_late_or_loses_states_no_push_is_blamed_for_it(tmp_path, monkeypatch):
+def test_over_a_line_that_is_late_or_loses_states_no_push_is_blamed_for_it(tmp_path):
     scenario = surefoot.load("walk-level", {**STANDING, "pushes": [TIMED]})
     assert bridged(tmp_path, scenario, delay=0.01).passed
     (reason,) = bridged(tmp_path, scenario, drop=0.2).reasons
     assert reason.startswith("the ticks of the log are not 2 ms apart")
-    push = Host.push
-    monkeypatch.setattr(Host, "push", lambda host, asked: push(host, replace(asked, time=asked.time + 0.05)))
-    assert bridged(tmp_path, scenario, delay=0.01).passed
-    monkeypatch.setattr(Host, "push", lambda host, asked: None)
-    assert "0 of 1.05 N·s acted of the push at 0.1 s" in bridged(tmp_path, scenario, delay=0.01).reasons
-    lost = "the push at 0.1 s cannot be shown to have acted: ticks of that time are not in the log"
-    assert lost in bridged(tmp_path, scenario, drop=0.2).reasons
+    assert bridged(tmp_path, scenario, lambda asked: replace(asked, time=asked.time + 0.05), delay=0.01).passed
+
+    def lost(_):
+        return None
+
+    assert "0 of 1.05 N·s acted of the push at 0.1 s" in bridged(tmp_path, scenario, lost, delay=0.01).reasons
+    unshown = "the push at 0.1 s cannot be shown to have acted: ticks of that time are not in the log"
+    assert unshown in bridged(tmp_path, scenario, lost, drop=0.2).reasons
 
 
 def test_in_a_shadow_that_acted_which_is_in_its_log(tmp_path):

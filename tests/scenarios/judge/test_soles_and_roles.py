@@ -1,6 +1,6 @@
 """Poses of soles against scipy and the planner's geometry, and joints by role."""
 
-from dataclasses import replace
+from types import SimpleNamespace
 
 import numpy as np
 import pytest
@@ -13,7 +13,6 @@ from surefoot.scenarios.judge.digest import RunView
 from surefoot.scenarios.judge.metrics import compute
 from surefoot.scenarios.log import read
 from surefoot.scenarios.record.provenance import RunConstants
-from surefoot.scenarios.run import run
 from surefoot.scenarios.run.run import run_scenario
 
 pytestmark = pytest.mark.unit
@@ -69,15 +68,14 @@ def test_roles_tell_whatever_the_names_are():
     assert torso(roles) == "chest"
 
 
-def test_the_metrics_take_the_knees_of_the_log(tmp_path, robot, motion, two_steps, monkeypatch):
+def test_the_metrics_take_the_knees_of_the_log(tmp_path, robot, motion, two_steps):
     """The invented joints stand at 0.1, 0.3, 0.1 and -0.5 rad; the second and the last are called knees."""
     log = read(run_scenario(two_steps, tmp_path, None, motion(), robot).log)
     assert RunView(log).knees == [1, 3]
     assert compute(log)["knee_angle_mean"] == pytest.approx(0.4)
-    original = run.run_constants
-    roles = {"knees": ("left_hip", "right_knee")}
-    monkeypatch.setattr(run, "run_constants", lambda *args: replace(original(*args), roles=roles))
-    log = read(run_scenario(two_steps, tmp_path, None, motion(), robot).log)
+    roles = SimpleNamespace(**{**vars(robot.roles), "knees": ("left_hip", "right_knee")})
+    other = SimpleNamespace(**{**vars(robot), "roles": roles})
+    log = read(run_scenario(two_steps, tmp_path, None, motion(), other).log)
     assert RunView(log).knees == [0, 3]
     assert compute(log)["knee_angle_mean"] == pytest.approx(0.3)
 

@@ -4,17 +4,17 @@ import csv
 import errno
 import json
 import sys
-from functools import partialmethod
+import tempfile
 
 import numpy as np
 import pytest
+from spoilt import opened, spoil
 
-from surefoot.scenarios.columns import HELD_BYTES, Columns
+from surefoot.scenarios.columns import Columns, Memory
 from surefoot.scenarios.errors import LogError
 from surefoot.scenarios.judge.digest import RunView
 from surefoot.scenarios.judge.metrics import compute, digest
-from surefoot.scenarios.log import ChannelSpec, FieldSpec, Log, LogWriter, read
-from surefoot.scenarios.log.chunk_reader import ChunkReader
+from surefoot.scenarios.log import ChannelSpec, FieldSpec, LogWriter, read
 from surefoot.scenarios.log.spec import layout_of
 from surefoot.scenarios.record import channels
 from surefoot.scenarios.run.run import run_scenario
@@ -45,12 +45,14 @@ def test_a_window_is_the_part_of_the_whole_in_that_time(log, start, end):
     assert np.array_equal(part.field("b"), whole.field("b")[inside])
 
 
-def test_a_window_decompresses_only_its_own_chunks(log, monkeypatch):
-    opened, loaded = read(log.path), []
-    original = ChunkReader.decompressed
-    monkeypatch.setattr(ChunkReader, "decompressed", lambda self, chunk: loaded.append(chunk) or original(self, chunk))
-    opened.window("/x", 1.0, 1.2)
-    assert 0 < len(loaded) <= 4 < len(opened.contents.chunks)
+def test_a_window_decompresses_only_its_own_chunks(log, tmp_path):
+    spoilt = opened(log.path, tmp_path)
+    own = spoil(spoilt, lambda chunk: chunk.start_ns <= 1_200_000_000 and chunk.end_ns >= 1_000_000_000)
+    assert 0 < own <= 4 < len(spoilt.contents.chunks)
+    assert spoilt.window("/x", 1.0, 1.2).content() == log.window("/x", 1.0, 1.2).content()
+    assert not spoilt.damage
+    spoilt.window("/x", 1.0, 3.0)
+    assert spoilt.damage, "what is read of other chunks would be seen"
 
 
 def test_windows_together_are_the_whole(log):
@@ -59,23 +61,20 @@ def test_windows_together_are_the_whole(log):
     assert np.array_equal(np.concatenate([part.field("n") for part in parts]), np.arange(TICKS))
 
 
-def test_metrics_of_a_log_in_parts_are_those_of_the_whole(tmp_path, motion, two_steps, robot, monkeypatch):
+def test_metrics_of_a_log_in_parts_are_those_of_the_whole(tmp_path, motion, two_steps, robot):
     path = run_scenario(two_steps, tmp_path, simulate=motion(duration=2.2), robot=robot).log
     parts, whole = compute(read(path)), RunView(read(path))
-    monkeypatch.setattr(Log, "windows", partialmethod(Log.windows, duration=0.5))
-    for held in (0, HELD_BYTES):
-        monkeypatch.setattr("surefoot.scenarios.columns.HELD_BYTES", held)
-        gathered = digest(read(path))
+    for held in (0, Memory().held):
+        gathered = digest(read(path, Memory(held, window=0.5)))
         for function in gathered.reduced:
             assert np.array_equal(gathered.reduced[function], function(whole), equal_nan=True)
         assert compute(gathered) == parts
 
 
-def test_columns_hold_the_same_in_files_as_in_memory(monkeypatch):
-    held, filed = Columns(), Columns()
+def test_columns_hold_the_same_in_files_as_in_memory():
+    held, filed = Columns(), Columns(Memory(held=0))
     for n in (3, 0, 2):
-        for columns, limit in ((held, HELD_BYTES), (filed, 0)):
-            monkeypatch.setattr("surefoot.scenarios.columns.HELD_BYTES", limit)
+        for columns in (held, filed):
             columns.add("a", np.arange(4.0 * n).reshape(n, 4)[:, ::2])
             columns.add("none", np.zeros(0))
             columns.add("unlike", np.zeros((n, n)))
@@ -90,10 +89,9 @@ def test_no_room_for_a_long_log_is_a_sentence(monkeypatch):
     def full(**_):
         raise OSError(errno.ENOSPC, "No space left on device")
 
-    monkeypatch.setattr("surefoot.scenarios.columns.HELD_BYTES", 0)
-    monkeypatch.setattr("surefoot.scenarios.columns.tempfile.TemporaryFile", full)
+    monkeypatch.setattr(tempfile, "TemporaryFile", full)
     with pytest.raises(LogError, match="no space left on device; set TMPDIR"):
-        Columns().add("a", np.zeros(1))
+        Columns(Memory(held=0)).add("a", np.zeros(1))
 
 
 def test_csv_npz_and_columns_agree(log, tmp_path):
@@ -205,7 +203,7 @@ def test_what_cannot_be_exported_is_said(log, tmp_path):
         selected(log, "/x", 7.0, 8.0, None)
 
 
-def test_several_topics_are_one_table_with_the_latest_of_each(tmp_path, monkeypatch):
+def test_several_topics_are_one_table_with_the_latest_of_each(tmp_path):
     path = tmp_path / "two.mcap"
     with LogWriter(path, {}) as writer:
         quick = writer.channel(ChannelSpec("/quick", "Q", (FieldSpec("a", unit="m"),)))
@@ -216,10 +214,10 @@ def test_several_topics_are_one_table_with_the_latest_of_each(tmp_path, monkeypa
                 slow.append(tick * 2_000_000, np.array([tick, -tick], float), tick)
     log = read(path)
 
-    def joined():
+    def joined(log):
         return Joined(tuple(selected(log, topic, 0.0, None, None) for topic in ("/quick", "/slow/one")))
 
-    assert export(joined(), tmp_path / "x.csv") == 980
+    assert export(joined(log), tmp_path / "x.csv") == 980
     with (tmp_path / "x.csv").open(newline="") as file:
         head, *rows = csv.reader(file)
     assert head == ["time [s]", "quick.a [m]", "slow/one.b_0 [N]", "slow/one.b_1 [N]", "slow/one.n"]
@@ -228,8 +226,7 @@ def test_several_topics_are_one_table_with_the_latest_of_each(tmp_path, monkeypa
     latest = (tick - 20) // 30 * 30 + 20
     assert table[:, 0] == pytest.approx(0.002 * tick)
     assert np.array_equal(table[:, 1:], np.column_stack((tick, latest, -latest, latest)))
-    monkeypatch.setattr("surefoot.scenarios.log.reader.WINDOW", 0.07)
-    export(joined(), tmp_path / "x.npz")
+    export(joined(read(path, Memory(window=0.07))), tmp_path / "x.npz")
     with np.load(tmp_path / "x.npz") as data:
         assert np.array_equal(data["slow/one.b"], table[:, 2:4])
         assert np.array_equal(data["time"], table[:, 0])

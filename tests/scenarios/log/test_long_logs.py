@@ -6,6 +6,7 @@ import numpy as np
 import pytest
 
 from benchmarks.lengthened import lengthened
+from surefoot.scenarios.columns import Memory
 from surefoot.scenarios.judge.inspection import topic_summary
 from surefoot.scenarios.judge.metrics import compute
 from surefoot.scenarios.log import ChannelSpec, FieldSpec, LogWriter, read
@@ -35,17 +36,14 @@ def written(path, ticks, later=()):
     return path
 
 
-@pytest.fixture
-def long(monkeypatch):
-    """Hold nothing of any topic."""
-    monkeypatch.setattr("surefoot.scenarios.log.reader.HELD_BYTES", 0)
+NOTHING = Memory(held=0)
+"""Nothing of any topic is held."""
 
 
 @pytest.mark.parametrize("later", [(), (500,), (0, 2900)])
-def test_a_channel_that_is_not_held_is_the_same(tmp_path, long, monkeypatch, later):
+def test_a_channel_that_is_not_held_is_the_same(tmp_path, later):
     path = written(tmp_path / "x.mcap", range(TICKS), later)
-    channel = read(path)["/x"]
-    monkeypatch.undo()
+    channel = read(path, NOTHING)["/x"]
     held = read(path)["/x"]
     assert isinstance(channel, LongChannel)
     assert not isinstance(held, LongChannel)
@@ -63,20 +61,18 @@ def test_a_channel_that_is_not_held_is_the_same(tmp_path, long, monkeypatch, lat
     assert channel.notes() == held.notes()
 
 
-def test_a_data_frame_of_a_channel_that_is_not_held_is_the_same(tmp_path, long, monkeypatch):
+def test_a_data_frame_of_a_channel_that_is_not_held_is_the_same(tmp_path):
     pandas = pytest.importorskip("pandas")
     path = written(tmp_path / "x.mcap", range(TICKS))
-    frame = read(path).frame("/x")
-    monkeypatch.undo()
+    frame = read(path, NOTHING).frame("/x")
     pandas.testing.assert_frame_equal(frame, read(path).frame("/x"))
     assert frame.index.name == "time"
     assert frame["n"].dtype == np.int32
 
 
 @pytest.mark.parametrize("later", [(), (500,), (0, 2900)])
-def test_parts_come_in_order_of_time_and_lose_nothing(tmp_path, monkeypatch, later):
-    monkeypatch.setattr("surefoot.scenarios.log.reader.WINDOW", 0.5)
-    log = read(written(tmp_path / "x.mcap", range(TICKS), later))
+def test_parts_come_in_order_of_time_and_lose_nothing(tmp_path, later):
+    log = read(written(tmp_path / "x.mcap", range(TICKS), later), Memory(window=0.5))
     parts = list(log.parts("/x"))
     assert len(parts) > 5
     assert np.array_equal(np.concatenate([part.field("n") for part in parts]), np.arange(TICKS))
@@ -87,12 +83,12 @@ def test_parts_come_in_order_of_time_and_lose_nothing(tmp_path, monkeypatch, lat
     assert np.array_equal(kept.field("a"), inside / 4), "what was not kept is read for the same stretch"
 
 
-def test_a_comparison_in_parts_is_that_of_the_whole(tmp_path, monkeypatch):
+def test_a_comparison_in_parts_is_that_of_the_whole(tmp_path):
     a = read(written(tmp_path / "a.mcap", range(TICKS)))
     b = read(written(tmp_path / "b.mcap", [*range(1500), *range(1501, TICKS + 1)], later=(700,)))
     cut = read(written(tmp_path / "c.mcap", range(TICKS - 300)))
     whole = [compare_channels(a, other, 1e-6) for other in (a, b, cut)]
-    monkeypatch.setattr("surefoot.scenarios.log.reader.WINDOW", 0.3)
+    a, b, cut = (read(log.path, Memory(window=0.3)) for log in (a, b, cut))
     assert [compare_channels(a, other, 1e-6) for other in (a, b, cut)] == whole
     same, parted, shorter = (found[0] for found in whole)
     assert same.same
@@ -101,11 +97,11 @@ def test_a_comparison_in_parts_is_that_of_the_whole(tmp_path, monkeypatch):
     assert shorter.messages == (TICKS, TICKS - 300)
 
 
-def test_a_summary_and_exports_in_parts_are_those_of_the_whole(tmp_path, monkeypatch):
+def test_a_summary_and_exports_in_parts_are_those_of_the_whole(tmp_path):
     log = read(written(tmp_path / "x.mcap", range(TICKS)))
     told = [topic_summary(selected(log, "/x", None, None, None))]
     export(selected(log, "/x", None, None, None), tmp_path / "whole.csv")
-    monkeypatch.setattr("surefoot.scenarios.log.reader.WINDOW", 0.3)
+    log = read(log.path, Memory(window=0.3))
     told.append(topic_summary(selected(log, "/x", None, None, None)))
     assert told[0] == told[1]
     assert told[0]["b"] | {"mean": 0} == told[1]["b"] | {"mean": 0}
@@ -128,7 +124,7 @@ def logs(tmp_path_factory, motion, two_steps, robot):
 
 def peak(function, path, folder):
     """The most memory that a function takes of its own while it reads a log [B]."""
-    log = read(path)
+    log = read(path, NOTHING)
     tracemalloc.start()
     try:
         function(log, folder)
@@ -147,7 +143,7 @@ READERS = {
     "summary": lambda log, _: topic_summary(selected(log, "/plan", None, None, None)),
     "csv": exported("csv"),
     "npz": exported("npz"),
-    "compare": lambda log, _: compare_channels(log, read(log.path), 1e-6),
+    "compare": lambda log, _: compare_channels(log, read(log.path, NOTHING), 1e-6),
     "recover": lambda log, folder: recover(log.path, folder / "r.mcap", replace=True),
     "touching": lambda log, _: touching(log),
     "messages": lambda log, _: sum(len(data) for _, data in log.messages("/plan")),
@@ -155,17 +151,15 @@ READERS = {
 
 
 @pytest.mark.parametrize("reader", READERS)
-def test_twice_the_log_takes_no_more_memory(logs, tmp_path, long, monkeypatch, reader):
+def test_twice_the_log_takes_no_more_memory(logs, tmp_path, reader):
     """Beside a few numbers for each tick, which are 8 bytes each, in the metrics."""
-    monkeypatch.setattr("surefoot.scenarios.columns.HELD_BYTES", 0)
-    monkeypatch.setattr("surefoot.scenarios.log.one_run._GROUP", 16)  # chunks: both logs have more than one group
     peak(READERS[reader], logs[0], tmp_path)  # what is made once, such as caches
     shorter, longer = (peak(READERS[reader], path, tmp_path) for path in logs)
     ticks = 500 * (SECONDS[1] - SECONDS[0])
     assert longer - shorter < (40 * 8 * ticks if reader == "metrics" else 1e6)
 
 
-def test_a_field_costs_that_field_and_all_messages_cost_all(logs, tmp_path, long):
+def test_a_field_costs_that_field_and_all_messages_cost_all(logs, tmp_path):
     field = [peak(lambda log, _: log["/plan"].field("omega"), path, tmp_path) for path in logs]
     every = [peak(lambda log, _: log.window("/plan", None, None), path, tmp_path) for path in logs]
     omega = 51 * 8 * 50 * (SECONDS[1] - SECONDS[0])

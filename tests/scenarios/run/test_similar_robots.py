@@ -4,12 +4,14 @@ from dataclasses import replace
 
 import pytest
 
+from surefoot import Parts, run
 from surefoot.models.humanoid100 import HUMANOID100
 from surefoot.models.registry import ROBOTS
 from surefoot.models.similar import scaled
 from surefoot.models.types import Robot, RobotOptions
 from surefoot.scenarios.run.run import run_scenario
 from surefoot.scenarios.setup.load import load
+from surefoot.wbc import WholeBodyController
 from surefoot.wbc.parameters import WbcParameters
 
 pytestmark = pytest.mark.physics
@@ -44,7 +46,12 @@ def test_a_quarter_of_the_size_takes_the_same_share_of_torques_and_speeds(tmp_pa
     assert small.metrics["speed_mean"] == pytest.approx(0.5 * full.metrics["speed_mean"], rel=0.02)
 
 
-def test_with_the_gains_of_full_size_it_does_not_walk(tmp_path, monkeypatch):
+def test_with_the_gains_of_full_size_it_does_not_walk(tmp_path):
     """It walks on the true state; from sensors it takes these two steps."""
-    monkeypatch.setattr("surefoot.scenarios.setup.walk.controller_parameters", lambda *given: WbcParameters())
-    assert not walked(tmp_path, "quarter", "sensing.source=truth").passed
+
+    def unscaled(parameters, **rest):
+        return WholeBodyController(parameters=WbcParameters(), **rest)
+
+    scenario = load("walk-level", (*SHORT, "robot=quarter", "sensing.source=truth"))
+    assert run(scenario, out=tmp_path / "scaled").verdict.passed
+    assert not run(scenario, out=tmp_path, parts=Parts(controller=unscaled)).verdict.passed

@@ -12,7 +12,7 @@ from matplotlib.text import Text
 from scipy.spatial.transform import Rotation
 
 from surefoot.scenarios.errors import LogError
-from surefoot.scenarios.log import LogWriter, read
+from surefoot.scenarios.log import ChannelSpec, FieldSpec, LogWriter, read
 from surefoot.scenarios.run.run import run_scenario
 from surefoot.scenarios.setup.load import load as load_scenario
 from surefoot.scenarios.show.figures.effort import angles, groups, speeds, stretch_extremes
@@ -43,6 +43,17 @@ def pendulum(tmp_path_factory):
 @pytest.fixture
 def body(tmp_path, robot, motion, two_steps):
     return run_scenario(two_steps, tmp_path, None, motion(duration=2.0), robot).log
+
+
+def invented(path, source, fields):
+    """A view of a log of values by topic and field, one row each second, with the records of another log."""
+    with LogWriter(path, dict(read(source).metadata)) as writer:
+        for topic, columns in fields.items():
+            specs = tuple(FieldSpec(name, values.shape[1:]) for name, values in columns.items())
+            channel = writer.channel(ChannelSpec(topic, topic.strip("/").title(), specs))
+            for second, row in enumerate(zip(*columns.values(), strict=True)):
+                channel.append(second * 10**9, *row)
+    return LogView(read(path))
 
 
 def texts(figure: Figure) -> list[str]:
@@ -163,30 +174,26 @@ def test_the_yaw_moment_reaches_all_that_friction_holds_where_the_cone_ends():
     assert friction_used(np.array([[30.0, 40.0, 100.0, 0, 0, 0]]), 0.5, sole) == pytest.approx([1.0])
 
 
-def test_a_sole_that_rolls_on_level_ground_keeps_the_grounds_friction(body, monkeypatch):
-    view = LogView(read(body))
-    ticks, pitched = len(view.time("/truth")), Rotation.from_euler("zy", [0.4, 0.5])
+def test_a_sole_that_rolls_on_level_ground_keeps_the_grounds_friction(body, tmp_path):
+    ticks, pitched = 5, Rotation.from_euler("zy", [0.4, 0.5])
     push = np.array([0.0, 0.0, 900.0])
-    fields = {
-        "wrench_left": np.tile([*pitched.inv().apply(push), 0.0, 0.0, 0.0], (ticks, 1)),
-        "left_sole": np.tile([0.0, 0.0, 0.0, *pitched.as_quat()], (ticks, 1)),
-    }
-    monkeypatch.setattr(view, "field", lambda topic, name, *shape: fields[name].copy())
+    wrench = np.tile([*pitched.inv().apply(push), 0.0, 0.0, 0.0], (ticks, 1))
+    soles = {"left_sole": np.tile([0.0, 0.0, 0.0, *pitched.as_quat()], (ticks, 1))}
+    view = invented(tmp_path / "rolls.mcap", body, {"/measurement": {"wrench_left": wrench}, "/truth": soles})
     np.testing.assert_allclose(loaded_wrench(view, 0), np.tile([0.0, 0.0, 900.0, 0.0, 0.0, 0.0], (ticks, 1)), atol=1e-9)
-    fields["wrench_left"][:, :3] *= 0.05
+    wrench[:, :3] *= 0.05
+    view = invented(tmp_path / "light.mcap", body, {"/measurement": {"wrench_left": wrench}, "/truth": soles})
     assert np.isnan(loaded_wrench(view, 0)).all()
 
 
-def test_landings_are_told_along_the_planned_foot(body, monkeypatch):
-    view = LogView(read(body))
+def test_landings_are_told_along_the_planned_foot(body, tmp_path):
     fields = {
         "planned": np.array([[1.0, 2.0, 0.0, np.pi / 2], [0.0, 0.0, 0.0, 0.0]]),
         "actual": np.array([[1.0, 2.01, 0.0, 0.0], [np.nan, 0.0, 0.0, 0.0]]),
         "foot": np.array([1.0, 0.0]),
         "index": np.array([7.0, 8.0]),
     }
-    monkeypatch.setattr(view, "field", lambda topic, name, *shape: fields[name])
-    errors, feet, numbers = landing_errors(view)
+    errors, feet, numbers = landing_errors(invented(tmp_path / "x.mcap", body, {"/footstep": fields}))
     np.testing.assert_allclose(errors, [[0.01, 0.0]], atol=1e-12)
     assert (feet.tolist(), numbers.tolist()) == ([1], [7])
 
@@ -231,16 +238,13 @@ def test_a_turned_foot_looks_along_itself(log_of):
 
 
 @pytest.fixture
-def log_of(pendulum, monkeypatch):
+def log_of(pendulum, tmp_path):
     """A view of invented stance feet, one per second."""
 
     def make(stance, left, right):
-        view, ticks = LogView(read(pendulum)), len(stance)
-        fields = {"stance": np.array(stance, float)}
-        fields |= {"current_left": np.tile(left, (ticks, 1)), "current_right": np.tile(right, (ticks, 1))}
-        monkeypatch.setattr(view, "field", lambda topic, name, *shape: fields[name])
-        monkeypatch.setattr(view, "time", lambda topic: np.arange(float(ticks)))
-        return view
+        ticks, bears = len(stance), {"stance": np.array(stance, float)}
+        feet = {"current_left": np.tile(left, (ticks, 1)), "current_right": np.tile(right, (ticks, 1))}
+        return invented(tmp_path / "x.mcap", pendulum, {"/reference": bears, "/footsteps": feet})
 
     return make
 

@@ -5,15 +5,16 @@ from pathlib import Path
 import numpy as np
 import pytest
 from matplotlib.figure import Figure
+from spoilt import opened, spoil
 
 import surefoot
 from benchmarks.lengthened import lengthened
 from benchmarks.memory import COMMANDS, MOST, measured
+from surefoot.scenarios.columns import Memory
 from surefoot.scenarios.judge.digest import RunView, Window
-from surefoot.scenarios.log import Log, read
-from surefoot.scenarios.log.chunk_reader import ChunkReader
+from surefoot.scenarios.log import read
 from surefoot.scenarios.run.run import run_scenario
-from surefoot.scenarios.show.figures.page import page, plot, single
+from surefoot.scenarios.show.figures.page import page, single
 from surefoot.scenarios.show.kit.shading import background
 from surefoot.scenarios.show.logview import LogView
 from surefoot.scenarios.show.replay.content import ReplayWindow
@@ -46,10 +47,8 @@ def entries(figure: Figure):
 
 @pytest.mark.unit
 @pytest.mark.parametrize("name", ["balance", "height", "feet", "grip", "torques", "joints", "solver", "top-view"])
-def test_a_figure_in_parts_has_the_curves_of_the_whole(log, monkeypatch, name):
-    view = LogView(read(log))
-    whole = single(view, "whole", name)
-    monkeypatch.setattr("surefoot.scenarios.show.logview.PART", 0.5)
+def test_a_figure_in_parts_has_the_curves_of_the_whole(log, name):
+    whole, view = single(LogView(read(log)), "whole", name), LogView(read(log, Memory(drawn=0.5)))
     assert len(list(view.parts())) > 3
     parts = single(view, "parts", name)
     assert entries(parts) == entries(whole)
@@ -61,25 +60,23 @@ def test_a_figure_in_parts_has_the_curves_of_the_whole(log, monkeypatch, name):
 
 
 @pytest.mark.unit
-def test_a_page_reads_what_it_draws_in_one_pass(log, monkeypatch):
-    view = LogView(read(log))
-    read_again = []
-    monkeypatch.setattr(Log, "window", lambda _, topic, *__: read_again.append(topic))
+def test_a_page_reads_what_it_draws_in_one_pass(log, tmp_path):
+    view = LogView(opened(log, tmp_path))
+    spoil(view.log)
     page(view, "one pass")
-    assert not read_again
+    assert not view.log.damage
 
 
 @pytest.mark.unit
-def test_a_plot_of_a_window_reads_the_chunks_of_that_window(log, tmp_path, monkeypatch):
-    unpacked = set()
-    original = ChunkReader.decompressed
-    monkeypatch.setattr(
-        ChunkReader, "decompressed", lambda self, chunk: unpacked.add(chunk.position) or original(self, chunk)
-    )
-    plot(log, tmp_path / "part.png", "feet", 1.0, 1.2)
-    assert 0 < len(unpacked) <= 4
-    plot(log, tmp_path / "whole.png", "feet")
-    assert len(unpacked) > 20, "the whole is read, and judged"
+def test_a_plot_of_a_window_reads_the_chunks_of_that_window(log, tmp_path):
+    spoilt = opened(log, tmp_path)
+    own = spoil(spoilt, lambda chunk: chunk.start_ns <= 1_200_000_000 and chunk.end_ns >= 1_000_000_000)
+    assert 0 < own <= 4
+    drawn, whole = (single(LogView(one, 1.0, 1.2), "part", "feet") for one in (spoilt, read(log)))
+    assert not spoilt.damage
+    assert extremes(drawn) == extremes(whole)
+    single(LogView(spoilt), "whole", "feet")
+    assert len(spoilt.damage) > 15, "the whole is read"
 
 
 @pytest.mark.unit

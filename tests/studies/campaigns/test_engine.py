@@ -225,8 +225,10 @@ def test_ctrl_c_lets_runs_under_way_end_and_begins_no_other(tmp_path):
         assert all(journal.get(one.point) for one in cells[: len(asked)])
 
 
-def test_a_full_disk_ends_the_campaign(tmp_path, monkeypatch):
-    with Journal(tmp_path) as journal:
-        monkeypatch.setattr(journal, "add", lambda *_: (_ for _ in ()).throw(LogError("no room")))
-        with pytest.raises(LogError, match="no room"):
-            run_cells(CELLS, journal, [Counting([])])
+def test_a_full_disk_ends_the_campaign(tmp_path):
+    class Full(Journal):
+        def add(self, *_):
+            raise LogError("no room")
+
+    with Full(tmp_path) as journal, pytest.raises(LogError, match="no room"):
+        run_cells(CELLS, journal, [Counting([])])

@@ -5,8 +5,10 @@ from dataclasses import replace
 import numpy as np
 import pytest
 
+from surefoot.models import RobotOptions, describe
 from surefoot.planner.swing import leg_reach
-from surefoot.studies.tour import ride, rows, rules
+from surefoot.studies.tour import ride, rows
+from surefoot.studies.tour.rules import drawn
 from surefoot.wbc.parameters import TaskWeights
 
 pytestmark = pytest.mark.physics
@@ -19,18 +21,16 @@ UPRIGHT = (("wbc.weights.upright_catching", 1.0), ("wbc.balance.beyond_catching"
 """Keys of a trunk that takes no part, so that what is looked at is all that catches the body."""
 
 
-def walk_with(monkeypatch, *keys):
-    """Let the robot of the row walk with these keys and a trunk that takes no part."""
+def ride_of(seed, force, *keys):
+    """A tour with punches of a force at most [N], of a robot with these keys and a trunk that takes no part."""
     arms = rows.ROWS["arms"]
-    monkeypatch.setitem(rows.ROWS, "arms", replace(arms, keys=(*arms.keys, *UPRIGHT, *keys)))
+    tour = drawn(seed, len(describe("g1", RobotOptions()).joint_names), lambda _: force)
+    return ride.Ride(replace(arms, keys=(*arms.keys, *UPRIGHT, *keys)), seed, tour=tour)
 
 
-def highest(monkeypatch, weight):
+def highest(weight):
     """Greatest height of the CoM over its plan until the foot that was swung has landed [m], and when that is [s]."""
-    monkeypatch.setattr(rules, "STRONGEST", 375.0)
-    monkeypatch.setattr(rules, "WEAKEST", 1.0)
-    walk_with(monkeypatch, ("wbc.weights.turning_catching", weight))
-    tour = ride.Ride(rows.ROWS["arms"], SEED)
+    tour = ride_of(SEED, 375.0, ("wbc.weights.turning_catching", weight))
     controller, most = tour.walker.controller, -np.inf
     while True:
         tour.step()
@@ -40,24 +40,21 @@ def highest(monkeypatch, weight):
         most = max(most, float(controller.terms.com[2] - plan.com[0, 2]))
 
 
-def test_a_punch_on_a_limp_arm_does_not_lift_it_off_its_stance_foot(monkeypatch):
+def test_a_punch_on_a_limp_arm_does_not_lift_it_off_its_stance_foot():
     """Held to its heading as in the walk it jumps by centimetres, and its foot comes too late."""
-    (turning, soon), (stiff, late) = (highest(monkeypatch, weight) for weight in (TaskWeights().turning_catching, 1.0))
+    (turning, soon), (stiff, late) = (highest(weight) for weight in (TaskWeights().turning_catching, 1.0))
     assert turning < 0.01 < 0.02 < stiff
     assert soon < late - 0.04
 
 
 def fallen(monkeypatch, stride):
     """Number of five punches backward on a shoulder, of 440 to 490 N at most, after which it falls within 3.5 s."""
-    monkeypatch.setattr(rules, "WEAKEST", 1.0)
     monkeypatch.setattr(leg_reach, "STRIDE", stride)
     # So it stands, when the second punch comes, where these forces tell both strides apart.
     monkeypatch.setattr(rows, "FASTEST", (0.4, 0.2, 0.8))
-    walk_with(monkeypatch)
     falls = 0
     for force in (440.0, 450.0, 460.0, 470.0, 490.0):
-        monkeypatch.setattr(rules, "STRONGEST", force)
-        falls += not ride.Ride(rows.ROWS["arms"], 8).run(8.6).completed
+        falls += not ride_of(8, force).run(8.6).completed
     return falls
 
 

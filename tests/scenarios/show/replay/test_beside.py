@@ -2,7 +2,6 @@
 
 import sys
 from pathlib import Path
-from typing import ClassVar
 
 import pytest
 from typer.testing import CliRunner
@@ -18,11 +17,13 @@ pytestmark = pytest.mark.unit
 class Process:
     """Stands for the replay's process."""
 
-    started: ClassVar[list[list[str]]] = []
-
-    def __init__(self, command, **_):
-        self.started.append(command)
+    def __init__(self):
+        self.shown = []
         self.waited = self.ended = False
+
+    def __call__(self, log):
+        self.shown.append(log)
+        return self
 
     def wait(self, timeout=None):
         self.waited = True
@@ -33,28 +34,27 @@ class Process:
         self.ended = True
 
 
-def test_the_first_progress_opens_one_replay_of_the_log_until_ctrl_c(monkeypatch, tmp_path):
-    monkeypatch.setattr(beside.subprocess, "Popen", Process)
-    Process.started, told = [], []
-    with beside.LiveView(told.append) as live:
+def test_the_first_progress_opens_one_replay_of_the_log_until_ctrl_c(tmp_path):
+    process, told = Process(), []
+    with beside.LiveView(told.append, process) as live:
         live.begin(tmp_path / "log.mcap")
         live.wait()
         for time in (0.1, 0.2):
             live(Progress(time, 1.0, "standing", 1.0))
         live.wait()
-        assert not live._process.ended
-    assert Process.started == [[sys.executable, "-m", "surefoot", "replay", str(tmp_path / "log.mcap"), "--live"]]
+        assert not process.ended
+    assert process.shown == [tmp_path / "log.mcap"]
     assert [progress.time for progress in told] == [0.1, 0.2]
-    assert live._process.waited
-    assert live._process.ended
+    assert process.waited
+    assert process.ended
 
 
-def test_the_replay_ends_with_a_run_that_does_not(monkeypatch, tmp_path):
-    monkeypatch.setattr(beside.subprocess, "Popen", Process)
-    with pytest.raises(LogError), beside.LiveView(lambda _: None) as live:
+def test_the_replay_ends_with_a_run_that_does_not():
+    process = Process()
+    with pytest.raises(LogError), beside.LiveView(lambda _: None, process) as live:
         live(Progress(0.1, 1.0, "standing", 1.0))
         raise LogError("no space left on device")
-    assert live._process.ended
+    assert process.ended
 
 
 def test_a_pendulum_has_no_pictures():

@@ -47,8 +47,7 @@ class RobotFacts:
         foot_length: of the soles [m].
         foot_width: of the soles [m].
         shank_spacing: lateral distance of the soles at which upright shanks keep apart [m].
-        swing_acceleration: of the sole of a straight leg, forward and sideways, with two thirds of the torque
-            of its hip [m/s^2].
+        swing_acceleration: of the sole of a straight leg, forward and sideways, by the torque of its hip [m/s^2].
         ankle_torque: of the joints that pitch and roll the left foot [N m].
         size: against the reference robot, without what it carries.
     """

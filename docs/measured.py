@@ -79,6 +79,7 @@ MADE = {
     "recovery-numbers": Made("recovery-numbers"),
     "abilities": Made("docs/campaigns/abilities.yaml"),
     "rules": Made("docs/campaigns/rules.yaml"),
+    "rolling-pushes": Made("docs/campaigns/rolling-pushes.yaml"),
     "profiles": _of_page("profiles", "profile", "fidelity", *_PLANNED),
     "profiles-on-stairs": _of_page("profiles-on-stairs", "terrain.riser", "planner.profile", *_ZMP),
     "speeds": _of_page("speeds", "terrain.friction", "gait.speed", *SPEEDS),

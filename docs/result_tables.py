@@ -5,7 +5,7 @@ import math
 import re
 from collections.abc import Callable, Iterator, Sequence
 from functools import partial
-from itertools import groupby
+from itertools import groupby, product
 from pathlib import Path
 from statistics import fmean
 from typing import Any
@@ -70,6 +70,22 @@ def search_table(name: str, head: str = "N·s/kg") -> str:
     shown = {(one.labels[down.name], one.labels[across.name]): _shown(one) for one in found}
     lines = [[str(row), *(shown[row, column] for column in across.values)] for row in down.values]
     return table([head, *across.values], lines)
+
+
+def gaits_table(name: str) -> str:
+    """Thresholds of a search by direction and phase, of two gaits, with how much higher those of the first are.
+
+    A cell that survives all of the range counts as its end.
+    """
+    found, (gaits, *where) = searches(name)
+    by = {(one.labels[gaits.name], *(one.labels[axis.name] for axis in where)): one for one in found}
+    lines = []
+    for place in product(*(axis.values for axis in where)):
+        one, other = (by[gait, *place] for gait in gaits.values)
+        lines.append([*place, _shown(one), _shown(other), f"{100 * (one.shown / other.shown - 1):+.0f} %"])
+    first, second = (fmean(one.shown for key, one in by.items() if key[0] == gait) for gait in gaits.values)
+    lines.append(["mean", "", f"{first:.2f}", f"{second:.2f}", f"{100 * (first / second - 1):+.0f} %"])
+    return table(["N·s/kg", "phase", *map(text, gaits.values), "change"], lines)
 
 
 def rules_table() -> str:
@@ -411,6 +427,7 @@ TABLES: dict[str, tuple[str, Callable[[], str]]] = {
     "given-up": ("recovery.md", given_up_table),
     "rules": ("recovery-results.md", rules_table),
     "abilities": ("recovery-results.md", partial(search_table, "abilities")),
+    "rolling-pushes": ("fast-walking.md", partial(gaits_table, "rolling-pushes")),
     "profiles-walk": (
         "profiles.md",
         partial(

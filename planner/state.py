@@ -247,7 +247,10 @@ class WalkState:
 
     def swinging_anew(self, clock: TimeScaling, again: bool = False) -> "WalkState":
         """The state in which the swing begins again, on a clock that shows what it did when its phase began."""
-        return replace(self, clock=clock.showing(self.phase.start), swing=Swing(again=again or self.swing.again))
+        start = self.phase.start
+        schedule = adaptation.with_clock_put_back(self.schedule, self.phase.rolls, clock.now, start)
+        state = replace(self, clock=clock.showing(start), swing=Swing(again=again or self.swing.again))
+        return state if schedule is self.schedule else state.on(schedule)
 
     def landing(self, position: Array, clock: TimeScaling) -> "WalkState":
         """The state in which the swing foot has landed at a place, shape (3,) [m], when the clock shows this."""

@@ -137,6 +137,23 @@ def with_roll(schedule: Schedule, span: RollSpan, angle: float) -> Schedule:
     return schedule.with_steps(tuple(_rolled(step, span, changed) for step in schedule.steps))
 
 
+def with_clock_put_back(schedule: Schedule, spans: tuple[RollSpan, ...], now: float, to: float) -> Schedule:
+    """Rolls that have begun go on, and those that are over do not come again, on a clock that is put back.
+
+    Args:
+        schedule: the steps in sight.
+        spans: rolls of the present phase.
+        now: what the clock shows [samples].
+        to: what it is put to [samples].
+    """
+    for span in spans:
+        if span.start < now:
+            ends = span.end > now
+            later = span._replace(start=span.start - now + to, end=span.end - now + to) if ends else None
+            schedule = schedule.with_steps(tuple(_rolled(step, span, later) for step in schedule.steps))
+    return schedule
+
+
 def _rolled(step: Step, span: RollSpan, changed: RollSpan | None) -> Step:
     """The step with another roll in place of one, the same one where it has not got it."""
     if step.toe_off == span:

@@ -33,7 +33,14 @@ from surefoot.scenarios.file.schema import (
     Start,
 )
 from surefoot.scenarios.file.sensing import Sensing
-from surefoot.scenarios.setup.groups.formulation import Formulation, cop_room, leg_reach, lowered, region_of
+from surefoot.scenarios.setup.groups.formulation import (
+    Formulation,
+    catching_height,
+    cop_room,
+    leg_reach,
+    lowered,
+    region_of,
+)
 from surefoot.scenarios.setup.groups.gait import (
     FINAL_STAND,
     PushPoint,
@@ -267,7 +274,8 @@ class Walk:
     @property
     def legs(self) -> LegReach:
         """The reach of the legs that catch the body."""
-        return leg_reach(self.parameters, self.facts, self.gait.com_height, self.standing_height)
+        height = catching_height(self.keys.planner, self.facts, self.gait.com_height)
+        return leg_reach(self.parameters, self.facts, height, self.standing_height)
 
     def planner(self, feet: FeetState, leg: LegInertia) -> Planner:
         """The planner of this walk, of feet and legs at its start: the profile's own, or the walking one with its law.

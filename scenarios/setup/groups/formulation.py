@@ -35,6 +35,12 @@ LEG_SHARE = 0.9
 """Share of the span of the legs that steps on command use [-]. With all of it both legs are straight at touchdown: at
 0.88 m/s the robot fell by a push that it took at 0.65 to 0.8 m/s."""
 
+CATCHING_HIPS = 0.907
+"""Greatest height of the hips from which straight legs reach a step that catches the body, over the leg length [-].
+
+The body comes down for such a step, by 6 cm at 0.8 m/s. Legs that are straight between two feet would reach no farther
+than the walk's own steps."""
+
 ANKLE_SHARE = 0.85
 """Share of an ankle's torque that bears the robot with the CoP at the edge of its room; the rest is for shocks [-]."""
 
@@ -202,8 +208,15 @@ def region_of(parameters: PlannerParameters, facts: RobotFacts, com_height: floa
     return step_region(parameters, sole, facts.shank_spacing, span, facts.hip_width)
 
 
+def catching_height(keys: PlannerSettings, facts: RobotFacts, com_height: float) -> float:
+    """CoM height from which legs reach a step that catches the body, with its CoM at a height in the gait [m]."""
+    if keys.knee != "straight":
+        return com_height
+    return min(com_height, CATCHING_HIPS * facts.leg_length + facts.com_above_hip)
+
+
 def leg_reach(parameters: PlannerParameters, facts: RobotFacts, com_height: float, standing_height: float) -> LegReach:
-    """The reach of legs that catch a body with its CoM at a height in the gait, and at one in standing [m]."""
+    """The reach of legs that catch a body with its CoM at a height for that, and at one in standing [m]."""
     recovery = parameters.recovery
     return LegReach(
         radius=0.5 * LEG_SHARE * facts.leg_span(com_height),

@@ -106,6 +106,38 @@ def test_a_heel_is_lifted_no_harder_than_hips_swing_a_foot(stand, hips, left, be
     assert bool(state.phase.rolls) is rolls
 
 
+def swinging(stand, count):
+    """State in the second swing, so many samples after its foot has left the ground, and its time [s]."""
+    ground = Ground(flat(), np.array([0.11, 0.055]), PlannerParameters(reach_length=0.8))
+    feet = stand(GAIT.step_width)
+    state = WalkState.start(WalkModel.of(GAIT, ground, SmoothHeight(), None), feet)
+    measured = Measured(CentroidalState(0.0, np.array([0.0, 0.0, GAIT.com_height]), np.zeros(3)), feet)
+    while state.phase.kind is not PhaseKind.SINGLE or not state.phase.rolls:
+        state = advanced(state, measured)
+    for _ in range(count):
+        state = advanced(state, measured)
+    assert state.phase.kind is PhaseKind.SINGLE
+    return state, 0.02 * state.clock.ticks
+
+
+def test_a_foot_that_swings_anew_does_not_roll_off_the_ground_again(stand):
+    """Sent elsewhere shortly before it landed, a foot rolled over its toes in the air, by 30 degrees."""
+    state, _ = swinging(stand, 18)
+    assert state.clock.now > state.phase.rolls[0].end
+    anew = state.swinging_anew(state.clock)
+    assert anew.clock.now == anew.phase.start
+    assert anew.phase.rolls == ()
+    assert all(step.toe_off is None or step.number != anew.phase.step for step in anew.schedule.steps)
+
+
+def test_a_roll_under_way_goes_on_where_the_foot_swings_anew(stand):
+    state, time = swinging(stand, 8)
+    (roll,), (later,) = state.rolls(time), state.swinging_anew(state.clock).rolls(time)
+    for ahead in (0.0, 0.04, 0.2):
+        assert later.evaluate(time + ahead) == pytest.approx(roll.evaluate(time + ahead), abs=1e-9)
+    assert roll.evaluate(time)[0] > 0.1
+
+
 def test_a_roll_begins_in_double_support_and_ends_before_touchdown(walk):
     singles = [phase for phase in walk.phases if phase.rolls and phase.kind is PhaseKind.SINGLE]
     for phase in singles:

@@ -9,6 +9,7 @@ from hypothesis import strategies as st
 from surefoot.models.facts import longest_step
 from surefoot.planner.references.com_height import BENT_KNEES
 from surefoot.scenarios.file.schema import Gait, PushSettings, Scenario
+from surefoot.scenarios.setup.groups.formulation import CATCHING_HIPS
 from surefoot.scenarios.setup.groups.gait import (
     FINAL_STAND,
     phase_of,
@@ -39,6 +40,22 @@ def test_who_walks_with_bent_knees_goes_down_less_for_a_long_step():
     assert bent.height == pytest.approx(stretched.height - BENT_KNEES)
     assert bent.lowering(0.7) == pytest.approx(max(stretched.lowering(0.7) - BENT_KNEES, 0.0))
     assert stretched.lowering(0.7) > 0.03
+
+
+@pytest.mark.parametrize("speed", [0.5, 0.8, 1.06])
+def test_straight_legs_that_catch_a_body_reach_as_far_as_it_comes_down(speed):
+    """Between two feet they span no more than the walk's own steps; from lower hips a foot lands well beyond them."""
+    gait = {"speed": speed, "steps": 6}
+    straight, bent = (resolve(load("walk", {"gait": gait, "planner.knee": knee})) for knee in ("straight", "bent"))
+    hips = CATCHING_HIPS * straight.facts.leg_length
+    assert straight.legs.radius == pytest.approx(0.9 * math.sqrt(straight.facts.leg_length**2 - hips**2))
+    assert straight.legs.stride > straight.gait.step_length + 0.35
+    assert bent.legs.radius == pytest.approx(0.45 * bent.facts.leg_span(bent.gait.com_height))
+
+
+def test_legs_that_carry_the_body_lower_than_that_reach_from_where_they_are():
+    low = resolve(load("walk", {"gait": {"speed": 0.8, "steps": 6, "com_height": 0.93}}))
+    assert low.legs.radius == pytest.approx(0.45 * low.facts.leg_span(0.93))
 
 
 def test_phases_follow_each_other():

@@ -5,14 +5,14 @@ from dataclasses import replace
 import numpy as np
 import pytest
 
-from surefoot.planner.geometry.plane import sole_pose
+from surefoot.planner.geometry.plane import frame_rotation, sole_pose
 from surefoot.planner.ground.stairs import Direction, Stairs
 from surefoot.planner.ground.terrain import Box, Site, Terrain, flat
 from surefoot.planner.parameters import PlannerParameters
 from surefoot.planner.steps.adaptation import aligned, with_steps_repeated
 from surefoot.planner.steps.gait import GaitParameters
 from surefoot.planner.steps.schedule import Schedule
-from surefoot.planner.steps.step import room_left, shortest_swing
+from surefoot.planner.steps.step import Stop, ramp_before, room_left, shortest_swing, turned_room
 from surefoot.planner.swing.course import Ground
 from surefoot.planner.swing.leg_reach import LegReach
 from surefoot.planner.swing.quintics import PEAK
@@ -131,3 +131,23 @@ def test_the_room_of_a_step_is_counted_from_where_it_now_is_to_land(stand):
 def test_no_foot_crosses_one_that_lets_the_body_down_which_the_last_step_of_a_flight_does_not(stand, direction, may):
     schedule = laid(STAIRS, stand, flight(direction))
     assert [schedule.ground.terrain.footholds.crossed(schedule.step(number).lift) for number in range(1, 6)] == may
+
+
+@pytest.mark.parametrize("angle", [-0.9, -0.2, 0.3, 1.2])
+def test_a_room_in_another_frame_lies_in_the_room(angle):
+    """Each of its corners does, the middle of each side of a square goes half as far as its rhombus, and 0 is in it."""
+    room = np.array([[-0.1, -0.3], [0.4, 0.2]])
+    turned = turned_room(room, angle, 0.01)
+    corners = np.array([[turned[i, 0], turned[j, 1]] for i in (0, 1) for j in (0, 1)])
+    seen = corners @ frame_rotation(angle)  # from the frame in which the footstep, and its room, has this heading
+    assert (seen >= room[0] - 1e-12).all() and (seen <= room[1] + 1e-12).all()
+    assert (turned[0] < 0.0).all() and (turned[1] > 0.0).all()
+    square, most = np.array([[-1.0, -1.0], [1.0, 1.0]]), max(abs(np.cos(angle)), abs(np.sin(angle)))
+    np.testing.assert_allclose(turned_room(square, angle, 0.01), 0.5 / most * square)
+    assert turned_room(room, 0.005, 0.01) is room
+
+
+def test_the_weight_leaves_a_foot_while_it_shifts_and_not_while_it_rests(stand):
+    step = laid(STAIRS, stand, flat()).step(2)
+    assert ramp_before(step, None) == step.double_support
+    assert ramp_before(step, Stop(30.0, 12.5, 5.0)) == 7.5

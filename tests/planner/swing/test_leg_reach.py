@@ -88,3 +88,19 @@ def test_the_body_goes_down_where_steps_may_land_anywhere(stand, ground, free):
     for adapted, lowers in ((False, False), (True, free)):
         swung = swinging_to(replace(state, adapted=adapted), landing, measured, False)
         assert swung.lowering == (pytest.approx(legs.lowering(0.7)) if lowers else 0.0)
+
+
+@pytest.mark.parametrize("hip", [(0.0, 0.2), (0.3, -0.1)])
+def test_sides_around_a_place_are_in_reach_from_a_hip(hip):
+    """The end of each side that is nearer than the box, level with the place, is as far from the hip as the reach."""
+    place, reach = np.array([0.1, 0.15]), 0.5
+    wide = np.array([[-9.0, -9.0], [9.0, 9.0]])
+    found = LEGS.around(place, np.array(hip), wide, reach)
+    for axis in (0, 1):
+        for end in found[:, axis]:
+            at = place.copy()
+            at[axis] = end
+            assert np.linalg.norm(at - hip) == pytest.approx(reach)
+    assert (found[0] < place).all() and (place < found[1]).all()
+    near = np.array([[0.05, 0.1], [0.2, 0.16]])
+    np.testing.assert_array_equal(LEGS.around(place, np.array(hip), near, reach), near)

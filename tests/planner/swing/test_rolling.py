@@ -23,7 +23,7 @@ from surefoot.planner.steps.gait import GaitParameters
 from surefoot.planner.steps.schedule import Schedule
 from surefoot.planner.swing.course import Ground
 from surefoot.planner.swing.leg_reach import LegReach
-from surefoot.planner.swing.rolling import FootRoll, bump, landing_pitch
+from surefoot.planner.swing.rolling import FootRoll, bump, landing_pitch, stretched
 from surefoot.planner.track import advanced
 from surefoot.planner.types import CentroidalState, Edge, Foot, Footstep, PhaseKind
 from surefoot.planner.walk_model import WalkModel
@@ -296,3 +296,16 @@ def test_a_rolling_foot_turns_about_its_toe_edge_and_lifts_the_ankle():
     toes_up = chain.joints(com, soles, heading, np.array([[-0.3], [0.0]]), 0.11)[2][0, 0]
     assert np.linalg.norm(toes_up + edge) == pytest.approx(np.linalg.norm(level + edge))
     assert toes_up[0] < level[0] and toes_up[2] > level[2]
+
+
+def test_a_foot_pitches_the_more_the_farther_the_other_one_is_ahead():
+    """Not at all up to a share of the reach, by as much more a metre from there on, and no farther than it can."""
+    ahead = np.linspace(0.0, 3.0, 3001)
+    pitch = np.array([stretched(way, 0.4) for way in ahead])
+    begins = ahead[np.flatnonzero(pitch)[0]]
+    assert 0.1 < begins < 0.6 and pitch[-1] == pitch.max() > 0.0
+    rises = (pitch > 0.0) & (pitch < pitch[-1])
+    slope = np.diff(pitch)[rises[1:] & rises[:-1]] / 0.001
+    np.testing.assert_allclose(slope, slope[0])
+    # Lengths grow with the robot, and angles do not.
+    assert stretched(2.0 * begins + 0.02, 0.8, 2.0) == pytest.approx(stretched(begins + 0.01, 0.4))

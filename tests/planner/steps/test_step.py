@@ -151,3 +151,13 @@ def test_the_weight_leaves_a_foot_while_it_shifts_and_not_while_it_rests(stand):
     step = laid(STAIRS, stand, flat()).step(2)
     assert ramp_before(step, None) == step.double_support
     assert ramp_before(step, Stop(30.0, 12.5, 5.0)) == 7.5
+
+
+@pytest.mark.parametrize(("since", "shift"), [(-1.0, 20.0), (1.0, 20.0), (29.0, 20.0), (31.0, 12.0)])
+def test_a_weight_shift_takes_other_times_until_its_standing_is_over(stand, since, shift):
+    """Standing lasts 30 samples after the step before it; the present phase began so long after that."""
+    schedule = laid(STAIRS, stand, flat())
+    before, step = schedule.step(2), replace(schedule.step(3), stop=Stop(30.0, 12.0, 0.0))
+    retimed = step.retimed(before, (50.0, 20.0), before.end + since, before.end + since, PlannerParameters())
+    assert retimed.stop.shift == shift
+    assert retimed.lift_off == before.end + 30.0 + shift

@@ -23,7 +23,7 @@ from surefoot.planner.steps.gait import GaitParameters
 from surefoot.planner.steps.schedule import Schedule
 from surefoot.planner.swing.course import Ground
 from surefoot.planner.swing.leg_reach import LegReach
-from surefoot.planner.swing.rolling import FootRoll, bump, landing_pitch, stretched
+from surefoot.planner.swing.rolling import FootRoll, bump, heel_strike, landing_pitch, stretched, toe_off
 from surefoot.planner.track import advanced
 from surefoot.planner.types import CentroidalState, Edge, Foot, Footstep, PhaseKind
 from surefoot.planner.walk_model import WalkModel
@@ -309,3 +309,13 @@ def test_a_foot_pitches_the_more_the_farther_the_other_one_is_ahead():
     np.testing.assert_allclose(slope, slope[0])
     # Lengths grow with the robot, and angles do not.
     assert stretched(2.0 * begins + 0.02, 0.8, 2.0) == pytest.approx(stretched(begins + 0.01, 0.4))
+
+
+def test_a_foot_lifts_its_toes_as_soon_as_it_is_level_at_most_a_double_support_before_it_lands():
+    """And is flat before the double support is over."""
+    off = toe_off(Foot.LEFT, 10.0, 100.0, 40.0, 0.5, True)
+    level = (off.end - 100.0) / 40.0  # share of its swing after which its heel is level again
+    assert 0.0 < level < 1.0
+    short, long = (heel_strike(Foot.LEFT, 140.0, 40.0, double, 0.3) for double in (5.0, 60.0))
+    assert short.start == 135.0 and long.start == pytest.approx(100.0 + 40.0 * level)
+    assert 140.0 < short.end < 145.0 and 140.0 < long.end < 200.0 and long.angle == -0.3

@@ -7,9 +7,10 @@ from hypothesis import strategies as st
 
 from surefoot.planner.geometry.plane import seen_from, sole_corners
 from surefoot.planner.ground.terrain import flat
+from surefoot.planner.parameters import PlannerParameters
 from surefoot.planner.steps.footsteps import plan_footsteps
 from surefoot.planner.steps.gait import Bout, GaitParameters
-from surefoot.planner.swing.step_region import StepRegion
+from surefoot.planner.swing.step_region import StepRegion, reachable_shifts
 from surefoot.planner.types import Foot, Footstep, Twist
 
 pytestmark = pytest.mark.unit
@@ -103,3 +104,22 @@ def test_legs_reach_a_disc_about_their_own_hip():
     what, right = region.why_not(at(0.25, 0.39, 0.0))
     assert what.endswith("m from where the legs stand upright")
     assert right == "0.300 m is the most"
+
+
+def test_a_foot_may_turn_as_far_as_it_may_to_rounding():
+    region = StepRegion(length=0.4, width=(0.08, 0.4), sole=(0.22, 0.11), turn=0.3)
+    for turn, right in ((0.3, True), (-0.3, True), (0.301, False), (-0.301, False)):
+        fault = region.why_not(at(0.0, 0.3, turn))
+        assert fault is None if right else "turns by" in fault[0]
+
+
+@pytest.mark.parametrize("here", [(0.1, 0.05), (-0.15, 0.08), (0.02, -0.04)])
+def test_a_step_is_shifted_by_no_more_than_its_foot_goes_in_the_time_left(here):
+    """To within that of where the foot is now, but for the nominal footstep, which is always in reach."""
+    parameters, increment = PlannerParameters(reach_length=0.8), np.array([[0.1, 0.25], [0.1, -0.25]])
+    wide = reachable_shifts(parameters, increment, 1.0, (True, True), None, 0.0)
+    lower, upper = reachable_shifts(parameters, increment, 1.0, (True, True), increment[0] + here, 0.1)
+    travel = 0.1 * parameters.swing_speed / np.sqrt(2.0)
+    np.testing.assert_allclose(lower[0], np.maximum(wide[0][0], np.minimum(np.array(here) - travel, 0.0)))
+    np.testing.assert_allclose(upper[0], np.minimum(wide[1][0], np.maximum(np.array(here) + travel, 0.0)))
+    assert (lower[1] == wide[0][1]).all() and (upper[1] == wide[1][1]).all()

@@ -104,7 +104,9 @@ def test_products_are_those_of_numpy(forms, rng, n):
     ):
         first = name.startswith(("add_scaled", "accumulate", "add_multiple", "downdate"))
         found = both(forms, name, *given)
-        np.testing.assert_allclose(found[0 if first or np.ndim(expected) == 0 else -1], expected, atol=1e-12, err_msg=name)
+        np.testing.assert_allclose(
+            found[0 if first or np.ndim(expected) == 0 else -1], expected, atol=1e-12, err_msg=name
+        )
 
 
 @pytest.mark.parametrize("n", range(1, 10))

@@ -25,8 +25,8 @@ from mutants import ROOT, builds, copied, found_by
 from surefoot.native.modules import STAMP, sources, target
 
 sys.path.append(str(ROOT / "tests" / "touched"))
-import edited  # noqa: E402  of the folder that was just added
-import touches  # noqa: E402
+import edited
+import touches
 
 FLIPPED = {"+": "-", "-": "+", "+=": "-=", "-=": "+="}
 """Sign that another one becomes."""

@@ -295,7 +295,8 @@ def test_a_foot_is_pitched_about_the_edge_of_its_sole(pitch):
     rolled = np.array([[c, 0.0, -s], [0.0, 1.0, 0.0], [s, 0.0, c]]) @ frame
     for leg, side in ((0, 1.0), (1, -1.0)):
         ankle = edge @ frame + (np.array(TURNED.ankle) - edge) @ rolled
-        foot = ankle + (np.array(TURNED.foot_centre) + [0.0, side * TURNED.foot_outward, 0.0]) @ rolled
+        outward = np.array([0.0, side * TURNED.foot_outward, 0.0])
+        foot = ankle + (TURNED.foot_centre + outward) @ rolled
         np.testing.assert_allclose(body.points[4 + leg, :, 0], soles[leg, 0] + ankle - com[0], atol=1e-15)
         np.testing.assert_allclose(body.points[6 + leg, :, 0], soles[leg, 0] + foot - com[0], atol=1e-15)
 

@@ -72,7 +72,7 @@ def climbing(stand):
 
 
 def test_a_foot_goes_as_its_swing_from_one_place_to_the_next(climbing):
-    """Its share of the way and of its turn is that of the swing of a metre, and its height that over the place before."""
+    """Its share of way and turn is that of the swing of a metre, and its height that over the place before."""
     schedule, samples = climbing
     feet = NominalFeet(len(samples.clock))
     feet.move(len(samples.clock), samples, schedule, (np.eye(2), np.zeros(2)))

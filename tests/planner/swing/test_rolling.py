@@ -12,6 +12,7 @@ from surefoot.planner.geometry.orientation import sole_rotation
 from surefoot.planner.ground.terrain import flat
 from surefoot.planner.measured import Measured
 from surefoot.planner.model.leg_chain import LegChain, Link
+from surefoot.planner.model.time_scaling import TimeScaling
 from surefoot.planner.parameters import PlannerParameters
 from surefoot.planner.plan.sampling import PlanSampler
 from surefoot.planner.planner import WalkingPlanner
@@ -319,3 +320,13 @@ def test_a_foot_lifts_its_toes_as_soon_as_it_is_level_at_most_a_double_support_b
     short, long = (heel_strike(Foot.LEFT, 140.0, 40.0, double, 0.3) for double in (5.0, 60.0))
     assert short.start == 135.0 and long.start == pytest.approx(100.0 + 40.0 * level)
     assert 140.0 < short.end < 145.0 and 140.0 < long.end < 200.0 and long.angle == -0.3
+
+
+def test_rates_of_a_roll_on_a_clock_that_changes_its_rate_are_its_derivatives():
+    clock = TimeScaling(0.02, now=50.0).scaled(20.0, 26.0).advanced().advanced()
+    roll, h = FootRoll(Foot.LEFT, 1.0, 1.35, 0.5, 0.11, clock, 1.05), 1e-5
+    for time in (1.06, 1.2, 1.33):
+        before, now, after = (roll.evaluate(time + d) for d in (-h, 0.0, h))
+        assert now[1] == pytest.approx((after[0] - before[0]) / (2 * h), rel=1e-5)
+        assert now[2] == pytest.approx((after[1] - before[1]) / (2 * h), rel=1e-4)
+    assert clock.seconds(1.05, 1.2)[2] != 0.0

@@ -10,7 +10,7 @@ from surefoot.planner.ground.terrain import flat
 from surefoot.planner.parameters import PlannerParameters
 from surefoot.planner.steps.footsteps import plan_footsteps
 from surefoot.planner.steps.gait import Bout, GaitParameters
-from surefoot.planner.swing.step_region import StepRegion, reachable_shifts
+from surefoot.planner.swing.step_region import StepRegion, reach_box, reachable_shifts
 from surefoot.planner.types import Foot, Footstep, Twist
 
 pytestmark = pytest.mark.unit
@@ -123,3 +123,25 @@ def test_a_step_is_shifted_by_no_more_than_its_foot_goes_in_the_time_left(here):
     np.testing.assert_allclose(lower[0], np.maximum(wide[0][0], np.minimum(np.array(here) - travel, 0.0)))
     np.testing.assert_allclose(upper[0], np.minimum(wide[1][0], np.maximum(np.array(here) + travel, 0.0)))
     assert (lower[1] == wide[0][1]).all() and (upper[1] == wide[1][1]).all()
+
+
+@pytest.mark.parametrize("ahead", [0.4, -0.4])
+def test_a_foot_may_land_as_far_ahead_and_beside_as_it_may_to_rounding(ahead):
+    for place, right in ((ahead, True), (1.001 * ahead, False)):
+        assert (REGION.why_not(at(place, 0.3, 0.0)) is None) is right
+    near, far = REGION.nearest(0.0), REGION.width[1]
+    for beside, right in ((near, True), (near - 1e-3, False), (far, True), (far + 1e-3, False)):
+        assert (REGION.why_not(at(0.0, beside, 0.0)) is None) is right
+
+
+def test_shifts_are_those_that_keep_both_steps_in_the_reachable_area():
+    """Of the first step beside its stance foot, of the second one on the other side; neither if they may not move."""
+    parameters, increment = PlannerParameters(reach_length=0.8), np.array([[0.1, 0.25], [0.2, -0.3]])
+    for side in (1.0, -1.0):
+        lower, upper = reachable_shifts(parameters, side * increment, side, (True, True), None, 0.0)
+        for k, foot in enumerate((side, -side)):
+            box = reach_box(parameters, foot)
+            least, most = box[0] - side * increment[k], box[1] - side * increment[k]
+            if k == 1:
+                least, most = np.minimum(least, 0.0), np.maximum(most, 0.0)
+            np.testing.assert_allclose([lower[k], upper[k]], [least, most])

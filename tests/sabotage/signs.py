@@ -31,8 +31,8 @@ import touches
 FLIPPED = {"+": "-", "-": "+", "+=": "-=", "-=": "+="}
 """Sign that another one becomes."""
 
-COUNTS = {"range", "len", "slice"}
-"""Functions whose arguments are places and counts."""
+COUNTS = {"range", "len", "slice", "zeros", "empty", "ones"}
+"""Functions whose arguments are places, counts and shapes."""
 
 
 @dataclass(frozen=True, slots=True)

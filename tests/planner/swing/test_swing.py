@@ -246,7 +246,7 @@ def test_places_and_bends_are_those_of_the_positions():
 @pytest.mark.parametrize("height", [0.0, 0.05, 0.12])
 def test_a_swing_to_another_height_has_its_clearance_over_the_higher_end(height):
     swing = made(touchdown_lead=0.0)
-    target = swing.target + [0.0, 0.0, height - 0.05, 0.0, 0.0, 0.0]
+    target = swing.target + (height - 0.05) * np.eye(6)[2]
     moved = swing.retargeted(1.02, target)
     top = moved.positions(np.linspace(1.02, moved.touchdown_time, 2000))[:, 2].max()
     if height != 0.05:

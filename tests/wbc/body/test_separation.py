@@ -189,7 +189,7 @@ def test_pairs_are_looked_at_before_they_come_near_whichever_way_they_lie(robot,
     rng, parameters = np.random.default_rng(6), SeparationParameters(attention=0.03)
     beside, data = geometry.copy(), robot.model.createData()
     for shape in beside.geometryObjects:
-        shape.placement = pin.SE3(shape.placement.rotation, shape.placement.translation + [0.05, 0.0, 0.0])
+        shape.placement = pin.SE3(shape.placement.rotation, shape.placement.translation + 0.05 * np.eye(3)[0])
     rows, lower = np.zeros((parameters.slots, robot.nv)), np.zeros(parameters.slots)
     seldom, q, v, near = Separation(robot.model, beside, parameters), robot.standing.copy(), np.zeros(robot.nv), 0
     for step in range(120):

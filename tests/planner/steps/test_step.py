@@ -161,3 +161,23 @@ def test_a_weight_shift_takes_other_times_until_its_standing_is_over(stand, sinc
     retimed = step.retimed(before, (50.0, 20.0), before.end + since, before.end + since, PlannerParameters())
     assert retimed.stop.shift == shift
     assert retimed.lift_off == before.end + 30.0 + shift
+
+
+def test_a_turn_is_that_of_a_step_against_the_one_before_it(stand):
+    """And there is none after the last step."""
+    schedule = laid(replace(TURNING, steps=8), stand, flat())
+    turns = [schedule.turn(number) for number in range(1, schedule.last.number + 1)]
+    assert turns[:-1] == pytest.approx([0.15] * (len(turns) - 1)) and schedule.turn(schedule.last.number + 1) == 0.0
+
+
+def test_a_foot_that_strikes_with_its_heel_rolls_as_it_lands_also_in_other_times(stand):
+    gait = GaitParameters(steps=5, step_length=0.4, single_support=0.4, double_support=0.1, heel_strike=0.3)
+    schedule = laid(gait, stand, flat())
+    for number in (2, 3, 4):
+        before, step = schedule.step(number - 1), schedule.step(number)
+        times = (1.5 * step.single_support, 1.2 * step.double_support), before.end, before.end
+        for one in (step, step.retimed(before, *times, PlannerParameters())):
+            strike = one.heel_strike
+            assert strike.foot is one.place.foot and strike.angle < 0.0
+            assert one.lift_off < strike.start < one.touchdown < strike.end <= one.end
+        assert one.touchdown - step.touchdown == pytest.approx(0.5 * step.single_support)

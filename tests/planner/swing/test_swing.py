@@ -5,7 +5,7 @@ import numpy as np
 import pytest
 
 from surefoot.planner.parameters import PlannerParameters
-from surefoot.planner.swing.quintics import PEAK
+from surefoot.planner.swing.quintics import PEAK, detour
 from surefoot.planner.swing.trajectory import SwingCourse, start_swing
 from surefoot.planner.types import Foot
 
@@ -268,3 +268,24 @@ def test_what_is_left_of_a_swing_changes_in_proportion(delay):
     tops = [s.positions(np.array([s.apex_time]))[0, 2] for s in (swing, moved)]
     assert tops[0] == pytest.approx(tops[1])
     np.testing.assert_allclose(moved.evaluate(now), swing.evaluate(now), atol=1e-9)
+
+
+@pytest.mark.parametrize(("time", "duration"), [(0.1, 0.5), (0.3, 0.4), (0.2, 0.4)])
+def test_a_detour_is_as_smooth_as_its_least_jerk_makes_it(time, duration):
+    """From rest to one and back to rest, without a jump up to the fourth derivative (Euler and Lagrange)."""
+    before, after = (np.polynomial.Polynomial(way) for way in detour(time, duration))
+    for order in range(3):
+        assert before.deriv(order)(0.0) == pytest.approx(0.0, abs=1e-9)
+        assert after.deriv(order)(duration - time) == pytest.approx(0.0, abs=1e-7)
+    assert after(0.0) == pytest.approx(1.0)
+    for order in range(5):
+        assert before.deriv(order)(time) == pytest.approx(after.deriv(order)(0.0), rel=1e-9, abs=1e-6)
+
+
+def test_a_foot_that_searches_has_the_rates_of_its_way():
+    """After its touchdown, until it goes down evenly and from then on."""
+    swing, h = made(touchdown_lead=0.0), 1e-5
+    for late in np.linspace(2.0 * h, 0.2, 23):
+        before, now, after = (swing.evaluate(swing.touchdown_time + late + d) for d in (-h, 0.0, h))
+        np.testing.assert_allclose(now[1], (after[0] - before[0]) / (2 * h), atol=1e-5)
+        np.testing.assert_allclose(now[2], (after[1] - before[1]) / (2 * h), atol=2e-2)

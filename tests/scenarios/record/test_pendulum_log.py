@@ -1,4 +1,4 @@
-"""What the log of a pendulum says fits together: forces, centres of pressure, the gait's clock and the times it took."""
+"""The log of a pendulum is of one piece: forces, centres of pressure, the clock of the gait, and the times of a tick."""
 
 import time
 

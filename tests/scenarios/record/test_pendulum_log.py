@@ -1,4 +1,4 @@
-"""The log of a pendulum is of one piece: forces, centres of pressure, the clock of the gait, and the times of a tick."""
+"""The log of a pendulum is of one piece: forces, centres of pressure, the clock of the gait, the times of a tick."""
 
 import time
 

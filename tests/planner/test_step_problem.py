@@ -35,5 +35,5 @@ def test_the_next_steps_lie_on_the_sides_of_their_feet(stand, foot):
         for n in (0, 1):
             if steps.increment[n].any():
                 assert steps.side[n] == np.sign(steps.increment[n, 1])
-                assert (steps.lower[n] <= 0.0).all() and (0.0 <= steps.upper[n]).all()
+                assert (steps.lower[n] <= 0.0).all() and (steps.upper[n] >= 0.0).all()
     assert {steps.side for steps in told} == {(1.0, -1.0), (-1.0, 1.0)}

@@ -79,7 +79,7 @@ def test_how_far_one_rotation_is_from_another(forms, rng):
 
 @pytest.mark.parametrize("n", range(1, 10))
 def test_products_are_those_of_numpy(forms, rng, n):
-    """Of any length: loops take four terms at a time, and what is left."""
+    """Their length may be any: loops take four terms at a time, and what is left."""
     A, B, C, x, y = *(rng.normal(size=(n, n)) for _ in range(3)), rng.normal(size=n), rng.normal(size=n)
     one, other = np.array([n - 1, 0]), np.array([0, n // 2])
     for name, given, expected in (

@@ -135,7 +135,7 @@ def test_a_foot_may_land_as_far_ahead_and_beside_as_it_may_to_rounding(ahead):
 
 
 def test_shifts_are_those_that_keep_both_steps_in_the_reachable_area():
-    """Of the first step beside its stance foot, of the second one on the other side; neither if they may not move."""
+    """The first step lands beside its stance foot, the second one on the other side."""
     parameters, increment = PlannerParameters(reach_length=0.8), np.array([[0.1, 0.25], [0.2, -0.3]])
     for side in (1.0, -1.0):
         lower, upper = reachable_shifts(parameters, side * increment, side, (True, True), None, 0.0)

@@ -185,7 +185,7 @@ def test_no_pair_comes_near_unseen(robot, geometry) -> None:
 
 
 def test_pairs_are_looked_at_before_they_come_near_whichever_way_they_lie(robot, geometry) -> None:
-    """Of shapes beside the axes of their bodies: rows are those of distances that are all measured anew."""
+    """Rows are those of distances that are all measured anew, also of shapes beside the axes of their bodies."""
     rng, parameters = np.random.default_rng(6), SeparationParameters(attention=0.03)
     beside, data = geometry.copy(), robot.model.createData()
     for shape in beside.geometryObjects:

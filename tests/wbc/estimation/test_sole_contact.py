@@ -197,7 +197,7 @@ def test_an_edge_sinks_as_the_sole_does_there_and_turns_at_will(edge):
 
 @pytest.mark.parametrize("noise", [2.0, 20.0])
 def test_a_contact_is_felt_from_as_many_deviations_on_as_was_asked_for(noise):
-    """Of the force as it is filtered, which stands on white noise."""
+    """Deviations are those of the force as it is filtered, of white noise."""
     sensors = SensorNoise(wrench_force=noise, wrench_bias=0.0, wrench_moment=0.01)
     feet, loads = Feet(sensors), []
     for _ in range(20000):

@@ -112,7 +112,7 @@ def test_sides_around_a_place_are_in_reach_from_a_hip(hip):
 @pytest.mark.parametrize("foot", list(Foot))
 @pytest.mark.parametrize(("start", "end", "bends"), [(-0.15, 0.1, True), (0.1, -0.15, True), (0.2, 0.2, False)])
 def test_a_swing_goes_around_its_stance_leg_whichever_way_it_walks(foot, yaw, start, end, bends):
-    """It passes a corner beside the stance foot where it begins or ends beyond it, the same in the frame of that foot."""
+    """It passes a corner beside the stance foot where it begins or ends beyond it, whichever way that foot points."""
     R, side, legs = frame_rotation(yaw), foot.side, replace(LEGS, acceleration=(1e3, 1e3))
     stance = Footstep(foot.other, np.array([1.0, -2.0, 0.0]), yaw)
     beside = [R @ [x, side * y] + stance.position[:2] for x, y in ((-0.35, start), (0.35, end))]

@@ -76,7 +76,7 @@ class NominalMotion:
                 v[k, axis] = (c[k + 1, axis] - c[k, axis]) / T - T / 6.0 * (2.0 * bend + next_bend)
                 self.u[k, axis] = (next_bend - bend) / T
         for axis in range(2):
-            v[last, axis] = v[last - 1, axis] + 0.5 * T * (a[last - 1, axis] + a[last, axis])
+            v[last, axis] = v[last - 1, axis] + 0.5 * T * a[last - 1, axis]  # it ends on its ZMP, without acceleration
 
 
 def nominal_motion(position: Array, zmp: Array, stiffness: Array, sample_time: float) -> NominalMotion:

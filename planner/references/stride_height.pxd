@@ -2,6 +2,7 @@ cimport cython
 cimport libc.math as math
 from surefoot.maths.algebra cimport vector3
 from surefoot.planner.geometry cimport quintic
+from surefoot.planner.references cimport com_height
 from surefoot.planner.steps.phases cimport PhaseSamples
 
 cdef Py_ssize_t _DOUBLE, _SINGLE
@@ -17,7 +18,7 @@ cdef void _fill(
     PhaseSamples samples, double apex, double swinging, double standing, const unsigned char[:, ::1] rests,
     double[:, ::1] wave,
 )
-@cython.locals(left=double, more=double, phase=double, rate=double)
+@cython.locals(more=double, phase=double, rise=vector3)
 cdef vector3 _through(double apex, double first, double way, double omega, double share, double lasting) noexcept nogil
 @cython.locals(c=double, s=double, a=double)
 cdef vector3 _cosine(double apex, double phase, double rate, double bend) noexcept nogil

@@ -8,6 +8,7 @@ from numpy.typing import NDArray
 
 from surefoot.maths.algebra import Vector
 from surefoot.planner.geometry import quintic
+from surefoot.planner.references import com_height
 from surefoot.planner.references.com_height import SmoothHeight
 from surefoot.planner.steps.gait import GaitParameters
 from surefoot.planner.steps.phases import PhaseSamples
@@ -101,10 +102,9 @@ def _through(apex: float, first: float, way: float, omega: float, share: float, 
         share: of the phase that is over [-].
         lasting: duration of the phase [s].
     """
-    left, more = 1.0 - share, way - omega * lasting
-    phase = first + omega * lasting * share + more * share * share * share * (10.0 - 15.0 * share + 6.0 * share * share)
-    rate = omega + more * 30.0 * share * share * left * left / lasting
-    return _cosine(apex, phase, rate, more * 60.0 * share * left * (1.0 - 2.0 * share) / (lasting * lasting))
+    more, rise = way - omega * lasting, com_height.quintic_rise(share, 1.0 / lasting)
+    phase = first + omega * lasting * share + more * rise[0]
+    return _cosine(apex, phase, omega + more * rise[1], more * rise[2])
 
 
 def _cosine(apex: float, phase: float, rate: float, bend: float) -> Vector:

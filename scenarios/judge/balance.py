@@ -2,6 +2,7 @@
 
 import numpy as np
 
+from surefoot.planner.model.dcm import dcm
 from surefoot.scenarios.columns import Reads
 from surefoot.scenarios.judge.body import feet_lean
 from surefoot.scenarios.judge.digest import GAIT, SENSED, Array, Mask, Rows, RunView
@@ -146,9 +147,9 @@ def dcm_error_rms(run: RunView) -> list[float] | None:
     omega = prediction[:, 5:]
     position, velocity = truth.field("com")[rows, :2], truth.field("com_velocity")[rows, :2]
     if not run.has(SENSED):
-        return rms(position - prediction[:, :2] + (velocity - prediction[:, 3:5]) / omega)
-    predicted_dcm = to_truth(run, prediction[:, :2] + prediction[:, 3:5] / omega, rows)
-    return rms(position + velocity / omega - predicted_dcm)
+        return rms(dcm(position - prediction[:, :2], velocity - prediction[:, 3:5], omega))
+    predicted_dcm = to_truth(run, dcm(prediction[:, :2], prediction[:, 3:5], omega), rows)
+    return rms(dcm(position, velocity, omega) - predicted_dcm)
 
 
 @metric(unit="m", shown=MM, reads={"/plan": ("capture_margin",)})

@@ -9,6 +9,7 @@ from collections.abc import Iterator
 
 import numpy as np
 
+from surefoot.planner.geometry.plane import frame_rotation
 from surefoot.scenarios.judge import feet
 from surefoot.scenarios.judge.beliefs import SAME_FRICTION, beliefs
 from surefoot.scenarios.judge.computing_checks import DRIFT
@@ -72,7 +73,7 @@ def _before(lost: Loss, time: float) -> str:
 def _way(run: RunView, tick: int, impulse: Array) -> str:
     """Direction of a push, seen from the robot, in words."""
     yaw = np.angle(np.exp(1j * run.sole_yaw[tick]).sum())
-    ahead, left = (impulse[:2] @ np.array([[np.cos(yaw), -np.sin(yaw)], [np.sin(yaw), np.cos(yaw)]])).tolist()
+    ahead, left = (impulse[:2] @ frame_rotation(float(yaw))).tolist()
     words = [("forward" if ahead > 0.0 else "backward", abs(ahead)), ("left" if left > 0.0 else "right", abs(left))]
     words += [("up" if impulse[2] > 0.0 else "down", abs(float(impulse[2])))]
     most = max(part for _, part in words)

@@ -4,6 +4,7 @@ from collections.abc import Mapping
 
 import numpy as np
 
+from surefoot.planner.model.dcm import dcm
 from surefoot.scenarios.judge.balance import rms
 from surefoot.scenarios.judge.digest import Array, Rows, RunView
 from surefoot.scenarios.judge.metric import MM, metric
@@ -46,7 +47,7 @@ def dcm_estimation_error_rms(run: RunView) -> list[float] | None:
     omega = run.log["/reference"].field("omega")[rows, None]
     position = state.field("com")[given, :2] - truth.field("com")[rows, :2]
     velocity = state.field("com_velocity")[given, :2] - truth.field("com_velocity")[rows, :2]
-    return rms(position + velocity / omega)
+    return rms(dcm(position, velocity, omega))
 
 
 @metric(

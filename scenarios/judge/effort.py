@@ -2,6 +2,7 @@
 
 import numpy as np
 
+from surefoot.planner.geometry.plane import points_seen_from
 from surefoot.planner.types import GRAVITY
 from surefoot.scenarios.judge.digest import GAIT, Array, RunView
 from surefoot.scenarios.judge.metric import DEG, MM, OF_THE_TIME, metric, reduction
@@ -144,9 +145,8 @@ def path_length(run: RunView) -> float:
 def displacement(run: RunView) -> list[float]:
     """Way of the feet's middle from start to end, ahead and to the left in the start heading [m]."""
     middles, yaw = _middles(run), float(_heading(run)[0])
-    x, y = middles[-1] - middles[0]
-    c, s = np.cos(yaw), np.sin(yaw)
-    return [float(c * x + s * y), float(c * y - s * x)]
+    start = np.array([*middles[0], 0.0, yaw])
+    return list(map(float, points_seen_from(start, middles[-1:])[0]))
 
 
 @metric(unit="rad", shown=DEG, reads={"/truth": ()}, tolerance=(0.005, 0.0))

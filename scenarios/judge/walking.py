@@ -2,6 +2,7 @@
 
 import numpy as np
 
+from surefoot.planner.model.dcm import dcm
 from surefoot.scenarios.columns import Reads
 from surefoot.scenarios.judge.body import lies, lost
 from surefoot.scenarios.judge.digest import GAIT, Mask, RunView
@@ -210,8 +211,8 @@ def _lost(run: RunView) -> Mask:
     if run.constants.plant == "cart_table" or not run.has("/contact", "/reference"):
         return np.zeros(run.ticks, dtype=np.bool_)
     omega = run.field("/reference", "omega")[:, None]
-    dcm = run.field("/truth", "com")[:, :2] + run.field("/truth", "com_velocity")[:, :2] / omega
-    return np.asarray(lost(dcm, run.field("/contact", "zmp")[:, :2], run.constants.similarity.length))
+    true_dcm = dcm(run.field("/truth", "com")[:, :2], run.field("/truth", "com_velocity")[:, :2], omega)
+    return np.asarray(lost(true_dcm, run.field("/contact", "zmp")[:, :2], run.constants.similarity.length))
 
 
 def runs_of(mask: Mask) -> list[tuple[int, int]]:

@@ -11,6 +11,7 @@ from surefoot.errors import ParameterError
 from surefoot.forces import Push
 from surefoot.maths.polygon import convex_hull
 from surefoot.planner.geometry.plane import sole_corners
+from surefoot.planner.model.dcm import dcm
 from surefoot.planner.parameters import LegInertia
 from surefoot.planner.plan.plan import WalkPlan
 from surefoot.planner.plan.sample import PlanSample
@@ -79,7 +80,7 @@ class PendulumPlant(Pendulum):
     def drive(self, sampler: PlanSampler, now: float, period: float, support: Array, force: Array) -> None:
         """Follow the plan (see `Plant`), held at what it says of the middle of the tick."""
         start, middle = sampler.sample(now), sampler.sample(now + 0.5 * period)
-        error = self.position + self.velocity / start.omega - start.dcm
+        error = dcm(self.position, self.velocity, start.omega) - start.dcm
         command = middle.pendulum_zmp + self._feedback * error
         self.advance(period, command, support, true_stiffness(middle, self._height_error), force)
 
@@ -214,8 +215,8 @@ class PointMass(Planned):
 
     def fallen(self, sample: PlanSample) -> bool:
         """Return true if no foot could catch the mass any more."""
-        dcm = self.state.com[:2] + self.state.com_velocity[:2] / sample.omega
-        return self._plant.can_fall and bool(lost(dcm, self._plant.zmp, self._length))
+        true_dcm = dcm(self.state.com[:2], self.state.com_velocity[:2], sample.omega)
+        return self._plant.can_fall and bool(lost(true_dcm, self._plant.zmp, self._length))
 
     def draw(self, tick: int, now_ns: int, plan: WalkPlan, sample: PlanSample, fallen: bool) -> None:
         """See `Walker`."""

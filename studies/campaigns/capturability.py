@@ -14,6 +14,7 @@ import numpy as np
 
 from surefoot.errors import ParameterError, PluginError
 from surefoot.planner.geometry.plane import frame_rotation, sole_corners
+from surefoot.planner.model.dcm import dcm
 from surefoot.planner.parameters import StepAdaptation
 from surefoot.planner.recovery.capturability import Moment, Way, landing_points, swing_box
 from surefoot.planner.swing.leg_reach import ANYWHERE
@@ -71,11 +72,11 @@ def _moment(scenario: Scenario, walk: Walk, view: LogView, push: int) -> Moment 
     single = min(gait.lift_off(step) - begin, 0.0) + gait.single_support
     pushed = scenario.pushes[push]
     com, speed = (view.field("/truth", name, 3)[row - 1 : row + 1, :2] for name in ("com", "com_velocity"))
-    before, now = com + speed / omega
+    before, now = dcm(com, speed, omega)
     since = begin - times[row]
-    dcm = now + since / (times[row] - times[row - 1]) * (now - before)
+    struck = now + since / (times[row] - times[row - 1]) * (now - before)
     ways = tuple(_ways(walk, view, gait.step_foot(step), (row, since), (lift, single)))
-    return Moment(dcm, omega, ways, pushed.duration, pushed.direction or 0.0)
+    return Moment(struck, omega, ways, pushed.duration, pushed.direction or 0.0)
 
 
 def _ways(walk: Walk, view: LogView, swing: Foot, at: tuple[int, float], left: tuple[float, float]) -> Iterator[Way]:

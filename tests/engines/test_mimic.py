@@ -219,3 +219,14 @@ def test_a_body_between_a_joint_and_its_follower_is_not_steered(models):
     assert mimic.moving_columns(short, short.getJointId("left_5")) == [*range(6), 6, 7, 8, 9, 10]
     with pytest.raises(ValueError, match="'left_2' between 'left_2' and 'left_3'"):
         mimic.moving_columns(short, short.getJointId("left_2"))
+
+
+def test_rotors_add_their_inertia_to_the_independent_joints(models):
+    short, _ = models
+    heavy = short.copy()
+    heavy.armature[6:] = np.linspace(0.1, 1.0, heavy.nv - 6)
+    (q, _), *_ = states(short)
+    plain, loaded = (mimic.Dynamics(model, model.createData()) for model in (short, heavy))
+    plain.mass_matrix(q)
+    loaded.mass_matrix(q)
+    near(loaded.data.M - plain.data.M, np.diag(heavy.armature))

@@ -4,7 +4,7 @@ import numpy as np
 import pytest
 from scipy.spatial import ConvexHull
 
-from surefoot.maths.polygon import convex_hull
+from surefoot.maths.polygon import convex_hull, flatness
 
 pytestmark = pytest.mark.unit
 
@@ -48,3 +48,14 @@ def test_feet_side_by_side_or_on_one_spot_make_four_corners(far, noise, rng):
             points = np.concatenate([turned(yaw), turned(yaw) + apart * way]) + far
             points += rng.uniform(-noise, noise, points.shape)
             assert len(convex_hull(points)) == 4
+
+
+@pytest.mark.parametrize("middle", [(0.0, 0.0), (3.0, -5.0), (-7.0, 2.0)])
+def test_a_shape_is_as_flat_in_a_mirror_and_turned_by_a_quarter(middle, rng):
+    """Flatness grows with the square of its extent, whichever way it is long."""
+    points = rng.uniform(-1.0, 1.0, (7, 2)) * (0.3, 0.02)
+    flat = flatness(points + middle, 7)
+    for way in ((points + middle)[:, ::-1], -points - middle, (points + middle) * (1.0, -1.0)):
+        assert flatness(np.ascontiguousarray(way), 7) == pytest.approx(flat)
+    about = points - points.mean(axis=0)
+    assert flatness(10.0 * about, 7) == pytest.approx(100.0 * flatness(about, 7))

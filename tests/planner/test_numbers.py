@@ -180,7 +180,6 @@ IN_BODIES = {
     "recovery.step_adjustment": {1e-9},
     "references.com_height": {3.0, 6.0, 10.0, 15.0, 30.0, 60.0},
     "references.height_transition": {6.0},
-    "references.stride_height": {6.0, 10.0, 15.0, 30.0, 60.0},
     "references.leg_offset": {6.0},
     "references.zmp_reference": {1e-12},
     "plan.sampling": {6.0},

@@ -4,8 +4,9 @@
 
 A module is drawn among those that are compiled and have a sign, and a sign among those of its functions. Signs of
 places in arrays, of counts and of texts are none of a law. Each is tried in a copy of the folders of the code, compiled
-there; the tests are the unit tests of the folder that mirrors the module's. The tests that find them are at last run on
-the code as it is, where they have to pass. Exits 1 where a sign survives.
+there; the tests are the unit tests of the folder that mirrors the module's, and where these pass those that run the
+function, of which the map of `tests/touched` tells. The tests that find them are at last run on the code as it is,
+where they have to pass. Exits 1 where a sign survives.
 """
 
 import argparse
@@ -23,11 +24,15 @@ from mutants import ROOT, builds, copied, found_by
 
 from surefoot.native.modules import STAMP, sources, target
 
+sys.path.append(str(ROOT / "tests" / "touched"))
+import edited
+import touches
+
 FLIPPED = {"+": "-", "-": "+", "+=": "-=", "-=": "+="}
 """Sign that another one becomes."""
 
-COUNTS = {"range", "len", "slice"}
-"""Functions whose arguments are places and counts."""
+COUNTS = {"range", "len", "slice", "zeros", "empty", "ones"}
+"""Functions whose arguments are places, counts and shapes."""
 
 
 @dataclass(frozen=True, slots=True)
@@ -112,6 +117,18 @@ def tests_of(module: Path) -> list[str]:
     return [str(own), str(folder)] if (ROOT / own).exists() else [str(folder)]
 
 
+def runners(module: Path, sign: Sign) -> list[str]:
+    """Tests of other folders that run the function of a sign, the quickest first."""
+    known = touches.read()
+    text = (ROOT / module).read_text(encoding="utf-8")
+    names = edited.lines(text) if module.suffix == ".py" else []
+    within = frozenset(name for lines, name in names if sign.line in lines)
+    found = known.of(edited.Edit(module.as_posix(), module.as_posix(), within or None), ROOT, frozenset())
+    near = tests_of(module)
+    others = (test for test in found if not test.startswith(tuple(near)))
+    return sorted(others, key=lambda test: (known.time(test) or 0.0, test))
+
+
 def tried(place: Path, module: Path, sign: Sign) -> str:
     """The test that finds a sign flipped; empty where none does. The folder is left as it was, compiled modules too."""
     files = (place / module, place / target(module), place / STAMP.relative_to(ROOT))
@@ -120,6 +137,8 @@ def tried(place: Path, module: Path, sign: Sign) -> str:
     if said := builds(place):
         raise SystemExit(f"{module}:{sign.line}: with the sign flipped it does not compile:\n{said}")
     found = found_by(place, tests_of(module))
+    if not found and (others := runners(module, sign)):
+        found = found_by(place, others)
     for file, content in before.items():
         file.write_bytes(content)
     return found

@@ -20,9 +20,10 @@ class Law:
             j = i - 1
         return self.a + f"{-x}" + min(self.limits[0], 2.0 - -x) - 0.5
 def tail():
+    room = np.zeros((n + k, 3)), np.empty(n - k)
     return [a + [b], -c]
 '''
-FOUND = [(9, "-="), (9, "-"), (12, "-"), (12, "-"), (12, "-"), (14, "-")]
+FOUND = [(9, "-="), (9, "-"), (12, "-"), (12, "-"), (12, "-"), (15, "-")]
 
 
 def test_signs_are_those_of_numbers_in_functions():
@@ -59,3 +60,15 @@ def test_tests_of_a_module_are_its_own_and_those_of_its_folder(module, first):
     tests = signs.tests_of(Path(module))
     assert first in tests
     assert all((signs.ROOT / test).exists() for test in tests)
+
+
+def test_tests_of_other_folders_that_run_the_function_are_tried_after_those_of_its_own():
+    module = Path("surefoot/maths/dual_method.py")
+    text = (signs.ROOT / module).read_text()
+    moves = next(sign for sign in signs.signs(text) if "self.u[k] -=" in text.splitlines()[sign.line - 1])
+    others = signs.runners(module, moves)
+    assert "tests/planner/laws/test_bounded_qp.py" in others
+    assert not any(test.startswith("tests/maths") for test in others)
+    assert all((signs.ROOT / test).exists() for test in others)
+    compiled = Path("surefoot/maths/linear.pyx")
+    assert isinstance(signs.runners(compiled, next(signs.signs((signs.ROOT / compiled).read_text()))), list)

@@ -6,7 +6,9 @@ import mujoco
 import numpy as np
 import pytest
 
+from surefoot.joints import JointCommand, Servo
 from surefoot.models.belief import with_joint_losses
+from surefoot.models.convert import Coordinates
 from surefoot.models.registry import describe
 from surefoot.models.types import RobotOptions
 from surefoot.planner.ground.terrain import flat
@@ -155,3 +157,18 @@ def test_motors_without_errors_change_no_bit():
         plain.advance(torque, 2)
         driven.advance(torque, 2)
     np.testing.assert_array_equal(plain.data.qpos, driven.data.qpos)
+
+
+def test_a_drive_with_gains_pulls_as_an_implicit_step_of_its_joint_alone():
+    """Its torque is that of spring and damper at the end of the step, in which it moves its joint's own inertia."""
+    world, rng = in_the_air(with_joint_losses(ROBOT, 0.0, 0.0), speed=0.3), np.random.default_rng(3)
+    q, v = world.measure().joint_position.copy(), world.measure().joint_velocity.copy()
+    inertia = Coordinates(world.model).inertia(world.model)
+    servo = Servo(q + rng.normal(size=NJ) * 1e-3, rng.normal(size=NJ) * 0.1, 20.0 * inertia, 30.0 * inertia)
+    forward, h = 1e-3 * rng.normal(size=NJ), 1e-3
+    world.act(JointCommand(forward, servo), h)
+    torque = world.data.qfrc_actuator[6:] - forward
+    after = v + h * torque / inertia
+    expected = servo.stiffness * (servo.position - (q + h * after)) + servo.damping * (servo.velocity - after)
+    np.testing.assert_allclose(torque, expected, rtol=1e-9, atol=1e-12)
+    assert (np.abs(torque) > 1e-3).all()

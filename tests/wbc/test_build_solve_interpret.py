@@ -112,6 +112,10 @@ def test_without_a_solution_the_last_torque_fades_and_the_rest_stays(robot, stat
     faded = controller.interpret(terms, None)
     assert np.abs(faded.torque).sum() < np.abs(torque).sum()
     np.testing.assert_array_equal(faded.wrench, wrench)
+    for _ in range(500):
+        faded = controller.interpret(terms, None)
+    rates = terms.v[6:]
+    assert (np.sign(faded.torque) == -np.sign(rates)).all() and np.abs(rates).max() > 0.0
 
 
 def test_a_posture_step_can_be_built_without_being_solved(robot):

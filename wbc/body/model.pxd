@@ -1,6 +1,6 @@
 cimport cython
 cimport libc.math as math
-from surefoot.maths cimport algebra
+from surefoot.maths cimport algebra, linear
 from surefoot.maths.algebra cimport vector3
 from surefoot.engines.mimic cimport Dynamics, JointColumns
 from surefoot.wbc.body.frame cimport Frame

@@ -8,7 +8,7 @@ import pinocchio as pin
 
 from surefoot.engines.mimic import Dynamics, JointColumns
 from surefoot.forces import NO_LOAD, ExternalLoad
-from surefoot.maths import algebra
+from surefoot.maths import algebra, linear
 from surefoot.wbc.body import soles
 from surefoot.wbc.body.frame import Frame
 from surefoot.wbc.body.leaning import line_centre, line_frame
@@ -181,12 +181,7 @@ class RobotTerms:
 
     def _update(self) -> None:
         """Work out what follows from Pinocchio's terms."""
-        total = 0.0
-        for i in range(self._q.shape[0]):
-            total += self._q[i] * self._q[i]
-        for i in range(self._v.shape[0]):
-            total += self._v[i] * self._v[i]
-        self.is_finite = math.isfinite(total)
+        self.is_finite = math.isfinite(linear.dot(self._q, self._q) + linear.dot(self._v, self._v))
         for i in range(3):
             self._c_dot[i] = self._linear_momentum[i] / self.model_mass
             self._w_base[i] = self._v[3 + i]
@@ -243,7 +238,8 @@ class RobotTerms:
             self._mass_diagonal += (1.0 - scale) * self.model.armature
             self.bias *= scale
         R = self.torso_rotation
-        moment = load.moment + cross(self.com - self.torso_position, load.force)
+        arm = algebra.subtract(algebra.vector(self.com), algebra.vector(self.torso_position))
+        moment = load.moment + np.array(algebra.cross(arm, algebra.vector(load.force)))
         torso = pin.getFrameJacobian(self.model, self.data, self._torso_frame, _LOCAL)
         self.bias -= np.concatenate((load.force @ R, moment @ R)) @ torso
         self._carry(load)
@@ -331,13 +327,6 @@ class RobotTerms:
         else:
             self._shifted_left = shifted
         self.is_shifted = self._shifted_left or self._shifted_right
-
-
-def cross(a: Array, b: Array) -> Array:
-    """Cross product of two vectors, shape (3,) each; numpy's own takes ten times as long for a single pair."""
-    ax, ay, az = a.tolist()
-    bx, by, bz = b.tolist()
-    return np.array([ay * bz - az * by, az * bx - ax * bz, ax * by - ay * bx])
 
 
 def _frame_id(model: pin.Model, name: str) -> int:

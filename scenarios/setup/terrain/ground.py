@@ -9,7 +9,7 @@ import numpy as np
 
 from surefoot.errors import at_most
 from surefoot.models.facts import RobotFacts
-from surefoot.planner.geometry.plane import sole_corners
+from surefoot.planner.geometry.plane import sole_corners, sole_rotation
 from surefoot.planner.ground.terrain import Box, Site, Terrain, flat
 from surefoot.planner.ground.tiles import TILE, Tiles
 from surefoot.planner.ground.tilt import FAR, Tilt
@@ -209,8 +209,7 @@ class Ground:
 
     def _box(self, error: GroundError) -> Box:
         """A box that nobody believes in, laid along the start heading."""
-        c, s = math.cos(self.start.yaw), math.sin(self.start.yaw)
-        rotation = np.array([[c, -s, 0.0], [s, c, 0.0], [0.0, 0.0, 1.0]])
+        rotation = sole_rotation(self.start.yaw, 0.0, 0.0)
         base = self.start_height
         center = rotation @ (error.x, error.y, 0.0) + (*self.origin, base + 0.5 * error.height)
         return Box(center, 0.5 * np.array([error.length, error.width, error.height]), rotation, error.friction)

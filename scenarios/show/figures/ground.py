@@ -14,7 +14,7 @@ from matplotlib.lines import Line2D
 from matplotlib.patches import Patch, Rectangle
 from numpy.typing import NDArray
 
-from surefoot.planner.geometry.plane import headings, level_corners, points_seen_from, rotations
+from surefoot.planner.geometry.plane import headings, level_corners, points_seen_from, rotations, yaw_rotations
 from surefoot.planner.types import GRAVITY
 from surefoot.scenarios.errors import LogError
 from surefoot.scenarios.judge.scenario import scenario_of
@@ -147,10 +147,7 @@ def loaded_wrench(view: LogView, foot: int) -> Array:
         pose = view.field("/truth", f"{FOOT_NAMES[foot]}_sole", 7)
         if len(pose) != len(wrench):
             raise MissingError("/truth and /measurement of the same ticks")
-        yaw, level = headings(pose[:, 3:]), np.zeros((len(pose), 3, 3))
-        level[:, 0, 0], level[:, 1, 1], level[:, 2, 2] = np.cos(yaw), np.cos(yaw), 1.0
-        level[:, 0, 1], level[:, 1, 0] = np.sin(yaw), -np.sin(yaw)
-        turned = level @ rotations(pose[:, 3:])
+        turned = yaw_rotations(-headings(pose[:, 3:])) @ rotations(pose[:, 3:])
         wrench = np.einsum("nij,nkj->nki", turned, wrench.reshape(-1, 2, 3)).reshape(-1, 6)
     wrench[wrench[:, 2] < LOADED * view.number("mass") * GRAVITY] = np.nan
     return wrench

@@ -8,6 +8,7 @@ from matplotlib.axes import Axes
 from matplotlib.patches import Patch
 from numpy.typing import NDArray
 
+from surefoot.planner.model.dcm import dcm
 from surefoot.planner.types import GRAVITY
 from surefoot.scenarios import palette
 from surefoot.scenarios.record.channels import SUPPORT_VERTICES
@@ -108,7 +109,7 @@ def support_handle() -> Patch:
 def true_dcm(view: LogView) -> Array:
     """DCM of the true state on the ticks of /truth, with the reference's natural frequency, shape (n, 2) [m]."""
     omega = view.at("/reference", "omega", view.time("/truth"))[:, None]
-    return view.field("/truth", "com", 3)[:, :2] + view.field("/truth", "com_velocity", 3)[:, :2] / omega
+    return dcm(view.field("/truth", "com", 3)[:, :2], view.field("/truth", "com_velocity", 3)[:, :2], omega)
 
 
 def _positions(axes: Axes, view: LogView, axis: int) -> None:
@@ -129,10 +130,10 @@ def _positions(axes: Axes, view: LogView, axis: int) -> None:
 
 def _errors(axes: Axes, view: LogView, axis: int) -> None:
     clock = view.time("/reference")
-    zmp, com, dcm = (view.field("/reference", name, size)[:, :2] for name, size, *_ in _REFERENCES)
+    zmp, com, planned = (view.field("/reference", name, size)[:, :2] for name, size, *_ in _REFERENCES)
     curves = (
         ("ZMP", palette.ZMP, "/contact", view.field("/contact", "zmp", 3)[:, :2], zmp),
-        ("DCM", palette.DCM, "/truth", true_dcm(view), dcm),
+        ("DCM", palette.DCM, "/truth", true_dcm(view), planned),
         ("CoM", palette.COM, "/truth", view.field("/truth", "com", 3)[:, :2], com),
     )
     axes.axhline(0.0, color=palette.GREY, linewidth=0.6)

@@ -90,3 +90,13 @@ def test_arrays_may_lie_in_memory_as_they_like():
     turned = replace(fine, P=np.asfortranarray(fine.P), G=np.asfortranarray(fine.G), q=spread)
     (one, _), (other, _) = (AxesSolver(("daqp",)).solve(qp, qp) for qp in (fine, turned))
     np.testing.assert_array_equal(one.z, other.z)
+
+
+@pytest.mark.parametrize("n", [1, 5])
+def test_inequalities_that_the_minimiser_meets_exactly_are_not_active(n):
+    """Nor is one to within the tolerance: no step is made for it."""
+    solver, at, free = BoundedQp(n, n), np.linspace(1.0, 2.0, n), np.full(n, np.inf)
+    solver.factorise(np.eye(n), np.eye(n))
+    for h, lower, upper in ((at, -free, free), (free, at, free), (free, -free, at)):
+        np.testing.assert_allclose(solver.minimised(-at, h, lower, upper), at, atol=1e-15)
+        assert solver.iterate() == 0

@@ -244,3 +244,66 @@ def test_an_ankle_that_rolls_first_turns_the_knee_with_the_shank(heading):
         aside[first] = abs(float(roll @ R[:, 1])) / np.linalg.norm(roll)
     assert aside[True] < 0.2 * aside[False]
     assert aside[False] > 0.02
+
+
+TURNED = LegChain(
+    0.06, (0.03, 0.04, 0.3), replace(THIGH, ahead=0.1, outward=0.05), replace(SHANK, ahead=0.2, outward=0.03),
+    0.02, (0.02, 0.01, -0.04), (-0.02, 0.015, 0.08), 0.02, rolls_first=True, hip_lever=(0.05, -0.06),
+)  # fmt: skip
+"""A body of which no part lies on an axis of its frame."""
+
+
+@pytest.mark.parametrize("chain", [TURNED, replace(TURNED, hip_lever=(0.0, 0.0))], ids=["lever", "none"])
+def test_a_body_is_the_same_whichever_way_it_walks(chain):
+    """Points and momentum of a body that is turned about the vertical are those of the other one, turned."""
+    com, soles = walking()
+    t = T * np.arange(len(com))
+    heading, pitch = np.stack((0.2 + t, -0.3 + 0.5 * t)), np.stack((0.3 - 2.0 * t, 0.2 + t))
+    straight = chain.body(com, soles, heading, pitch, 0.1)
+    R = axes(np.array(0.9))  # its rows are the axes of the turned frame
+    turned = chain.body(com @ R, soles @ R, heading + 0.9, pitch, 0.1)
+    np.testing.assert_allclose(turned.points, np.einsum("pin,ij->pjn", straight.points, R), atol=1e-12)
+    rate = chain.momentum_rate(com, soles, heading, T, pitch, 0.1)
+    np.testing.assert_allclose(
+        chain.momentum_rate(com @ R, soles @ R, heading + 0.9, T, pitch, 0.1), rate @ R, atol=1e-8
+    )
+    joints = chain.joints(com @ R, soles @ R, heading + 0.9, pitch, 0.1)
+    for joint, first in zip(joints, (HIPS, KNEES, ANKLES), strict=True):
+        np.testing.assert_allclose(joint, turned.points[first].swapaxes(1, 2) + com @ R, atol=1e-15)
+
+
+def test_a_body_in_a_mirror_stands_on_its_other_leg():
+    com, soles = walking()
+    heading, pitch = np.array([[0.2], [-0.3]]).repeat(41, axis=1), np.array([[0.3], [-0.2]]).repeat(41, axis=1)
+    flip = np.array([1.0, -1.0, 1.0])
+    # The trunk and the ways in the feet are the same for both legs: those to the side change theirs in the mirror.
+    other = replace(TURNED, trunk=TURNED.trunk * flip, foot_centre=TURNED.foot_centre * flip, ankle=TURNED.ankle * flip)
+    one = TURNED.body(com, soles, heading, pitch, 0.1).points
+    seen = other.body(com * flip, soles[::-1] * flip, -heading[::-1], pitch[::-1], 0.1).points
+    order = [1, 0, 3, 2, 5, 4, 7, 6, 8, 10, 9, 12, 11]
+    np.testing.assert_allclose(seen[order] * flip[:, None], one, atol=1e-12)
+
+
+@pytest.mark.parametrize("pitch", [0.4, -0.3])
+def test_a_foot_is_pitched_about_the_edge_of_its_sole(pitch):
+    """The edge stays where the level sole has it; ankle and CoM of the foot turn about it, heel up or toes up."""
+    com, soles = walking(1)
+    heading, toe = np.array([[0.7], [0.7]]), 0.1
+    body = TURNED.body(com, soles, heading, np.full((2, 1), pitch), toe)
+    frame, edge = axes(heading[0])[0], np.array([np.copysign(toe, pitch), 0.0, 0.0])
+    c, s = np.cos(pitch), np.sin(pitch)
+    rolled = np.array([[c, 0.0, -s], [0.0, 1.0, 0.0], [s, 0.0, c]]) @ frame
+    for leg, side in ((0, 1.0), (1, -1.0)):
+        ankle = edge @ frame + (np.array(TURNED.ankle) - edge) @ rolled
+        outward = np.array([0.0, side * TURNED.foot_outward, 0.0])
+        foot = ankle + (TURNED.foot_centre + outward) @ rolled
+        np.testing.assert_allclose(body.points[4 + leg, :, 0], soles[leg, 0] + ankle - com[0], atol=1e-15)
+        np.testing.assert_allclose(body.points[6 + leg, :, 0], soles[leg, 0] + foot - com[0], atol=1e-15)
+
+
+def test_a_turned_body_whose_masses_lie_aside_has_the_com_it_was_asked_for():
+    chain = replace(TURNED, thigh=replace(TURNED.thigh, mass=0.15), shank=replace(TURNED.shank, mass=0.1))
+    com, soles = walking()
+    R = axes(np.array(0.9))
+    points, masses = bodies(chain, (com - [0.0, 0.0, 0.1]) @ R, soles @ R, np.full((2, len(com)), 0.9))
+    assert np.abs(np.einsum("k,kni->ni", masses, points)).max() < 3e-3

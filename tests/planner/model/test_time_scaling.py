@@ -5,7 +5,7 @@ import pytest
 from hypothesis import given
 from hypothesis import strategies as st
 
-from surefoot.planner.model.time_scaling import TimeScaling
+from surefoot.planner.model.time_scaling import CLOCK_ROUNDING, TimeScaling
 
 pytestmark = pytest.mark.unit
 
@@ -79,3 +79,26 @@ def test_what_a_clock_foresees_is_what_it_shows(way, ratio):
         assert clock.course == first.course
         clock = clock.advanced()
     assert clock.steady
+
+
+@given(st.floats(8.0, 40.0), st.floats(0.6, 1.6))
+def test_a_clock_that_has_begun_foresees_the_same_in_samples_and_in_seconds(way, ratio):
+    """Also before it began, and when its quintic is over."""
+    clock, told = TimeScaling(T, now=10.0).scaled(way, ratio * way), 3.0
+    for _ in range(4):
+        clock = clock.advanced()
+    ahead = np.array([-6.0, -4.0, -1.5, 0.0, 2.5, 100.0])
+    for k, (at, rate, bend) in enumerate(shown(clock, ahead).T):
+        if k > 0:
+            assert clock.after(ahead[k]) == pytest.approx(at)
+        seconds = clock.seconds(told, told + T * ahead[k])
+        assert seconds == pytest.approx((told + T * (at - clock.now), rate, bend / T), abs=1e-9)
+    assert shown(clock, ahead)[0, :2] == pytest.approx([8.0, 10.0])
+
+
+def test_a_clock_is_steady_from_the_end_of_its_quintic_on_to_rounding():
+    clock = TimeScaling(T, now=10.0).scaled(12.0, 15.0)
+    for sooner, steady in ((2.0, False), (0.5, True), (-0.5, True)):
+        elapsed = TimeScaling(T, 22.0, 0, 10.0, 15.0 - sooner * CLOCK_ROUNDING, 12.0, 15.0, clock.coefficients)
+        assert elapsed.steady is steady
+    np.testing.assert_array_equal(shown(TimeScaling(T, now=7.0), [0.0, 2.0]), [[7.0, 9.0], [1.0, 1.0], [0.0, 0.0]])

@@ -149,3 +149,12 @@ def test_a_foot_is_planned_to_bear_load_from_the_end_of_its_single_support_on(wa
         assert sum(sampler.sample(end - 1e-4).contacts) == 1
         assert sampler.sample(end).contacts == (True, True)
         assert sampler.sample(end + 1e-4).swing_foot is plan.swing.foot
+
+
+def test_at_an_instant_of_a_sample_its_own_contacts_hold(plan):
+    """To rounding of the time, but for a foot that lands within the first one."""
+    sampler, T = PlanSampler(plan), plan.sample_time
+    for k in range(1, len(plan.contacts) - 1):
+        for off in (-1e-12, 0.0, 1e-12):
+            assert sampler.sample(plan.time + k * T + off).contacts == tuple(plan.contacts[k].tolist())
+    assert plan.time < 1.0 or len(np.unique(plan.contacts, axis=0)) > 1

@@ -12,6 +12,7 @@ from surefoot.planner.references.com_height import (
     preview_height,
 )
 from surefoot.planner.references.height_transition import HeightTransition
+from surefoot.planner.references.stride_height import StrideHeight
 from surefoot.planner.steps.gait import Bout, GaitParameters
 from surefoot.planner.types import GRAVITY, PhaseKind, Twist
 
@@ -195,3 +196,31 @@ def test_a_bridge_goes_smoothly_from_a_state_to_its_law(preview, rise, speed, le
     np.testing.assert_allclose(np.gradient(height[1], t)[1:-1], height[2, 1:-1], atol=1.0)
     # At a later tick it is what it was to be then.
     np.testing.assert_allclose(bridge.over(law[:, 1:], 8), height[:, 1:], atol=1e-12)
+
+
+@pytest.mark.parametrize("profile", [*SMOOTH, StrideHeight()], ids=str)
+def test_a_clock_that_changes_its_rate_changes_the_derivatives(schedule, profile):
+    """z(c(t)), of a clock c that goes faster and slower, has derivatives by time."""
+    whole = schedule(GAIT, FINE, 10).schedule
+    n = np.arange(0.0, 20000.0)
+    clock = n + 900.0 * np.sin(n / 3000.0)
+    rate, bend = 1.0 + 0.3 * np.cos(n / 3000.0), -0.0001 * np.sin(n / 3000.0) / FINE
+    z = law_height(profile, GAIT, whole.samples(clock, (rate, bend)), UP)
+    np.testing.assert_allclose(np.gradient(z[0], FINE)[1:-1], z[1][1:-1], atol=1e-5)
+    np.testing.assert_allclose(np.gradient(z[1], FINE)[1:-1], z[2][1:-1], atol=2e-2)
+    np.testing.assert_allclose(z[0], law_height(profile, GAIT, whole.samples(clock), UP)[0], atol=1e-12)
+
+
+@pytest.mark.parametrize(("left", "samples"), [(30.0, 30), (30.0 + 1e-10, 30), (30.2, 31)])
+def test_a_transition_ends_with_its_phase_to_rounding(left, samples):
+    law = np.zeros((3, 200))
+    assert HeightTransition.onto(law, np.zeros(3), 0, left, 0.01, 5.0).samples == samples
+
+
+def test_a_transition_from_a_state_that_is_accelerated_harder_ends_as_soon():
+    """An acceleration that is there is no fault of the transition: it bounds it."""
+    law = np.zeros((3, 200))
+    usual, harder = (
+        HeightTransition.onto(law, np.array([0.0, 0.0, bend]), 0, 10.0, 0.01, 5.0).samples for bend in (4.999, 5.001)
+    )
+    assert abs(usual - harder) <= 1 and harder < 150

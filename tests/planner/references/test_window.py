@@ -153,3 +153,13 @@ def test_a_window_stays_as_it_was_when_the_next_one_is_looked_at(stand):
     assert not np.array_equal(windows[0].height.height, windows[1].height.height)
     for name, value in kept[0].items():
         np.testing.assert_array_equal(kept[1][name], value)
+
+
+def test_a_table_tells_about_what_the_next_one_will_be():
+    """Its values from the tick on, and its last one beyond; nothing of another support or when it is over."""
+    values = table().values
+    np.testing.assert_array_equal(table().guess(113, KEY, 150), values[3:153])
+    guessed = table().guess(290, KEY, 50)
+    np.testing.assert_array_equal(guessed[:20], values[180:])
+    np.testing.assert_array_equal(guessed[20:], np.tile(values[-1], (30, 1)))
+    assert table().guess(310, KEY, 50) is None and table().guess(113, KEY._replace(landed=3), 50) is None

@@ -233,3 +233,87 @@ def test_an_edge_of_a_sole_lies_at_its_end(edge):
         along, across = ((corners - place.position[:2]) @ frame_rotation(place.yaw)).T
         assert np.abs(along).max() <= HALF[0] + 1e-12 and (along * edge).min() > 0.9 * HALF[0]
         assert np.abs(across).max() == pytest.approx(width * HALF[1])
+
+
+WINDING = GaitParameters(steps=4, step_length=0.2, lateral_step=0.05, turn=0.25, initial_stand=0.0, heel_off=0.4)
+
+
+def laid(stand, yaw=0.0, gait=WINDING):
+    """All steps of a gait that begins with a heading, the second of which lies higher."""
+    feet = stand(gait.step_width, (0.3, -0.4), yaw)
+    whole = Schedule.start(gait, feet, Ground(flat(), HALF, PlannerParameters(reach_length=0.8))).extended(np.inf)
+    return whole.moved(2, whole.step(2).place.position + np.array([0.0, 0.0, 0.06]))
+
+
+def test_support_points_are_the_same_whichever_way_a_walk_goes(stand):
+    one, other = (support_table(laid(stand, yaw), 1, (True, True), HALF) for yaw in (0.0, 0.9))
+    np.testing.assert_allclose(one, other, atol=1e-12)
+    assert np.abs(one[0, :, 1]).max() > 0.05 and np.ptp(one[0, :, 4]) > 1e-3
+
+
+def test_support_points_are_those_of_the_feet_seen_from_the_stance_foot(stand):
+    schedule = laid(stand)
+    values = support_table(schedule, 1, (True, True), HALF)[0]
+    place, row = schedule.step(1).place, schedule.index(1)
+    feet = (schedule.positions[:, :2] - place.position[:2]) @ frame_rotation(place.yaw)
+    for (left, right), at in zip(schedule.supports, values, strict=True):
+        np.testing.assert_allclose(at[:2], 0.5 * (feet[left] + feet[right]), atol=1e-12)
+        assert at[6] == pytest.approx(0.5 * (schedule.positions[left, 2] + schedule.positions[right, 2]))
+    assert schedule.positions[row + 1, 2] == pytest.approx(0.06)
+    samples = schedule.samples(np.arange(0.0, 400.0))
+    heights, index, share = zmp_reference(samples, support_table(schedule, 1, (True, True), HALF)).height, *(
+        samples.index, samples.fraction
+    )  # fmt: skip
+    following = values[np.minimum(index + 1, len(values) - 1), 6]
+    np.testing.assert_allclose(heights, values[index, 6] + share * (following - values[index, 6]), atol=1e-12)
+
+
+def test_boxes_are_the_largest_of_their_kinds(stand):
+    """In one foot that of its proportions whose corners touch its edges, between two the one of the greatest area."""
+    schedule = laid(stand)
+    values, yaws = support_table(schedule, 1, (True, True), HALF)[0], schedule.yaws - schedule.step(1).place.yaw
+    corners, boxes = np.array([[1.0, 1.0], [1.0, -1.0]]), {}
+
+    def of(foot):
+        box = next(at[4:6] for at, (one, other) in zip(values, schedule.supports, strict=True) if one == other == foot)
+        farthest = np.abs(box * corners @ frame_rotation(yaws[foot])).max(axis=0) / HALF
+        assert farthest.max() == pytest.approx(1.0) and box[0] / box[1] == pytest.approx(HALF[0] / HALF[1])
+        return box
+
+    boxes = {foot: of(foot) for foot in {one for one, other in schedule.supports.tolist() if one == other}}
+    for at, (one, other) in zip(values, schedule.supports.tolist(), strict=True):
+        if one == other or one not in boxes or other not in boxes:
+            continue
+        between = 0.5 * (boxes[one] + boxes[other])
+        apart = schedule.positions[other, :2] - schedule.positions[one, :2]
+        way = 0.5 * np.abs(apart @ frame_rotation(schedule.step(1).place.yaw))
+        shares = np.linspace(0.0, 1.0, 2001)[:, None]
+        family = np.concatenate((between + shares * way * (-1.0, 1.0), between + shares * way * (1.0, -1.0)))
+        areas = np.where((family > 0.0).all(axis=1), family.prod(axis=1), 0.0)
+        assert at[4:6].prod() == pytest.approx(areas.max(), rel=1e-5)
+        np.testing.assert_allclose(at[4:6], family[areas.argmax()], atol=1e-3)
+
+
+def test_the_zmp_goes_to_the_edge_of_a_turned_foot_that_rolls(stand):
+    """Along the heading of that foot, ahead to its toes, whichever way the walk goes."""
+    seen = []
+    for yaw in (0.0, 0.9):
+        schedule, looked = laid(stand, yaw), []
+        samples = schedule.samples(np.arange(0.0, 400.0))
+        key = SupportKey(schedule, 1, schedule.step(1).touchdown, (True, True))
+        support = present_support(key, PhaseKind.DOUBLE, 1.0, (9.0, 9.0))
+        middle = on_edges(zmp_reference(samples, support.table), samples, support, 400).middle
+        for k, number in enumerate(samples.which):
+            phase = samples.phases[number]
+            rolling = [roll.foot for roll in phase.rolls if roll.start < samples.clock[k] < roll.end]
+            if len(rolling) == 1 and abs(middle[k]).min() > 1e-6:
+                steps = (schedule.step(phase.step), schedule.step(phase.step - 1))
+                step = next(step for step in steps if step.place.foot is rolling[0])
+                # To its left where it is turned to the left of the stance foot, with its toes; boxes that reach to the
+                # reference are about there.
+                turned = step.place.yaw - schedule.step(1).place.yaw
+                assert np.sign(middle[k, 1]) == np.sign(turned * middle[k, 0])
+                looked.append(step.number)
+        seen.append(middle)
+        assert len(set(looked)) >= 2
+    np.testing.assert_allclose(*seen, atol=1e-12)

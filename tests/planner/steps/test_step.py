@@ -5,14 +5,14 @@ from dataclasses import replace
 import numpy as np
 import pytest
 
-from surefoot.planner.geometry.plane import sole_pose
+from surefoot.planner.geometry.plane import frame_rotation, sole_pose
 from surefoot.planner.ground.stairs import Direction, Stairs
 from surefoot.planner.ground.terrain import Box, Site, Terrain, flat
 from surefoot.planner.parameters import PlannerParameters
 from surefoot.planner.steps.adaptation import aligned, with_steps_repeated
 from surefoot.planner.steps.gait import GaitParameters
 from surefoot.planner.steps.schedule import Schedule
-from surefoot.planner.steps.step import room_left, shortest_swing
+from surefoot.planner.steps.step import Stop, ramp_before, room_left, shortest_swing, turned_room
 from surefoot.planner.swing.course import Ground
 from surefoot.planner.swing.leg_reach import LegReach
 from surefoot.planner.swing.quintics import PEAK
@@ -131,3 +131,53 @@ def test_the_room_of_a_step_is_counted_from_where_it_now_is_to_land(stand):
 def test_no_foot_crosses_one_that_lets_the_body_down_which_the_last_step_of_a_flight_does_not(stand, direction, may):
     schedule = laid(STAIRS, stand, flight(direction))
     assert [schedule.ground.terrain.footholds.crossed(schedule.step(number).lift) for number in range(1, 6)] == may
+
+
+@pytest.mark.parametrize("angle", [-0.9, -0.2, 0.3, 1.2])
+def test_a_room_in_another_frame_lies_in_the_room(angle):
+    """Each of its corners does, the middle of each side of a square goes half as far as its rhombus, and 0 is in it."""
+    room = np.array([[-0.1, -0.3], [0.4, 0.2]])
+    turned = turned_room(room, angle, 0.01)
+    corners = np.array([[turned[i, 0], turned[j, 1]] for i in (0, 1) for j in (0, 1)])
+    seen = corners @ frame_rotation(angle)  # from the frame in which the footstep, and its room, has this heading
+    assert (seen >= room[0] - 1e-12).all() and (seen <= room[1] + 1e-12).all()
+    assert (turned[0] < 0.0).all() and (turned[1] > 0.0).all()
+    square, most = np.array([[-1.0, -1.0], [1.0, 1.0]]), max(abs(np.cos(angle)), abs(np.sin(angle)))
+    np.testing.assert_allclose(turned_room(square, angle, 0.01), 0.5 / most * square)
+    assert turned_room(room, 0.005, 0.01) is room
+
+
+def test_the_weight_leaves_a_foot_while_it_shifts_and_not_while_it_rests(stand):
+    step = laid(STAIRS, stand, flat()).step(2)
+    assert ramp_before(step, None) == step.double_support
+    assert ramp_before(step, Stop(30.0, 12.5, 5.0)) == 7.5
+
+
+@pytest.mark.parametrize(("since", "shift"), [(-1.0, 20.0), (1.0, 20.0), (29.0, 20.0), (31.0, 12.0)])
+def test_a_weight_shift_takes_other_times_until_its_standing_is_over(stand, since, shift):
+    """Standing lasts 30 samples after the step before it; the present phase began so long after that."""
+    schedule = laid(STAIRS, stand, flat())
+    before, step = schedule.step(2), replace(schedule.step(3), stop=Stop(30.0, 12.0, 0.0))
+    retimed = step.retimed(before, (50.0, 20.0), before.end + since, before.end + since, PlannerParameters())
+    assert retimed.stop.shift == shift
+    assert retimed.lift_off == before.end + 30.0 + shift
+
+
+def test_a_turn_is_that_of_a_step_against_the_one_before_it(stand):
+    """And there is none after the last step."""
+    schedule = laid(replace(TURNING, steps=8), stand, flat())
+    turns = [schedule.turn(number) for number in range(1, schedule.last.number + 1)]
+    assert turns[:-1] == pytest.approx([0.15] * (len(turns) - 1)) and schedule.turn(schedule.last.number + 1) == 0.0
+
+
+def test_a_foot_that_strikes_with_its_heel_rolls_as_it_lands_also_in_other_times(stand):
+    gait = GaitParameters(steps=5, step_length=0.4, single_support=0.4, double_support=0.1, heel_strike=0.3)
+    schedule = laid(gait, stand, flat())
+    for number in (2, 3, 4):
+        before, step = schedule.step(number - 1), schedule.step(number)
+        times = (1.5 * step.single_support, 1.2 * step.double_support), before.end, before.end
+        for one in (step, step.retimed(before, *times, PlannerParameters())):
+            strike = one.heel_strike
+            assert strike.foot is one.place.foot and strike.angle < 0.0
+            assert one.lift_off < strike.start < one.touchdown < strike.end <= one.end
+        assert one.touchdown - step.touchdown == pytest.approx(0.5 * step.single_support)

@@ -13,9 +13,11 @@ from surefoot.planner.references.com_height import SmoothHeight
 from surefoot.planner.state import WalkState
 from surefoot.planner.steps.gait import GaitParameters
 from surefoot.planner.swing.course import Ground
+from surefoot.planner.swing.leg_reach import around_stance_leg
 from surefoot.planner.swing.step_region import StepRegion
+from surefoot.planner.swing.trajectory import SwingCourse, start_swing
 from surefoot.planner.track import advanced
-from surefoot.planner.types import CentroidalState, Footstep
+from surefoot.planner.types import CentroidalState, Foot, Footstep
 from surefoot.planner.walk_model import WalkModel
 
 pytestmark = pytest.mark.unit
@@ -88,3 +90,41 @@ def test_the_body_goes_down_where_steps_may_land_anywhere(stand, ground, free):
     for adapted, lowers in ((False, False), (True, free)):
         swung = swinging_to(replace(state, adapted=adapted), landing, measured, False)
         assert swung.lowering == (pytest.approx(legs.lowering(0.7)) if lowers else 0.0)
+
+
+@pytest.mark.parametrize("hip", [(0.0, 0.2), (0.3, -0.1)])
+def test_sides_around_a_place_are_in_reach_from_a_hip(hip):
+    """The end of each side that is nearer than the box, level with the place, is as far from the hip as the reach."""
+    place, reach = np.array([0.1, 0.15]), 0.5
+    wide = np.array([[-9.0, -9.0], [9.0, 9.0]])
+    found = LEGS.around(place, np.array(hip), wide, reach)
+    for axis in (0, 1):
+        for end in found[:, axis]:
+            at = place.copy()
+            at[axis] = end
+            assert np.linalg.norm(at - hip) == pytest.approx(reach)
+    assert (found[0] < place).all() and (place < found[1]).all()
+    near = np.array([[0.05, 0.1], [0.2, 0.16]])
+    np.testing.assert_array_equal(LEGS.around(place, np.array(hip), near, reach), near)
+
+
+@pytest.mark.parametrize("yaw", [0.0, 0.8])
+@pytest.mark.parametrize("foot", list(Foot))
+@pytest.mark.parametrize(("start", "end", "bends"), [(-0.15, 0.1, True), (0.1, -0.15, True), (0.2, 0.2, False)])
+def test_a_swing_goes_around_its_stance_leg_whichever_way_it_walks(foot, yaw, start, end, bends):
+    """It passes a corner beside the stance foot where it begins or ends beyond it, whichever way that foot points."""
+    R, side, legs = frame_rotation(yaw), foot.side, replace(LEGS, acceleration=(1e3, 1e3))
+    stance = Footstep(foot.other, np.array([1.0, -2.0, 0.0]), yaw)
+    beside = [R @ [x, side * y] + stance.position[:2] for x, y in ((-0.35, start), (0.35, end))]
+    poses = [np.array([*place, 0.0, yaw, 0.0, 0.0]) for place in beside]
+    swing = start_swing(foot, tuple(poses), (0.0, 25), SwingCourse(0.5, 0.0, 1.0, 0.05), PlannerParameters())
+    around = around_stance_leg(swing, stance, legs, 0.0, 0.02)
+    assert around.bent is bends
+    times = np.arange(0.0, 0.5, 0.002)
+    if bends:
+        assert around_stance_leg(around, stance, legs, 0.0, 0.02) is around
+        way = (around.positions(times)[:, :2] - stance.position[:2]) @ R * (1.0, side)
+        corner = (np.copysign(legs.clear, -0.35 if start < 0.0 else 0.35), legs.near)
+        assert np.linalg.norm(way - corner, axis=1).min() < 0.01
+        slow = replace(LEGS, acceleration=(0.1, 0.1))
+        assert around_stance_leg(swing, stance, slow, 0.0, 0.02) is swing

@@ -12,6 +12,7 @@ from surefoot.planner.geometry.orientation import sole_rotation
 from surefoot.planner.ground.terrain import flat
 from surefoot.planner.measured import Measured
 from surefoot.planner.model.leg_chain import LegChain, Link
+from surefoot.planner.model.time_scaling import TimeScaling
 from surefoot.planner.parameters import PlannerParameters
 from surefoot.planner.plan.sampling import PlanSampler
 from surefoot.planner.planner import WalkingPlanner
@@ -23,7 +24,7 @@ from surefoot.planner.steps.gait import GaitParameters
 from surefoot.planner.steps.schedule import Schedule
 from surefoot.planner.swing.course import Ground
 from surefoot.planner.swing.leg_reach import LegReach
-from surefoot.planner.swing.rolling import FootRoll, bump, landing_pitch
+from surefoot.planner.swing.rolling import FootRoll, bump, heel_strike, landing_pitch, stretched, toe_off
 from surefoot.planner.track import advanced
 from surefoot.planner.types import CentroidalState, Edge, Foot, Footstep, PhaseKind
 from surefoot.planner.walk_model import WalkModel
@@ -328,3 +329,36 @@ def test_a_rolling_foot_turns_about_its_toe_edge_and_lifts_the_ankle():
     toes_up = chain.joints(com, soles, heading, np.array([[-0.3], [0.0]]), 0.11)[2][0, 0]
     assert np.linalg.norm(toes_up + edge) == pytest.approx(np.linalg.norm(level + edge))
     assert toes_up[0] < level[0] and toes_up[2] > level[2]
+
+
+def test_a_foot_pitches_the_more_the_farther_the_other_one_is_ahead():
+    """Not at all up to a share of the reach, by as much more a metre from there on, and no farther than it can."""
+    ahead = np.linspace(0.0, 3.0, 3001)
+    pitch = np.array([stretched(way, 0.4) for way in ahead])
+    begins = ahead[np.flatnonzero(pitch)[0]]
+    assert 0.1 < begins < 0.6 and pitch[-1] == pitch.max() > 0.0
+    rises = (pitch > 0.0) & (pitch < pitch[-1])
+    slope = np.diff(pitch)[rises[1:] & rises[:-1]] / 0.001
+    np.testing.assert_allclose(slope, slope[0])
+    # Lengths grow with the robot, and angles do not.
+    assert stretched(2.0 * begins + 0.02, 0.8, 2.0) == pytest.approx(stretched(begins + 0.01, 0.4))
+
+
+def test_a_foot_lifts_its_toes_as_soon_as_it_is_level_at_most_a_double_support_before_it_lands():
+    """And is flat before the double support is over."""
+    off = toe_off(Foot.LEFT, 10.0, 100.0, 40.0, 0.5, True)
+    level = (off.end - 100.0) / 40.0  # share of its swing after which its heel is level again
+    assert 0.0 < level < 1.0
+    short, long = (heel_strike(Foot.LEFT, 140.0, 40.0, double, 0.3) for double in (5.0, 60.0))
+    assert short.start == 135.0 and long.start == pytest.approx(100.0 + 40.0 * level)
+    assert 140.0 < short.end < 145.0 and 140.0 < long.end < 200.0 and long.angle == -0.3
+
+
+def test_rates_of_a_roll_on_a_clock_that_changes_its_rate_are_its_derivatives():
+    clock = TimeScaling(0.02, now=50.0).scaled(20.0, 26.0).advanced().advanced()
+    roll, h = FootRoll(Foot.LEFT, 1.0, 1.35, 0.5, 0.11, clock, 1.05), 1e-5
+    for time in (1.06, 1.2, 1.33):
+        before, now, after = (roll.evaluate(time + d) for d in (-h, 0.0, h))
+        assert now[1] == pytest.approx((after[0] - before[0]) / (2 * h), rel=1e-5)
+        assert now[2] == pytest.approx((after[1] - before[1]) / (2 * h), rel=1e-4)
+    assert clock.seconds(1.05, 1.2)[2] != 0.0

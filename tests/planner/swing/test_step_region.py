@@ -7,9 +7,10 @@ from hypothesis import strategies as st
 
 from surefoot.planner.geometry.plane import seen_from, sole_corners
 from surefoot.planner.ground.terrain import flat
+from surefoot.planner.parameters import PlannerParameters
 from surefoot.planner.steps.footsteps import plan_footsteps
 from surefoot.planner.steps.gait import Bout, GaitParameters
-from surefoot.planner.swing.step_region import StepRegion
+from surefoot.planner.swing.step_region import StepRegion, reach_box, reachable_shifts
 from surefoot.planner.types import Foot, Footstep, Twist
 
 pytestmark = pytest.mark.unit
@@ -103,3 +104,44 @@ def test_legs_reach_a_disc_about_their_own_hip():
     what, right = region.why_not(at(0.25, 0.39, 0.0))
     assert what.endswith("m from where the legs stand upright")
     assert right == "0.300 m is the most"
+
+
+def test_a_foot_may_turn_as_far_as_it_may_to_rounding():
+    region = StepRegion(length=0.4, width=(0.08, 0.4), sole=(0.22, 0.11), turn=0.3)
+    for turn, right in ((0.3, True), (-0.3, True), (0.301, False), (-0.301, False)):
+        fault = region.why_not(at(0.0, 0.3, turn))
+        assert fault is None if right else "turns by" in fault[0]
+
+
+@pytest.mark.parametrize("here", [(0.1, 0.05), (-0.15, 0.08), (0.02, -0.04)])
+def test_a_step_is_shifted_by_no_more_than_its_foot_goes_in_the_time_left(here):
+    """To within that of where the foot is now, but for the nominal footstep, which is always in reach."""
+    parameters, increment = PlannerParameters(reach_length=0.8), np.array([[0.1, 0.25], [0.1, -0.25]])
+    wide = reachable_shifts(parameters, increment, 1.0, (True, True), None, 0.0)
+    lower, upper = reachable_shifts(parameters, increment, 1.0, (True, True), increment[0] + here, 0.1)
+    travel = 0.1 * parameters.swing_speed / np.sqrt(2.0)
+    np.testing.assert_allclose(lower[0], np.maximum(wide[0][0], np.minimum(np.array(here) - travel, 0.0)))
+    np.testing.assert_allclose(upper[0], np.minimum(wide[1][0], np.maximum(np.array(here) + travel, 0.0)))
+    assert (lower[1] == wide[0][1]).all() and (upper[1] == wide[1][1]).all()
+
+
+@pytest.mark.parametrize("ahead", [0.4, -0.4])
+def test_a_foot_may_land_as_far_ahead_and_beside_as_it_may_to_rounding(ahead):
+    for place, right in ((ahead, True), (1.001 * ahead, False)):
+        assert (REGION.why_not(at(place, 0.3, 0.0)) is None) is right
+    near, far = REGION.nearest(0.0), REGION.width[1]
+    for beside, right in ((near, True), (near - 1e-3, False), (far, True), (far + 1e-3, False)):
+        assert (REGION.why_not(at(0.0, beside, 0.0)) is None) is right
+
+
+def test_shifts_are_those_that_keep_both_steps_in_the_reachable_area():
+    """The first step lands beside its stance foot, the second one on the other side."""
+    parameters, increment = PlannerParameters(reach_length=0.8), np.array([[0.1, 0.25], [0.2, -0.3]])
+    for side in (1.0, -1.0):
+        lower, upper = reachable_shifts(parameters, side * increment, side, (True, True), None, 0.0)
+        for k, foot in enumerate((side, -side)):
+            box = reach_box(parameters, foot)
+            least, most = box[0] - side * increment[k], box[1] - side * increment[k]
+            if k == 1:
+                least, most = np.minimum(least, 0.0), np.maximum(most, 0.0)
+            np.testing.assert_allclose([lower[k], upper[k]], [least, most])

@@ -5,7 +5,7 @@ import numpy as np
 import pytest
 
 from surefoot.planner.parameters import PlannerParameters
-from surefoot.planner.swing.quintics import PEAK
+from surefoot.planner.swing.quintics import PEAK, detour
 from surefoot.planner.swing.trajectory import SwingCourse, start_swing
 from surefoot.planner.types import Foot
 
@@ -219,3 +219,73 @@ def test_a_braking_foot_is_later_and_at_rest_as_it_touches_down():
     assert (late.positions(times)[:, 0] < smooth.positions(times)[:, 0]).all()
     down = [swing.evaluate(swing.touchdown_time - 1e-7)[1, 2] for swing in (smooth, late)]
     assert down[1] == pytest.approx(down[0] - 0.1, abs=1e-4)
+
+
+def made(**changes):
+    """A swing from the ground to a step, of half a second that glides for three quarters of it."""
+    start, target = np.array([0.0, 0.1, 0.0, 0.2, 0.0, 0.0]), np.array([0.4, 0.15, 0.05, -0.1, 0.0, 0.0])
+    course = SwingCourse(0.5, 0.125, 0.875, 0.06)
+    return start_swing(Foot.LEFT, (start, target), (1.0, 25), course, PlannerParameters(**changes))
+
+
+def test_places_and_bends_are_those_of_the_positions():
+    """Also before it glides, after it has, and at an instant of its own to rounding."""
+    swing, h = made(), 1e-4
+    times = [1.0, 1.05, 1.2, swing.glide_end - 1e-12, swing.glide_end, 1.45, swing.touchdown_time - 1e-12, 1.6]
+    np.testing.assert_allclose(swing.places(*times), swing.positions(np.array(times))[:, :2], atol=1e-12)
+    inside = np.array([1.1, 1.2, 1.3, 1.4])
+    around = [swing.positions(inside + d)[:, :2] for d in (-h, 0.0, h)]
+    np.testing.assert_allclose(swing.bends(inside), (around[0] - 2.0 * around[1] + around[2]) / h**2, atol=1e-3)
+    assert not swing.bends(np.array([swing.glide_end - 1e-12, 1.49])).any()
+    bent = made().around(np.array([0.15, 0.2]), 0.02)
+    at = np.array([bent.bend_time - 0.01, bent.bend_time + 0.01])
+    around = [bent.positions(at + d)[:, :2] for d in (-h, 0.0, h)]
+    np.testing.assert_allclose(bent.bends(at), (around[0] - 2.0 * around[1] + around[2]) / h**2, atol=1e-3)
+
+
+@pytest.mark.parametrize("height", [0.0, 0.05, 0.12])
+def test_a_swing_to_another_height_has_its_clearance_over_the_higher_end(height):
+    swing = made(touchdown_lead=0.0)
+    target = swing.target + (height - 0.05) * np.eye(6)[2]
+    moved = swing.retargeted(1.02, target)
+    top = moved.positions(np.linspace(1.02, moved.touchdown_time, 2000))[:, 2].max()
+    if height != 0.05:
+        lifted = swing.positions(np.array([1.02]))[0, 2]
+        assert top == pytest.approx(max(lifted, height) + swing.clearance, abs=1e-4)
+
+
+@pytest.mark.parametrize("delay", [-0.08, 0.1])
+def test_what_is_left_of_a_swing_changes_in_proportion(delay):
+    """On a grid but for the touchdown; its apex stays as high, and what is over stays."""
+    swing, now, grid = made(touchdown_lead=0.0), 1.1, 0.01
+    moved = swing.retimed(now, delay, grid)
+    share = 1.0 + delay / (swing.touchdown_time - now)
+    assert moved.touchdown_time == pytest.approx(swing.touchdown_time + delay)
+    assert moved.start_time == now
+    for name in ("apex_time", "glide_end"):
+        assert getattr(moved, name) == pytest.approx(now + share * (getattr(swing, name) - now), abs=0.5 * grid + 1e-9)
+        assert (getattr(moved, name) - now) / grid == pytest.approx(round((getattr(moved, name) - now) / grid))
+    tops = [s.positions(np.array([s.apex_time]))[0, 2] for s in (swing, moved)]
+    assert tops[0] == pytest.approx(tops[1])
+    np.testing.assert_allclose(moved.evaluate(now), swing.evaluate(now), atol=1e-9)
+
+
+@pytest.mark.parametrize(("time", "duration"), [(0.1, 0.5), (0.3, 0.4), (0.2, 0.4)])
+def test_a_detour_is_as_smooth_as_its_least_jerk_makes_it(time, duration):
+    """From rest to one and back to rest, without a jump up to the fourth derivative (Euler and Lagrange)."""
+    before, after = (np.polynomial.Polynomial(way) for way in detour(time, duration))
+    for order in range(3):
+        assert before.deriv(order)(0.0) == pytest.approx(0.0, abs=1e-9)
+        assert after.deriv(order)(duration - time) == pytest.approx(0.0, abs=1e-7)
+    assert after(0.0) == pytest.approx(1.0)
+    for order in range(5):
+        assert before.deriv(order)(time) == pytest.approx(after.deriv(order)(0.0), rel=1e-9, abs=1e-6)
+
+
+def test_a_foot_that_searches_has_the_rates_of_its_way():
+    """After its touchdown, until it goes down evenly and from then on."""
+    swing, h = made(touchdown_lead=0.0), 1e-5
+    for late in np.linspace(2.0 * h, 0.2, 23):
+        before, now, after = (swing.evaluate(swing.touchdown_time + late + d) for d in (-h, 0.0, h))
+        np.testing.assert_allclose(now[1], (after[0] - before[0]) / (2 * h), atol=1e-5)
+        np.testing.assert_allclose(now[2], (after[1] - before[1]) / (2 * h), atol=2e-2)

@@ -70,6 +70,10 @@ def test_a_reference_says_what_sample_and_plan_say(plans):
             np.testing.assert_array_equal(spins, sole_rates(*motion))
             assert reference.load_share == (until.load_left, 1.0 - until.load_left)
             assert reference.planned_contact == until.contacts
+            passed, phase = until.time - plan.time, plan.phase
+            assert reference.time_to_switch == max(0.0, phase.left - passed)
+            if until.swing_foot is not None:
+                assert reference.swing_progress == min(1.0, (phase.elapsed + passed) / phase.duration)
             yaw, normal = [foot.yaw for foot in plan.footholds], [foot.normal for foot in plan.footholds]
             foot = until.swing_foot
             assert reference.swing_foot == (-1 if foot is None else foot)

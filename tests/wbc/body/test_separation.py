@@ -182,3 +182,27 @@ def test_no_pair_comes_near_unseen(robot, geometry) -> None:
         assert (lower > -UNBOUNDED).sum() == close
         found.add(close)
     assert len(found) > 2
+
+
+def test_pairs_are_looked_at_before_they_come_near_whichever_way_they_lie(robot, geometry) -> None:
+    """Rows are those of distances that are all measured anew, also of shapes beside the axes of their bodies."""
+    rng, parameters = np.random.default_rng(6), SeparationParameters(attention=0.03)
+    beside, data = geometry.copy(), robot.model.createData()
+    for shape in beside.geometryObjects:
+        shape.placement = pin.SE3(shape.placement.rotation, shape.placement.translation + 0.05 * np.eye(3)[0])
+    rows, lower = np.zeros((parameters.slots, robot.nv)), np.zeros(parameters.slots)
+    seldom, q, v, near = Separation(robot.model, beside, parameters), robot.standing.copy(), np.zeros(robot.nv), 0
+    for step in range(120):
+        angle, turned = 0.1 - 0.1 * np.cos(0.08 * step), 0.5 * np.sin(0.05 * step)
+        q = _crossing(robot, angle)
+        for side, way in (("left", 1.0), ("right", -1.0)):
+            for name in ("hip_pitch", "hip_yaw"):
+                q[robot.model.joints[robot.model.getJointId(f"{side}_{name}")].idx_q] += way * turned
+        q = pin.integrate(robot.model, q, 1e-3 * rng.normal(size=robot.nv))
+        pin.computeAllTerms(robot.model, data, q, v)
+        seldom.write(data, v, rows, lower, UNBOUNDED)
+        anew, least = _row(robot, beside, q, v, parameters)
+        np.testing.assert_allclose(rows[0], anew, atol=1e-9)
+        assert lower[0] == pytest.approx(least)
+        near += bool(anew.any())
+    assert 10 < near < 110

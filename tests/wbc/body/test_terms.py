@@ -3,6 +3,7 @@ import pinocchio as pin
 import pytest
 
 from surefoot.wbc.body.model import BodyFrames, RobotTerms
+from surefoot.wbc.types import ExternalLoad
 
 pytestmark = pytest.mark.unit
 
@@ -139,3 +140,27 @@ def test_another_gravity_is_refused(robot):
     model.gravity.linear = np.array([0.0, 0.0, -1.62])
     with pytest.raises(ValueError, match="gravity"):
         RobotTerms(model, robot.frames)
+
+
+def test_a_lasting_load_is_a_force_on_the_body_and_a_moment_about_its_com(robot, state):
+    """The rows of the base tell: its force and its moment about the base; the momentum balance is that of the load."""
+    force, moment = np.array([30.0, -20.0, 8.0]), np.array([4.0, 7.0, -2.0])
+    free, loaded = (terms_at(robot, state.q, state.v) for _ in range(2))
+    loaded.bear(ExternalLoad(force, moment, 1.0))
+    R, place = pin.Quaternion(state.q[3:7]).matrix(), state.q[:3]
+    about = moment + np.cross(free.com - place, force)
+    np.testing.assert_allclose((free.bias - loaded.bias)[:6], np.concatenate((force @ R, about @ R)), atol=1e-9)
+    assert loaded.mass == free.mass
+
+
+def test_a_heavier_body_has_as_much_more_inertia_but_for_its_rotors(robot, state):
+    model = robot.model.copy()
+    model.armature[6:] = np.linspace(0.1, 0.5, model.nv - 6)
+    free, loaded = (RobotTerms(model, robot.frames) for _ in range(2))
+    for terms in (free, loaded):
+        terms.update(state.q, state.v)
+    loaded.bear(ExternalLoad(np.zeros(3), np.zeros(3), 1.2))
+    rotors = np.diag(model.armature)
+    np.testing.assert_allclose(loaded.mass_matrix - rotors, 1.2 * (free.mass_matrix - rotors), atol=1e-9)
+    np.testing.assert_allclose(loaded.bias, 1.2 * free.bias, atol=1e-9)
+    assert loaded.mass == pytest.approx(1.2 * free.mass)

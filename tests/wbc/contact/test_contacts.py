@@ -129,3 +129,11 @@ def test_contacts_that_stay_as_they_are_are_the_same_object(schedule):
     assert schedule.update(swinging(0.2), FootSensing((850.0, 1.0))) is first
     schedule.weight = 2.0 * WEIGHT
     assert schedule.update(swinging(0.2), FootSensing((850.0, 1.0))) is not first
+
+
+def test_an_unloading_foot_may_take_its_planned_share_and_less_beside_it_the_sooner_it_lifts(schedule):
+    numbers = ContactParameters()
+    for left in (1.0, 0.5, 0.0):
+        now = reference(lifting_foot=0, time_to_switch=left * numbers.unloading_time, load_share=(0.4, 0.6))
+        most = schedule.update(now, FootSensing((400.0, 580.0))).force_cap[0]
+        assert most == pytest.approx(WEIGHT * (0.4 + left * numbers.share_margin))

@@ -84,3 +84,27 @@ def test_first_readings_that_are_not_finite_make_a_state_that_is_not(robot, lost
     {"joints": standing.joints, "rate": standing.rate}[lost][0] = np.nan
     state = standing.sense().state
     assert not np.isfinite(state.q).all() or not np.isfinite(state.v).all()
+
+
+@pytest.mark.parametrize("velocity", [True, False], ids=["with velocities", "without"])
+def test_torques_that_come_every_other_tick_count_once(robot, velocity):
+    """Wrenches by torques are new when torques are; held readings only make them older, by as much as they are."""
+    standing, rng = Standing(robot), np.random.default_rng(4)
+    data = robot.model.createData()
+    gravity = pin.computeGeneralizedGravity(robot.model, data, robot.standing)[6:]
+    found, ages, joints = [], [], standing.joints
+    for tick in range(40):
+        age = PERIOD * (tick % 2)
+        if tick % 2 == 0:
+            torque, joints = gravity + rng.normal(size=standing.count), joints + 1e-5 * rng.normal(size=standing.count)
+        speed = Reading(np.zeros(standing.count), age, age == 0.0) if velocity else None
+        late = (Reading(values, age, age == 0.0) for values in (joints, torque))
+        rate, force = Reading(np.zeros(3), 0.0, True), Reading(np.array([0.0, 0.0, GRAVITY]), 0.0, True)
+        encoders, motors = late
+        estimate = standing.inner.sense(Readings(PERIOD * tick, encoders, speed, motors, rate, rate, force, None))
+        found.append(estimate.wrench.copy())
+        ages.append(estimate.wrench_age)
+    found, ages = np.array(found), np.array(ages)
+    np.testing.assert_allclose(found[1::2], found[::2], atol=1e-12)
+    assert np.abs(np.diff(found[::2], axis=0)).max() > 1e-3
+    np.testing.assert_allclose(ages[3::2] - ages[2::2], PERIOD)

@@ -76,3 +76,10 @@ def test_lost_readings_make_it_less_sure():
         for _ in range(100):
             filter_.update(np.zeros(3), np.zeros(3), ticks)
     assert filters[1].deviation > 1.3 * filters[0].deviation
+
+
+def test_a_jump_counts_as_a_change_as_large_as_it_was():
+    """Its gain is that of a variance P with y² = P + R, of the readings' variance R."""
+    filter_, noise, jump = RateFilter(np.zeros(3), PERIOD, DENSITY, PLAN), DENSITY**2 / PERIOD, 0.05
+    filter_.update(np.array([jump, 0.0, 0.0]), np.zeros(3), 1)
+    assert filter_.rate[0] == pytest.approx(jump - noise / jump, rel=1e-12)

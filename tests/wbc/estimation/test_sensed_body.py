@@ -140,6 +140,8 @@ def test_soles_that_lean_are_seen_at_their_lines_which_move_with_them(robot, mou
     beside = np.einsum("kji,kj->ki", centre.rotation, body.position - centre.position)
     np.testing.assert_allclose(beside[:, [0, 2]], 0.0, atol=1e-12)
     assert (np.abs(beside[:, 1]) <= half + 1e-12).all() and np.abs(beside[:, 1]).max() > 0.9 * half
+    if lean:  # on the side that is lower
+        assert ((body.position - centre.position) @ attitude[2] < -0.5 * half * np.sin(abs(lean))).all()
     J, place = body.offset_jacobians(), body.position.copy()
     levers = []
     for each in (body, centre):

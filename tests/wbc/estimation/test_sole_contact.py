@@ -193,3 +193,15 @@ def test_an_edge_sinks_as_the_sole_does_there_and_turns_at_will(edge):
     (_, pitch, rises), (_, turned, sinks) = sprung(changed, half, give, (0, edge))
     assert sinks == pytest.approx(rises - edge * half[0] * pitch) and sinks < 0.0
     assert turned == 0.0 != pitch
+
+
+@pytest.mark.parametrize("noise", [2.0, 20.0])
+def test_a_contact_is_felt_from_as_many_deviations_on_as_was_asked_for(noise):
+    """Deviations are those of the force as it is filtered, of white noise."""
+    sensors = SensorNoise(wrench_force=noise, wrench_bias=0.0, wrench_moment=0.01)
+    feet, loads = Feet(sensors), []
+    for _ in range(20000):
+        feet.update(0.5, 0.5)
+        loads.append(feet.contact.wrench[:, 2].copy())
+    numbers = ContactDetection(force=8.0)
+    assert feet.contact.threshold - numbers.force == pytest.approx(numbers.certain * np.std(loads[100:]), rel=0.05)

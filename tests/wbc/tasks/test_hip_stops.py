@@ -73,10 +73,13 @@ def test_within_the_range_the_pelvis_stays_upright(body: Body) -> None:
     assert HipStops(body.model, body.frames, wide).roll(terms_at(body, ADDUCTION)) == (0.0, 0.0)
 
 
-def test_the_pelvis_is_turned_by_its_stiffness_towards_that_roll(body: Body, reference: WbcReference) -> None:
-    stops, gains, terms = HipStops(body.model, body.frames, body.limits), TaskGains(), terms_at(body, ADDUCTION)
+def test_the_pelvis_is_brought_to_that_roll_and_its_rate(body: Body, reference: WbcReference) -> None:
+    stops, gains = HipStops(body.model, body.frames, body.limits), TaskGains()
+    terms = terms_at(body, ADDUCTION + 0.5 * SPARED, speed=-0.4)
+    (roll, rate), (stiffness, damping) = stops.roll(terms), gains.orientation
+    assert roll != 0.0 and rate != 0.0
     scale, rows = np.ones((3, 1)), np.zeros((3, body.model.nv + 12))
     with_stops, without = (
         np.array(list(Pelvis(TaskWeights(), gains, one).write(terms, reference, scale, rows))) for one in (stops, None)
     )
-    np.testing.assert_allclose(with_stops - without, [gains.orientation[0] * stops.roll(terms)[0], 0.0, 0.0])
+    np.testing.assert_allclose(with_stops - without, [stiffness * roll + damping * rate, 0.0, 0.0])

@@ -13,7 +13,7 @@ from surefoot.wbc.tasks import DEFAULT_LAYOUT, TaskGains, TaskStack, TaskWeights
 from surefoot.wbc.tasks.balance import BalanceLaw, SupportRegion
 from surefoot.wbc.tasks.default import default_tasks
 from surefoot.wbc.tasks.swing import SwingFoot
-from surefoot.wbc.types import GRAVITY
+from surefoot.wbc.types import GRAVITY, ExternalLoad
 
 pytestmark = pytest.mark.unit
 
@@ -272,3 +272,25 @@ def test_diagonal_terms_ask_for_posture_share_and_rest(robot, state, references,
     load = terms.mass * GRAVITY
     np.testing.assert_allclose(wrench[:, 2], [0.7 * load, 0.3 * load])
     assert not np.delete(wrench, 2, axis=1).any()
+
+
+def test_the_ground_need_not_give_what_a_lasting_load_gives(robot, state, references):
+    """Its force per mass is left out of what is asked of the soles for the CoM, and its moment for the momentum."""
+    load, asked = ExternalLoad(np.array([30.0, -20.0, 8.0]), np.array([4.0, 7.0, -2.0]), 1.0), []
+    for bears in (False, True):
+        controller = robot.controller()
+        terms, reference = controller.observe(state), references[1]()
+        if bears:
+            terms.bear(load)
+        region = SupportRegion(1.0, 1.0, 1.0)
+        region.rebuild(terms.contact_position, terms.contact_rotation, (True, False))
+        tasks = {task.name: task for task in default_tasks(WbcParameters(), region, (TOE, 0.05))}
+        asked.append(
+            [
+                np.array(tasks[name].write(terms, reference, np.ones((3, 1)), np.zeros((3, robot.nv + 12))))
+                for name in ("CoM", "angular momentum")
+            ]
+        )
+    (com, momentum), (loaded_com, loaded_momentum) = asked
+    np.testing.assert_allclose(loaded_com, com - load.force / terms.mass, atol=1e-12)
+    np.testing.assert_allclose(loaded_momentum, momentum - load.moment / terms.mass, atol=1e-12)

@@ -49,7 +49,7 @@ def test_a_pelvis_sways_by_speed_where_hips_and_waist_have_joints_for_it(robot, 
         assert (0.5 * math.radians(5.0) > gait.pelvis_list > 0.2 * math.radians(5.0)) is lists
     asked = walk(("robot", robot), pelvis_yaw=0.05, pelvis_list=0.03, speed=0.6).gait
     assert (asked.pelvis_yaw, asked.pelvis_list) == (0.05, 0.03)
-    plain = load("walk", {"robot": robot}).gait
+    plain = load("walk-level", {"robot": robot}).gait
     assert plain.pelvis_yaw == plain.pelvis_list == 0.0
 
 

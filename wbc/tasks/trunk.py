@@ -131,7 +131,8 @@ class Upright(TaskLaw):
             velocity: angular, in its frame, shape (3,) [rad/s].
         """
         angle, spin = reference.heading + yaw[0], reference.heading_rate + yaw[1]
-        cosine, sine, level, tilt = math.cos(angle), math.sin(angle), math.cos(roll[0]), math.sin(roll[0])
+        cosine, sine = math.cos(angle), math.sin(angle)
+        level, tilt = math.cos(roll[0]), math.sin(roll[0])
         algebra.put_row(self._R_d, 0, (cosine, -sine * level, sine * tilt))
         algebra.put_row(self._R_d, 1, (sine, cosine * level, -cosine * tilt))
         algebra.put_row(self._R_d, 2, (0.0, tilt, level))

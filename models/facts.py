@@ -24,6 +24,9 @@ Array = NDArray[np.float64]
 PITCH, ROLL, YAW = 1, 0, 2
 """Axes of the world about which an upright leg swings forward and sideways, and turns."""
 
+_ALONG = 0.7
+"""Share of its axis that points along another one, of a joint that turns about that [-]."""
+
 CLEAR = 0.04
 """Lateral room between the shanks, or the soles, of a reference robot that walks straight ahead [m]."""
 
@@ -49,6 +52,7 @@ class RobotFacts:
         shank_spacing: lateral distance of the soles at which upright shanks keep apart [m].
         swing_acceleration: of the sole of a straight leg, forward and sideways, by the torque of its hip [m/s^2].
         ankle_torque: of the joints that pitch and roll the left foot [N m].
+        pelvis_free: whether it turns, and lists, with joints of their own; see `pelvis_free`.
         size: against the reference robot, without what it carries.
     """
 
@@ -61,6 +65,7 @@ class RobotFacts:
     shank_spacing: float
     swing_acceleration: tuple[float, float]
     ankle_torque: tuple[float, float] = (math.inf, math.inf)
+    pelvis_free: tuple[bool, bool] = (False, False)
     size: Similarity = REFERENCE_SIZE
 
     def leg_span(self, com_height: float) -> float:
@@ -109,6 +114,7 @@ def facts_of(robot: RobotDescription, payload: float = 0.0) -> RobotFacts:
         shank_spacing=robot.shank_spacing,
         swing_acceleration=swing_acceleration(robot),
         ankle_torque=ankle_torque(robot),
+        pelvis_free=pelvis_free(robot),
         size=size_of(robot, payload),
     )
 
@@ -280,6 +286,20 @@ def yaw_joint(robot: RobotDescription, foot: int) -> str:
     """The joint of a leg above its knee that turns the foot about the vertical."""
     leg, knee = (robot.roles.left_leg, robot.roles.right_leg)[foot], robot.roles.knees[foot]
     return _nearest(robot, leg[: leg.index(knee)], np.eye(3)[YAW])
+
+
+def pelvis_free(robot: RobotDescription) -> tuple[bool, bool]:
+    """Return true where the pelvis can turn, and where it can list, under a torso that does not.
+
+    The waist needs a joint for each. Hips that pitch or roll before they turn are not free for either: as the thigh is
+    pitched, the joint that carries the body sideways would have to move.
+    """
+    if yaw_joint(robot, 0) != robot.roles.left_leg[0]:
+        return False, False
+    model, data = _upright(robot)
+    axes = [np.abs(data.xaxis[model.joint(name).id]) for name in robot.roles.waist]
+    turns, lists = (any(axis[along] > _ALONG for axis in axes) for along in (YAW, ROLL))
+    return turns, lists
 
 
 def shank_outline(robot: RobotDescription, foot: int) -> Array:

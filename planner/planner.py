@@ -15,6 +15,7 @@ from surefoot.planner.laws.profiles import Profile
 from surefoot.planner.look import View, look
 from surefoot.planner.measured import Measured
 from surefoot.planner.parameters import PlannerParameters
+from surefoot.planner.pelvis import swaying
 from surefoot.planner.plan.plan import WalkPlan
 from surefoot.planner.problem import problem_of
 from surefoot.planner.recovery.falling import falling
@@ -223,6 +224,7 @@ def _world_plan(
         rolls=state.rolls(time),
         status=status,
         balance=balance,
+        pelvis=swaying(state, footsteps, time),
     )
 
 

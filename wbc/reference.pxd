@@ -12,6 +12,7 @@ cdef class WbcReference:
     cdef readonly (double, double) load_share
     cdef readonly (Py_ssize_t, Py_ssize_t) edge
     cdef readonly (vector3, vector3) roll
+    cdef readonly vector3 pelvis_yaw, pelvis_list
 
 cdef vector3 _vector(values)
 cdef (double, double) _point(values)

@@ -47,6 +47,9 @@ class WbcReference:
         edge: of each foot (left, right) that on which it rolls: 1 the toe edge, -1 the heel edge, 0 none of them, its
             sole lies flat. The `swing_position` of a foot that rolls is that of the sole as if it lay flat [-].
         roll: (pitch, rate, acceleration) of each foot, heel up positive [rad, rad/s, rad/s^2].
+        pelvis_yaw: angle by which the pelvis turns to the left of the heading, its rate and acceleration, shape (3,)
+            [rad, rad/s, rad/s^2].
+        pelvis_list: angle by which its left side is up, its rate and acceleration, shape (3,) [rad, rad/s, rad/s^2].
         catching: whether the next footstep is being adapted to catch the body, but on stairs and blocks.
     """
 
@@ -54,7 +57,8 @@ class WbcReference:
         "com", "com_velocity", "com_acceleration", "zmp", "zmp_offset", "omega", "stiffness", "heading",
         "heading_rate", "planned_contact", "load_share", "time_to_switch", "lifting_foot", "swing_foot",
         "swing_progress", "swing_position", "swing_velocity", "swing_acceleration", "swing_rotation",
-        "swing_angular_velocity", "swing_angular_acceleration", "ground_normal", "edge", "roll", "catching",
+        "swing_angular_velocity", "swing_angular_acceleration", "ground_normal", "edge", "roll", "pelvis_yaw",
+        "pelvis_list", "catching",
     )  # fmt: skip
     __dataclass_fields__: ClassVar[dict[str, Field[Any]]] = vars(
         make_dataclass("WbcReference", __match_args__, init=False, repr=False, eq=False)
@@ -86,6 +90,8 @@ class WbcReference:
         ground_normal: ArrayLike,
         edge: tuple[int, int] = (0, 0),
         roll: tuple[Vector, Vector] = (LEVEL, LEVEL),
+        pelvis_yaw: Vector = LEVEL,
+        pelvis_list: Vector = LEVEL,
         catching: bool = False,
     ) -> None:
         """Take the attributes.
@@ -109,6 +115,7 @@ class WbcReference:
         left, right = np.asarray(ground_normal, dtype=np.float64)
         self._n = _vector(left), _vector(right)
         self.edge, self.roll, self.catching = edge, roll, catching
+        self.pelvis_yaw, self.pelvis_list = pelvis_yaw, pelvis_list
 
     @property
     def com(self) -> Array:

@@ -1,4 +1,5 @@
 from surefoot.planner.types cimport Balance, PhaseInfo, PlanStatus
+from surefoot.planner.swing.sway cimport Pelvis
 from surefoot.planner.swing.trajectory cimport SwingTrajectory
 
 cdef class WalkPlan:
@@ -10,3 +11,4 @@ cdef class WalkPlan:
     cdef readonly tuple rolls
     cdef readonly PlanStatus status
     cdef readonly Balance balance
+    cdef readonly Pelvis pelvis

@@ -8,6 +8,7 @@ from numpy.typing import NDArray
 
 from surefoot.planner.parameters import PlannerParameters
 from surefoot.planner.swing.rolling import FootRoll
+from surefoot.planner.swing.sway import Pelvis
 from surefoot.planner.swing.trajectory import SwingTrajectory
 from surefoot.planner.types import (
     Array,
@@ -49,6 +50,7 @@ class WalkPlan:
             at most one at an instant.
         status: how the plan was made.
         balance: what is left to the body, and what of it the plan makes use of.
+        pelvis: how it turns and lists against the heading of the feet; None for a gait that moves it not.
     """
 
     time: float
@@ -73,6 +75,7 @@ class WalkPlan:
     rolls: tuple[FootRoll, ...]
     status: PlanStatus
     balance: Balance = field(default_factory=Balance)
+    pelvis: Pelvis | None = None
 
 
 class Planner(Protocol):

@@ -45,7 +45,7 @@ The ZMP rests for the first of them, so that the DCM is consistent when the weig
 """
 
 _POSITIVE = ("step_width", "single_support", "double_support", "com_height", "swing_height")
-_NOT_NEGATIVE = ("initial_stand", "apex_ss", "apex_ds", "heel_off", "heel_strike", "ramp")
+_NOT_NEGATIVE = ("initial_stand", "apex_ss", "apex_ds", "heel_off", "heel_strike", "pelvis_yaw", "pelvis_list", "ramp")
 
 
 @dataclass(frozen=True, slots=True)
@@ -73,6 +73,9 @@ class GaitParameters:
         apex_ds: rise of the CoM in the middle of double support (A_ds) [m].
         heel_off: greatest pitch of a foot about its toe edge after its stance, 0 keeps the feet level [rad].
         heel_strike: greatest pitch of a foot about its heel edge as it lands, 0 lands it flat [rad].
+        pelvis_yaw: turn of the pelvis as a foot lands, forward on the side of that foot, 0 keeps it along the feet
+            [rad].
+        pelvis_list: drop of the pelvis to the swinging side in the middle of single support, 0 keeps it level [rad].
         ramp: shorter steps at the begin and at the end of equal steps, whose lengths grow evenly to step_length.
         bouts: the walk stride by stride; empty for equal strides. Feet alternate throughout, across stops too.
 
@@ -95,6 +98,8 @@ class GaitParameters:
     apex_ds: float = 0.00135
     heel_off: float = 0.0
     heel_strike: float = 0.0
+    pelvis_yaw: float = 0.0
+    pelvis_list: float = 0.0
     ramp: int = 0
     bouts: tuple[Bout, ...] = ()
 

@@ -18,6 +18,19 @@ _DOUBLE = 0.24
 _HEEL_OFF, _HEEL_STRIKE = 2.2, 0.95
 """Pitch of a foot at toe-off over step length per leg length, and at heel strike over its square [rad]."""
 
+_YAW, _LIST = 0.13, 0.06
+"""Turn of the pelvis as a foot lands, and its list over one foot, over step length per leg length [rad].
+
+People turn it by 5 degrees at 1.2 m/s. They list nearly as far; beyond half of that the waist takes more energy than
+straighter knees are worth.
+"""
+
+_STEADY, _FADING = 0.64, 0.08
+"""Step length from which on the pelvis does neither, over the leg length, and over which both fade before it [-].
+
+At 1.4 m/s a foot came late with the first of the shorter steps to a stop, and the sole slapped down with 2.2 body
+weights in place of 1.5."""
+
 _MOST_OFF, _MOST_STRIKE = 0.7, 0.6
 """Greatest of both pitches, as far as ankles go at all [rad]."""
 
@@ -54,6 +67,8 @@ class SpeedGait:
         rise: of the CoM from there to the middle of single support [m].
         heel_off: greatest pitch of a foot after its stance [rad].
         heel_strike: greatest pitch of a foot as it lands, toes up [rad].
+        pelvis_yaw: turn of the pelvis as a foot lands [rad].
+        pelvis_list: drop of the pelvis to the swinging side [rad].
         ramp: steps over which the walk comes to its length, and from it to a stop [-].
     """
 
@@ -64,6 +79,8 @@ class SpeedGait:
     rise: float
     heel_off: float
     heel_strike: float
+    pelvis_yaw: float
+    pelvis_list: float
     ramp: int
 
 
@@ -97,6 +114,7 @@ def speed_gait(
     strike = usual if heel_strike is None else heel_strike
     hip = leg_length * math.sqrt(max(1.0 - (0.5 * per_leg) ** 2, 0.0))
     hip -= leg_length * (_LOWER * max(0.0, per_leg - _LONG) + _FLAT * max(0.0, 1.0 - strike / usual))
+    swayed = per_leg * min(1.0, max(0.0, (_STEADY - per_leg) / _FADING))
     arc, most = leg_length - hip, 2.0 * _RISING * (step / (2.0 * math.pi)) ** 2
     return SpeedGait(
         step_length=length,
@@ -106,6 +124,8 @@ def speed_gait(
         rise=min(arc, most),
         heel_off=min(_HEEL_OFF * per_leg, _MOST_OFF, _ROLLING * double / math.sqrt(leg_length / GRAVITY)),
         heel_strike=strike,
+        pelvis_yaw=_YAW * swayed,
+        pelvis_list=_LIST * swayed,
         ramp=max(0, math.ceil(per_leg / _EASY) - 1),
     )
 

@@ -176,10 +176,10 @@ _PER_WAY, _SHORT, _MOST = 3.0, 1.1, 0.5
 
 def strides(behind: Footstep, ahead: Footstep, half_length: float) -> bool:
     """Return true if a foot, half a sole's length given [m], stands so far ahead of the other one that feet roll."""
-    return _way(behind, ahead) > _LEAST_STEP * half_length
+    return way(behind, ahead) > _LEAST_STEP * half_length
 
 
-def _way(behind: Footstep, ahead: Footstep) -> float:
+def way(behind: Footstep, ahead: Footstep) -> float:
     """Way by which one foot stands ahead of the other, along its own heading [m]."""
     return float(((ahead.position - behind.position)[:2] @ frame_rotation(ahead.yaw))[0])
 
@@ -198,7 +198,7 @@ def landing_pitch(stance: Footstep, landing: Footstep, half_length: float, usual
         most: that pitch [rad].
     """
     least = _LEAST_STEP * half_length
-    beyond = _way(stance, landing) - least
+    beyond = way(stance, landing) - least
     if beyond <= 0.0:
         return 0.0
     return most * min(1.0, round(beyond / max(usual - least, _SAME_WAY), _DECIMALS))

@@ -251,10 +251,16 @@ class Gait(Group):
     heel_strike: Annotated[float, Field(ge=0, le=0.6), RADIAN] = key(
         0.0, "greatest pitch of a foot about its heel as it lands, toes up, 0: feet land flat"
     )
+    pelvis_yaw: Annotated[float, Field(ge=0, le=0.3), RADIAN] = key(
+        0.0, "turn of the pelvis as a foot lands, forward on the side of that foot, 0: it stays along the feet"
+    )
+    pelvis_list: Annotated[float, Field(ge=0, le=0.2), RADIAN] = key(
+        0.0, "drop of the pelvis to the side of the swing foot, greatest in mid-swing, 0: it stays level"
+    )
     speed: Annotated[float, Field(gt=0, le=5), Unit("m/s")] | None = key(
         None,
         "speed of steady walking ahead, of which the length and durations of the steps, CoM height, roll of the feet, "
-        "planner.knee and two weights of wbc follow that are not given, null: they are as they are",
+        "sway of the pelvis, planner.knee and two weights of wbc follow that are not given, null: they are as they are",
     )
     ramp: Annotated[int, Field(ge=0, le=20), WHOLE] = key(
         0, "shorter steps at the begin and at the end of equal steps, whose lengths grow evenly to step_length [-]"

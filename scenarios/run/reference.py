@@ -48,6 +48,10 @@ def whole_body_reference(plan: WalkPlan, sample: PlanSample) -> WbcReference:
     _ground(reference, plan, sample.point.item(SWING + 3))
     _roll(reference, plan.rolls, sample.time)
     reference.catching = plan.balance.catching
+    reference.pelvis_yaw, reference.pelvis_list = LEVEL, LEVEL
+    if plan.pelvis is not None:
+        reference.pelvis_yaw = plan.pelvis.yaw.evaluate(sample.time)
+        reference.pelvis_list = plan.pelvis.roll.evaluate(sample.time)
     return reference
 
 

@@ -196,7 +196,7 @@ def _without_net(pushes: Sequence[tuple[int, float, float, Array]]) -> Iterator[
 _SIZES = (
     ("robot_options", ("payload_mass",)),
     ("terrain", ("riser", "height_noise", "angle")),
-    ("gait", ("apex_single", "apex_double", "heel_off", "heel_strike")),
+    ("gait", ("apex_single", "apex_double", "heel_off", "heel_strike", "pelvis_yaw", "pelvis_list")),
     ("sensing", ("zmp_noise", "com_noise", *SENSOR_SIZES)),
     ("start", ("position_noise", "angle_noise")),
     ("errors", ("com_height", "link_mass_noise", "friction", "ground_noise", "ground_pitch", "ground_roll")),

@@ -45,6 +45,8 @@ def scenario_problem(refusal: ValueError) -> Problem:
 
 
 _NO_CONTACT = (
+    ("gait", "pelvis_yaw"),
+    ("gait", "pelvis_list"),
     ("terrain", "friction"),
     ("terrain", "height_noise"),
     ("sensing", "force_estimate"),
@@ -64,6 +66,7 @@ _OF_A_PLANNER = (
     *(("planner", name) for name in PlannerSettings.model_fields if name != "sample_time"),
     *(("sensing", name) for name in ("com_noise", "zmp_noise", "force_estimate")),
     *(("gait", name) for name in ("swing_height", "apex_single", "apex_double", "heel_off", "heel_strike")),
+    *(("gait", name) for name in ("pelvis_yaw", "pelvis_list")),
 )
 """Keys that mean nothing to what walks without a plan."""
 

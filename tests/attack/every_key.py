@@ -43,7 +43,7 @@ TEXTS = {
         gait: {steps: 4, step_length: 0.15, step_width: 0.21, lateral_step: 0.01, turn: 0.02, single_support: 0.8,
                double_support: 0.2, swing_height: 0.04, com_height: 0.98, initial_stand: 0.5, apex_single: 0.01,
                apex_double: 0.001, heel_off: 0.1,
-               heel_strike: 0.1, ramp: 1}
+               heel_strike: 0.1, pelvis_yaw: 0.05, pelvis_list: 0.02, ramp: 1}
         planner: {profile: repaired, horizon: 60, control_horizon: 3, jerk_limit: 20, jerk_rate_limit: 10,
                   jerk_weight: 1.0e-5, step_adaptation: none, knee: bent, rise: double, filter: kalman}
         sensing: {source: truth, zmp_noise: 0.001, com_noise: 0.001, force_estimate: false}

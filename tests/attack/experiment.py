@@ -101,6 +101,8 @@ VALUES: dict[str, tuple[Any, ...]] = {
     "gait.turn": (0.1, 1e-300),
     "gait.heel_off": (0.2, 1e-300),
     "gait.heel_strike": (0.2, 1e-300),
+    "gait.pelvis_yaw": (0.05, 1e-300),
+    "gait.pelvis_list": (0.03, 1e-300),
     "gait.footsteps": ([{"foot": "left", "x": 0.1, "y": 0.1}],),
     "gait.footsteps.0.foot": ("right",),
     "gait.waypoints": ([{"x": 0.3, "y": 0}], [{"x": 0.0, "y": 0}]),

@@ -95,6 +95,8 @@ def experiments(tmp_path_factory):
         ("walk-level", "gait.step_length", 0.21, "felt"),
         ("walk-level", "gait.heel_off", 0.2, "felt"),
         ("walk-level", "gait.heel_strike", 0.2, "felt"),
+        ("walk-level", "gait.pelvis_yaw", 0.05, "felt"),
+        ("walk-level", "gait.pelvis_list", 0.03, "felt"),
         ("walk-level", "rates.physics", 2000, "noted"),
         ("walk-level", "planner.rise", "single", "noted"),
         ("walk-level", "robot_options.payload_body", "pelvis", "noted"),

@@ -26,17 +26,20 @@ cdef class Upright(TaskLaw):
     cdef double _k, _d
     cdef double[:, ::1] _R_d
 
-    cdef vector3 turn(self, WbcReference reference, const double[:, :] R, const double[:] velocity) noexcept
+    cdef vector3 turn(
+        self, WbcReference reference, vector3 yaw, vector3 roll, const double[:, :] R, const double[:] velocity
+    ) noexcept
 
 cdef class Pelvis(Upright):
     cdef HipStops _stops
 
-    @cython.locals(i=Py_ssize_t, roll=double, rate=double)
+    @cython.locals(i=Py_ssize_t, roll=double, rate=double, turned=vector3)
     cdef void put(
         self, RobotTerms terms, WbcReference reference, const double[::1] scale, double[:, ::1] rows, double[::1] target
     ) noexcept
 
 cdef class Torso(Upright):
+    @cython.locals(still=vector3, wanted=vector3)
     cdef void put(
         self, RobotTerms terms, WbcReference reference, const double[::1] scale, double[:, ::1] rows, double[::1] target
     ) noexcept

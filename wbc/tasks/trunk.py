@@ -116,18 +116,28 @@ class Upright(TaskLaw):
         self._k, self._d = gains.orientation
         self._R_d = np.eye(3)
 
-    def turn(self, reference: WbcReference, R: Array, velocity: Array) -> algebra.Vector:
+    def turn(
+        self, reference: WbcReference, yaw: algebra.Vector, roll: algebra.Vector, R: Array, velocity: Array
+    ) -> algebra.Vector:
         """Angular acceleration of a body, in its frame [rad/s^2].
+
+        It is to turn with ω = ψ' z + ρ' x_d, x_d ahead of it and level, with ψ = heading + yaw.
 
         Args:
             reference: of the tick.
+            yaw: angle to the left of the heading, its rate and acceleration [rad, rad/s, rad/s^2].
+            roll: angle ρ by which its left side is up, its rate and acceleration [rad, rad/s, rad/s^2].
             R: orientation of the body, shape (3, 3).
             velocity: angular, in its frame, shape (3,) [rad/s].
         """
-        cosine, sine = math.cos(reference.heading), math.sin(reference.heading)
-        self._R_d[0, 0], self._R_d[1, 1] = cosine, cosine
-        self._R_d[0, 1], self._R_d[1, 0] = -sine, sine
-        ahead = algebra.scale(self._d * reference.heading_rate, algebra.row(R, 2))
+        angle, spin = reference.heading + yaw[0], reference.heading_rate + yaw[1]
+        cosine, sine = math.cos(angle), math.sin(angle)
+        level, tilt = math.cos(roll[0]), math.sin(roll[0])
+        algebra.put_row(self._R_d, 0, (cosine, -sine * level, sine * tilt))
+        algebra.put_row(self._R_d, 1, (sine, cosine * level, -cosine * tilt))
+        algebra.put_row(self._R_d, 2, (0.0, tilt, level))
+        along, across, up = self._d * roll[1] + roll[2], spin * roll[1], self._d * spin + yaw[2]
+        ahead = algebra.rotate_back(R, (cosine * along - sine * across, sine * along + cosine * across, up))
         return law.angular_feedback(self._k, self._d, R, algebra.vector(velocity), self._R_d, ahead)
 
 
@@ -148,7 +158,8 @@ class Pelvis(Upright):
         """See ``TaskLaw.put``."""
         for i in range(3):
             rows[i, 3 + i] = scale[i]
-        algebra.put(target, self.turn(reference, terms._R_base, terms._w_base))
+        turned = self.turn(reference, reference.pelvis_yaw, reference.pelvis_list, terms._R_base, terms._w_base)
+        algebra.put(target, turned)
         if self._stops is not None:
             roll, rate = self._stops.roll(terms)
             target[0] += self._k * roll + self._d * rate
@@ -161,6 +172,7 @@ class Torso(Upright):
 
     def put(self, terms: RobotTerms, reference: WbcReference, scale: Array, rows: Array, target: Array) -> None:
         """See ``TaskLaw.put``."""
-        wanted = self.turn(reference, terms._R_torso, terms._w_torso)
+        still = 0.0, 0.0, 0.0
+        wanted = self.turn(reference, still, still, terms._R_torso, terms._w_torso)
         linear.scale_rows(rows, 0, 1.0, scale, terms._J_torso, 0)
         algebra.put(target, algebra.subtract(wanted, algebra.vector(terms._bias_torso)))

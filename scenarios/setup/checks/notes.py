@@ -128,6 +128,8 @@ _STEPPING = (
     "apex_double",
     "heel_off",
     "heel_strike",
+    "pelvis_yaw",
+    "pelvis_list",
     "ramp",
 )
 """Keys of a gait that say how steps are taken."""

@@ -61,6 +61,8 @@ def gait_of(keys: schema.Gait) -> GaitParameters:
         apex_ds=keys.apex_double,
         heel_off=keys.heel_off,
         heel_strike=keys.heel_strike,
+        pelvis_yaw=keys.pelvis_yaw,
+        pelvis_list=keys.pelvis_list,
         ramp=keys.ramp,
     )
     if keys.velocity:

@@ -23,6 +23,8 @@ _OF_STEPS = (
     "apex_double",
     "heel_off",
     "heel_strike",
+    "pelvis_yaw",
+    "pelvis_list",
     "ramp",
 )
 
@@ -60,6 +62,7 @@ def with_speed(scenario: Scenario, facts: RobotFacts, size: Similarity, given: f
         return scenario
     asked = {name: getattr(gait, name) for name in _ASKED if name in given}
     derived = speed_gait(gait.speed, facts.leg_length, facts.com_above_hip, **asked)
+    turns, lists = facts.pelvis_free
     numbers = (
         derived.step_length,
         derived.single_support,
@@ -69,6 +72,8 @@ def with_speed(scenario: Scenario, facts: RobotFacts, size: Similarity, given: f
         0.0,
         derived.heel_off,
         derived.heel_strike,
+        derived.pelvis_yaw if turns else 0.0,
+        derived.pelvis_list if lists else 0.0,
         derived.ramp,
     )
     update: dict[str, Any] = {"gait": _with(gait, dict(zip(_OF_STEPS, numbers, strict=True)), given)}

@@ -44,11 +44,18 @@ def test_the_arc_of_a_straight_leg_is_flattened_where_it_would_shake_the_body():
     assert 0.5 * fast.rise * (2.0 * math.pi / step) ** 2 == pytest.approx(1.7)
 
 
+def test_the_pelvis_sways_more_with_longer_steps_and_no_more_with_the_longest():
+    slow, usual, brisk, fast = (speed_gait(speed, LEG, ABOVE) for speed in (0.4, 1.0, 1.25, 1.5))
+    assert 0.0 < slow.pelvis_yaw < usual.pelvis_yaw > brisk.pelvis_yaw > fast.pelvis_yaw == 0.0
+    assert 0.0 < slow.pelvis_list < usual.pelvis_list > brisk.pelvis_list > fast.pelvis_list == 0.0
+    assert usual.pelvis_yaw * LEG / usual.step_length == pytest.approx(0.13)
+
+
 @pytest.mark.parametrize("scale", [0.5, 0.72, 1.3])
 def test_robots_of_another_size_walk_alike(scale):
     """Lengths go as the legs, times as their root; angles stay (Froude's number)."""
     one, other = speed_gait(0.8, LEG, ABOVE), speed_gait(0.8 * math.sqrt(scale), scale * LEG, scale * ABOVE)
-    factors = (scale, math.sqrt(scale), math.sqrt(scale), scale, scale, 1.0, 1.0, 1.0)
+    factors = (scale, math.sqrt(scale), math.sqrt(scale), scale, scale, 1.0, 1.0, 1.0, 1.0, 1.0)
     expected = [value * factor for value, factor in zip(astuple(one), factors, strict=True)]
     assert astuple(other) == pytest.approx(expected)
 

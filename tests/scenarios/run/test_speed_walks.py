@@ -1,7 +1,10 @@
 """Walks of one number in full physics, from sensors: straight legs, and what they save."""
 
+import numpy as np
 import pytest
 
+from surefoot.planner.geometry.plane import rotations
+from surefoot.scenarios.log.reader import read
 from surefoot.scenarios.run.run import run_scenario
 from surefoot.scenarios.setup.load import load
 
@@ -53,6 +56,44 @@ def test_another_robot_walks_by_its_speed(tmp_path):
     verdict = walked(tmp_path, 0.8, 14, robot="g1")
     assert verdict.reasons == ()
     assert verdict.metrics["knee_stance_mean"] < 0.45
+
+
+@pytest.mark.physics
+def test_hips_knees_and_ankles_move_as_peoples(tmp_path):
+    alike = {
+        "human_share": {"min": [0.65, 0.4, 0.6]},
+        "human_correlation": {"min": [0.82, 0.7, -1.0]},
+        "heel_strike_pitch": {"min": 0.19},
+        "toe_off_pitch": {"min": 0.26},
+    }
+    verdict = walked(tmp_path, 0.8, 24, alike)
+    assert verdict.reasons == ()
+
+
+def swayed(folder, **gait):
+    """Verdict of a walk, and yaw and roll of its pelvis as each foot is planned to land, and that foot."""
+    keys = {"gait": {"speed": 0.8, "steps": 14, **gait}, "criteria": SOUND}
+    result = run_scenario(load("walk", keys), folder)
+    log = read(result.log)
+    R = rotations(log["/truth"].field("q")[:, 3:7])
+    yaw, roll = np.arctan2(R[:, 1, 0], R[:, 0, 0]), np.arctan2(R[:, 2, 1], R[:, 2, 2])
+    ticks, feet = np.nonzero(np.diff(log["/contact"].field("planned").astype(int), axis=0) > 0)
+    steady = slice(4, -4)
+    return result.verdict, yaw[ticks + 1][steady], feet[steady], np.ptp(roll[len(roll) // 3 : len(roll) // 2])
+
+
+@pytest.mark.physics
+def test_the_pelvis_turns_and_lists_with_the_steps_and_saves_work(tmp_path):
+    verdict, yaw, feet, lists = swayed(tmp_path / "usual")
+    assert verdict.reasons == ()
+    assert len(yaw) >= 4
+    # The hip of the foot that lands is ahead: the pelvis has turned to the other side.
+    assert (np.where(feet == 0, -1.0, 1.0) * yaw > 0.04).all()
+    assert 0.04 < lists < 0.08
+    still, turned = (swayed(tmp_path / str(most), pelvis_yaw=most, pelvis_list=0.0) for most in (0.0, 0.06))
+    assert np.abs(still[1]).max() < 0.01
+    assert turned[0].metrics["cost_of_transport"] < 0.99 * still[0].metrics["cost_of_transport"]
+    assert verdict.metrics["knee_stance_mean"] < still[0].metrics["knee_stance_mean"] - 0.04
 
 
 ROWS = {

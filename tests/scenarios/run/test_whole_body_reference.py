@@ -13,6 +13,7 @@ from surefoot.planner.model.time_scaling import TimeScaling
 from surefoot.planner.plan.sampling import PlanSampler
 from surefoot.planner.planner import WalkingPlanner
 from surefoot.planner.steps.gait import Bout, GaitParameters
+from surefoot.planner.swing.sway import STILL
 from surefoot.planner.types import FeetState, PhaseKind, Twist
 from surefoot.scenarios.run.reference import planned, whole_body_reference
 from surefoot.wbc.reference import LEVEL
@@ -37,9 +38,11 @@ def test_a_foot_is_unloaded_only_before_it_lifts():
         assert lifting[tick] == (after.stance.other if steps else -1)
 
 
-@pytest.fixture(scope="module", params=[("walk-brisk", 2.4), ("walk-curve", 2.0)], ids=lambda case: case[0])
+@pytest.fixture(
+    scope="module", params=[("walk-brisk", 2.4), ("walk-curve", 2.0), ("walk-fast", 2.4)], ids=lambda case: case[0]
+)
 def plans(request):
-    """The plans of a walk; the feet of the fast one roll."""
+    """The plans of a walk; the feet of the fast ones roll, the pelvis sways with those of the fastest."""
     (name, seconds), found = request.param, []
     with surefoot.Simulation(surefoot.load(name, {"fidelity": "pendulum"})) as simulation:
         while simulation.time < seconds:
@@ -50,7 +53,7 @@ def plans(request):
 
 
 def test_a_reference_says_what_sample_and_plan_say(plans):
-    swung, rolled = 0, 0
+    swung, rolled, swayed = 0, 0, 0
     for plan in [*plans[::3], *scaled(plans[1::6])]:
         sampler = PlanSampler(plan)
         for ahead in (0.0, 0.018, 0.0195, 0.31):
@@ -90,8 +93,13 @@ def test_a_reference_says_what_sample_and_plan_say(plans):
                     edges[roll.foot], pitches[roll.foot] = roll.edge, roll.evaluate(until.time)
             assert reference.edge == tuple(edges)
             assert reference.roll == tuple(pitches)
+            sways = (STILL, STILL) if plan.pelvis is None else (plan.pelvis.yaw, plan.pelvis.roll)
+            swayed += plan.pelvis is not None
+            for found, sway in zip((reference.pelvis_yaw, reference.pelvis_list), sways, strict=True):
+                assert found == sway.evaluate(until.time)
             rolled += edges != [0, 0]
     assert swung
+    assert bool(swayed) == any(plan.pelvis is not None for plan in plans)
     assert bool(rolled) == any(plan.rolls for plan in plans)
 
 

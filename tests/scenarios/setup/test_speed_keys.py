@@ -1,5 +1,7 @@
 """A gait of one number: what follows from `gait.speed`, what may stand beside it, and other robots."""
 
+import math
+
 import pytest
 
 from surefoot.scenarios.errors import ScenarioError
@@ -33,6 +35,22 @@ def test_a_speed_is_a_whole_gait():
     assert resolve(plain).controller.knees.weight == 0.0
     assert plain.wbc is None
     assert plain.planner.knee == "stretched"
+
+
+WAISTS = [("humanoid100", True, True), ("talos", True, False), ("g1", False, False)]
+
+
+@pytest.mark.parametrize(("robot", "turns", "lists"), WAISTS)
+def test_a_pelvis_sways_by_speed_where_hips_and_waist_have_joints_for_it(robot, turns, lists):
+    """People turn it by 5 degrees at 1.2 m/s, and less where they step shorter."""
+    for speed in (0.4, 0.6):
+        gait = walk(("robot", robot), speed=speed).gait
+        assert (0.8 * math.radians(5.0) > gait.pelvis_yaw > 0.5 * math.radians(5.0)) is turns
+        assert (0.5 * math.radians(5.0) > gait.pelvis_list > 0.2 * math.radians(5.0)) is lists
+    asked = walk(("robot", robot), pelvis_yaw=0.05, pelvis_list=0.03, speed=0.6).gait
+    assert (asked.pelvis_yaw, asked.pelvis_list) == (0.05, 0.03)
+    plain = load("walk-level", {"robot": robot}).gait
+    assert plain.pelvis_yaw == plain.pelvis_list == 0.0
 
 
 @pytest.mark.parametrize("key", FOLLOWING, ids=".".join)

@@ -13,7 +13,7 @@ from surefoot.wbc.tasks import DEFAULT_LAYOUT, TaskGains, TaskStack, TaskWeights
 from surefoot.wbc.tasks.balance import BalanceLaw, SupportRegion
 from surefoot.wbc.tasks.default import default_tasks
 from surefoot.wbc.tasks.swing import SwingFoot
-from surefoot.wbc.types import GRAVITY, ExternalLoad
+from surefoot.wbc.types import GRAVITY, ExternalLoad, RobotState
 
 pytestmark = pytest.mark.unit
 
@@ -228,6 +228,39 @@ def test_targets_are_the_feedback_that_they_claim(robot, state, asked):
     angular += d * (reference.swing_angular_velocity - R @ sole.angular) + reference.swing_angular_acceleration
     np.testing.assert_allclose(R @ a[:3], linear, atol=1e-9)
     np.testing.assert_allclose(R @ a[3:], angular, atol=1e-9)
+
+
+def test_the_pelvis_follows_its_turn_and_its_list_without_lag(robot, references):
+    """On its way, with the velocity of that, it accelerates as the way does: finite differences of the orientation."""
+    q, v, t, step = robot.standing.copy(), np.zeros(robot.nv), 0.3, 1e-4
+    polynomials = np.array([[0.05, -0.2, 0.4, 0.3], [0.02, 0.4, -0.3, 0.2]])
+    yaw, roll = (np.polynomial.Polynomial(c) for c in polynomials)
+    heading = np.polynomial.Polynomial([0.1, 0.3])  # turns at a steady rate
+
+    def turned(at):
+        return pin.utils.rotate("z", heading(at) + yaw(at)) @ pin.utils.rotate("x", roll(at))
+
+    def spin(at):
+        return pin.log3(turned(at - step).T @ turned(at + step)) / (2.0 * step)
+
+    def motion(angle):
+        return tuple(float(angle.deriv(k)(t)) for k in range(3))
+
+    q[3:7], v[3:6] = pin.Quaternion(turned(t)).coeffs(), spin(t)
+    alpha = (spin(t + step) - spin(t - step)) / (2.0 * step)
+    controller = robot.controller()
+    terms = controller.observe(RobotState(q, v))
+    pelvis = default_tasks(WbcParameters(), SupportRegion(1.0, 1.0, 1.0), (TOE, 0.05))[2]
+
+    def asked(**changes):
+        given = {"heading": heading(t), "heading_rate": float(heading.deriv()(t)), **changes}
+        J = np.zeros((3, robot.nv + 12))
+        return np.array(tuple(pelvis.write(terms, references[1](**given), np.ones((3, 1)), J)))
+
+    np.testing.assert_allclose(asked(pelvis_yaw=motion(yaw), pelvis_list=motion(roll)), alpha, atol=1e-3)
+    assert np.abs(asked() - alpha).max() > 1.0
+    lagging = asked(pelvis_yaw=(yaw(t), 0.0, 0.0), pelvis_list=(roll(t), 0.0, 0.0))
+    assert np.abs(lagging - alpha).max() > 1.0
 
 
 def test_the_swing_task_is_absent_when_both_feet_stand(robot, references, loaded):

@@ -10,7 +10,7 @@ from pathlib import Path
 from statistics import fmean
 from typing import Any
 
-from measured import HEEL_OFF, HIDDEN, RESULTS, ROUGH, SENSED, SPEEDS, WITHOUT, head, limit_of, rows, searches
+from measured import HEEL_OFF, HIDDEN, PELVIS, RESULTS, ROUGH, SENSED, SPEEDS, WITHOUT, head, limit_of, rows, searches
 from page_table import table
 
 from surefoot.models.robot_file import magnitudes
@@ -444,6 +444,7 @@ TABLES: dict[str, tuple[str, Callable[[], str]]] = {
     ),
     "fastest": ("fast-walking.md", fastest_table),
     "heel-off": ("fast-walking.md", partial(runs_table, "heel-off", ("gait.heel_off",), HEEL_OFF)),
+    "pelvis": ("fast-walking.md", partial(runs_table, "pelvis", ("gait.speed", "pelvis"), PELVIS)),
     "speeds": ("fast-walking.md", partial(runs_table, "speeds", ("terrain.friction", "gait.speed"), SPEEDS)),
     "rough-ground": ("scenarios.md", partial(runs_table, "rough-ground", ("ground",), ROUGH)),
     "sensor-faults": ("sensors.md", faults_table),

@@ -276,11 +276,12 @@ class WalkState:
             return self
         clock = self.clock.scaled(self.phase.end - self.clock.now, left / t)
         state, schedule = replace(self, clock=clock), self.schedule
-        # A heel that would be lifted harder than hips swing a foot stays down, and so do toes.
+        # A heel rises only as far as it is lifted no harder than hips swing a foot, and so do toes.
         spans = [span for span in self.phase.rolls if clock.now < span.end]
         for span, roll in zip(spans, state.rolls(time), strict=True):
-            if roll.lifts_harder(self.model.hardest, time, time + state.time_left):
-                schedule = adaptation.with_roll(schedule, span, 0.0)
+            share = roll.bearable(self.model.hardest, time, time + state.time_left)
+            if share < 1.0:
+                schedule = adaptation.with_roll(schedule, span, share * span.angle)
         return state.on(schedule).swing_put_off(time, before)
 
     def swing_put_off(self, time: float, left: float) -> "WalkState":

@@ -133,9 +133,16 @@ class FootRoll:
             abs(self.evaluate(time)[2]) for time in np.linspace(begin, end, _LOOKED_AT).tolist()
         )
 
-    def lifts_harder(self, most: float, begin: float, end: float) -> bool:
-        """The sole's centre is lifted harder than this between two instants, in which the roll begins [m/s^2]."""
-        return self.start >= begin and self.hardest(begin, end) > most
+    def bearable(self, most: float, begin: float, end: float) -> float:
+        """Share of its pitch with which it lifts the sole's centre no harder between two instants, in which it begins.
+
+        Args:
+            most: greatest acceleration [m/s^2].
+            begin: one that rolls already by then stays as it is [s].
+            end: of what is looked at [s].
+        """
+        hardest = self.hardest(begin, end) if self.start >= begin else 0.0
+        return 1.0 if hardest <= most else most / hardest
 
     def centre(self, time: float, level: Array, rates: Array) -> tuple[Array, Array]:
         """Place and velocity of the sole's centre, with the foot turned about its edge.

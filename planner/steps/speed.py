@@ -113,7 +113,9 @@ def speed_gait(
     usual = min(_HEEL_STRIKE * per_leg * per_leg, _MOST_STRIKE)
     strike = usual if heel_strike is None else heel_strike
     hip = leg_length * math.sqrt(max(1.0 - (0.5 * per_leg) ** 2, 0.0))
-    hip -= leg_length * (_LOWER * max(0.0, per_leg - _LONG) + _FLAT * max(0.0, 1.0 - strike / usual))
+    hip -= leg_length * (
+        _LOWER * max(0.0, per_leg - _LONG) + _FLAT * max(0.0, 1.0 - strike / usual if usual > 0.0 else 0.0)
+    )
     swayed = per_leg * min(1.0, max(0.0, (_STEADY - per_leg) / _FADING))
     arc, most = leg_length - hip, 2.0 * _RISING * (step / (2.0 * math.pi)) ** 2
     return SpeedGait(

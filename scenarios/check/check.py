@@ -196,11 +196,11 @@ def _name(file: Path) -> str:
         return file.stem
 
 
-def run_case(case: Case, out: Path, run: Callable[[Scenario, Path], Result] = run_scenario) -> Checked:
-    """Run a case by a function of its scenario and a folder, and compare it with its baseline."""
+def run_case(case: Case, out: Path, run: Callable[[Scenario, Path], Result] | None = None) -> Checked:
+    """Run a case, by another function of its scenario and a folder if given, and compare it with its baseline."""
     begin = time.perf_counter()
     try:
-        result = run(case.scenario, out)
+        result = (run or run_scenario)(case.scenario, out)
         metrics, criteria = result.verdict.metrics, case.scenario.criteria
         now = Baseline.of(case.scenario.name, case.settings, metrics, read(result.log), criteria)
     except (ScenarioError, SetupError, PluginError, LogError) as refusal:

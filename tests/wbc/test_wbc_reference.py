@@ -33,6 +33,8 @@ def given(rng):
         "swing_foot": 1,
         "edge": (-1, 1),
         "roll": ((0.4, 0.5, 0.6), (0.1, 0.2, 0.3)),
+        "pelvis_yaw": (0.7, 0.8, 0.9),
+        "pelvis_list": (0.15, 0.25, 0.35),
         "catching": True,
     }
     return {**arrays, **numbers, **contacts, **feet}
@@ -46,7 +48,7 @@ def assert_has(reference, given):
 
 
 def test_it_has_what_it_was_given(given):
-    assert len(given) == 25
+    assert len(given) == 27
     reference = WbcReference(**given)
     assert_has(reference, given)
     assert [field.name for field in fields(reference)] == [*WbcReference.__match_args__]

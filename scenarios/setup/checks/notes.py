@@ -69,6 +69,8 @@ def _without_effect(walk: Walk) -> Iterator[str]:
     walker = walk.walker
     yield from () if walker.has_body else _not_felt(walk)
     for group, name in walker.unfelt:
+        if group == "gait" and keys.gait.speed is not None:
+            continue  # it follows from the speed, of which something is felt
         yield from (f"{key} has no effect on a {walker.thing}" for key in _given(walk, group, (name,)))
     yield from _unfelt(walk)
     if walker.has_body:

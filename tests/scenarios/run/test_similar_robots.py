@@ -52,6 +52,6 @@ def test_with_the_gains_of_full_size_it_does_not_walk(tmp_path):
     def unscaled(parameters, **rest):
         return WholeBodyController(parameters=WbcParameters(), **rest)
 
-    scenario = load("walk-level", (*SHORT, "robot=quarter", "sensing.source=truth"))
+    scenario = load("walk-level", (*SHORT, "gait.steps=6", "robot=quarter", "sensing.source=truth"))
     assert run(scenario, out=tmp_path / "scaled").verdict.passed
     assert not run(scenario, out=tmp_path, parts=Parts(controller=unscaled)).verdict.passed

@@ -143,7 +143,8 @@ def test_thresholds(surefoot, tmp_path):
 @pytest.mark.unit
 def test_a_threshold_that_refusals_have_made_says_so(surefoot, tmp_path):
     (tmp_path / "limit.yaml").write_text(
-        "scenario: walk\nset: {fidelity: pendulum}\nbisect: {key: gait.step_length, low: 1.8, high: 2.0, tolerance: 1}"
+        "scenario: walk-level\nset: {fidelity: pendulum}\n"
+        "bisect: {key: gait.step_length, low: 1.8, high: 2.0, tolerance: 1}"
     )
     surefoot("limit.yaml")
     (row,) = rows(tmp_path / "runs" / "limit", "thresholds.csv")

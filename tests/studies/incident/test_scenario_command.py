@@ -46,12 +46,12 @@ def test_it_writes_a_scenario_that_check_takes(folder, command):
     code, said, progress = command("scenario", "from", "falls.mcap")
     assert code == 0, progress
     assert "1 of 2 causes are needed" in said
-    text = (folder / "walk-incident.yaml").read_text()
+    text = (folder / "walk-level-incident.yaml").read_text()
     assert text.startswith("# Falls at 1.")
     assert yaml.safe_load(text)["criteria"] == {"fell": False}
     assert [line for line in progress.splitlines() if line.startswith("with ")]
-    assert command("check", "walk-incident.yaml", "--out", "red")[0] == 1
-    green = ("check", "walk-incident.yaml", "--set", "pushes=[]", "--out", "green")
+    assert command("check", "walk-level-incident.yaml", "--out", "red")[0] == 1
+    green = ("check", "walk-level-incident.yaml", "--set", "pushes=[]", "--out", "green")
     assert command(*green, "--update")[0] == 0
     assert command(*green)[0] == 0
 

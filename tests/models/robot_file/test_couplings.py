@@ -351,7 +351,7 @@ def test_damped_joints_give_way_more_and_the_log_tells_it(tmp_path):
 
 
 @pytest.mark.physics
-def test_without_the_equality_the_log_tells_that_nothing_holds(tmp_path):
+def test_without_the_equality_the_log_tells_that_nothing_holds(tmp_path, monkeypatch):
     """The negative control: a world that has lost what couples its joints is no walk, and no small error either."""
     robot = of_urdf(tmp_path)
 
@@ -360,10 +360,8 @@ def test_without_the_equality_the_log_tells_that_nothing_holds(tmp_path):
             super().reset(*args, **kwargs)
             self.data.eq_active[:] = False
 
-    def lost(walk):
-        return Lost(walk.true_robot, walk.ground.true_terrain, walk.rates.physics, (), walk.size)
-
-    walk = surefoot.load("walk-level", {"robot": str(tmp_path / "biped.yaml"), "sensing.source": "truth"})
-    verdict = surefoot.run(walk, out=tmp_path / "lost", parts=surefoot.Parts(plant=lost)).verdict
+    monkeypatch.setattr("surefoot.scenarios.run.full.World", Lost)
+    walk = surefoot.load("walk-level", {"robot": str(tmp_path / "biped.yaml")})
+    verdict = surefoot.run(walk, out=tmp_path / "lost").verdict
     assert robot.couplings and not verdict.passed
     assert verdict["coupling_error"] > 0.1

@@ -291,8 +291,8 @@ def yaw_joint(robot: RobotDescription, foot: int) -> str:
 def pelvis_free(robot: RobotDescription) -> tuple[bool, bool]:
     """Return true where the pelvis can turn, and where it can list, under a torso that does not.
 
-    The waist needs a joint for each. Hips that pitch or roll before they turn are not free for either: as the thigh is
-    pitched, the joint that carries the body sideways would have to move.
+    The waist needs a joint for each. Hips that pitch or roll before they turn leave neither free. With a pitched thigh
+    the joint that carries the body sideways would have to move, too.
     """
     if yaw_joint(robot, 0) != robot.roles.left_leg[0]:
         return False, False

@@ -28,7 +28,7 @@ def like(value, part):
 def test_all_groups_are_looked_at():
     others = {"solver", "second_solver", "arm_swing", "size"}
     assert {entry.name for entry in fields(WbcParameters)} == {*GROUPS, *others}
-    assert len(NUMBERS) == 44
+    assert len(NUMBERS) == 43
 
 
 @pytest.mark.parametrize(("group", "name"), NUMBERS)

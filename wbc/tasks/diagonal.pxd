@@ -10,7 +10,7 @@ cdef class Regularisation(DiagonalTerm):
     cdef object _weight
 
 cdef class Posture(DiagonalTerm):
-    cdef object _weights, _gains, _posture
+    cdef object _weight
     cdef ArmSwing _arms
     cdef double[::1] _K, _D, _pull
 

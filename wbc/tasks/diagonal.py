@@ -16,13 +16,8 @@ from surefoot.wbc.types import GRAVITY, Array
 class DiagonalTerm:
     """A cost on single variables."""
 
-    def weigh(self, diagonal: Array, catching: bool) -> None:
-        """Add the weights of the variables, shape (nv + 12,), and count so from now on.
-
-        Args:
-            diagonal: to be added to.
-            catching: as where a step catches the body, in place of a walk.
-        """
+    def weigh(self, diagonal: Array) -> None:
+        """Add the weights of the variables, shape (nv + 12,)."""
         raise NotImplementedError
 
     def put(self, terms: RobotTerms, reference: WbcReference, linear: Array) -> None:
@@ -39,7 +34,7 @@ class Regularisation(DiagonalTerm):
         """``length``: size of the robot, by which a rotation counts [-]."""
         self._weight = weights.acceleration, weights.acceleration * length**2
 
-    def weigh(self, diagonal: Array, catching: bool) -> None:
+    def weigh(self, diagonal: Array) -> None:
         """See ``DiagonalTerm.weigh``."""
         diagonal[:3] += self._weight[0]
         diagonal[3:-12] += self._weight[1]
@@ -67,19 +62,15 @@ class Posture(DiagonalTerm):
             arms: how the arms swing; None for arms that keep the posture.
             driven: which joints somebody else drives, and keep none, bool, shape (nj,); None for none.
         """
-        uppers = weights.upper_posture, weights.upper_posture_catching
-        self._weights = [np.where(leg_joints, weights.leg_posture, upper) for upper in uppers]
-        if driven is not None:
-            self._weights = [np.where(driven, 0.0, weight) for weight in self._weights]
-        self._gains, self._posture, self._arms = gains.posture, posture, arms
-        self._K, self._D, self._pull = np.zeros((3, len(posture)))
+        weight = np.where(leg_joints, weights.leg_posture, weights.upper_posture)
+        self._weight, self._arms = weight if driven is None else np.where(driven, 0.0, weight), arms
+        stiffness, damping = gains.posture
+        self._K, self._D = stiffness * self._weight, damping * self._weight
+        self._pull = self._K * posture
 
-    def weigh(self, diagonal: Array, catching: bool) -> None:
+    def weigh(self, diagonal: Array) -> None:
         """See ``DiagonalTerm.weigh``."""
-        weight, (stiffness, damping) = self._weights[catching], self._gains
-        self._K, self._D = stiffness * weight, damping * weight
-        self._pull = stiffness * weight * self._posture
-        diagonal[6:-12] += weight
+        diagonal[6:-12] += self._weight
 
     def put(self, terms: RobotTerms, reference: WbcReference, linear: Array) -> None:
         """See ``DiagonalTerm.put``."""
@@ -103,7 +94,7 @@ class ForceDistribution(DiagonalTerm):
         self._unit = wrench_unit
         self._g = GRAVITY
 
-    def weigh(self, diagonal: Array, catching: bool) -> None:
+    def weigh(self, diagonal: Array) -> None:
         """See ``DiagonalTerm.weigh``."""
         diagonal[-12:] += np.tile([self._force] * 3 + [self._moment] * 3, 2) * self._unit**2
 

@@ -64,15 +64,14 @@ class TaskStack:
             for task, part in zip(tasks, slices, strict=True)
         ]
         self._terms = list(terms)
+        for term in self._terms:
+            term.weigh(self.diagonal)
         self._weigh(False)
 
     def _weigh(self, catching: bool) -> None:
         """Let tasks count as they do where a step catches the body, or as they do else."""
         self.catching = catching
         self.scale[:], self.unscale[:] = self._scales[catching], self._unscales[catching]
-        self.diagonal[:] = 0.0
-        for term in self._terms:
-            term.weigh(self.diagonal, catching)
 
     def write(self, terms: RobotTerms, reference: WbcReference) -> None:
         """Write H and g of the QP for this state and reference.

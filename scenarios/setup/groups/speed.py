@@ -39,7 +39,7 @@ FOLLOWING: tuple[Key, ...] = (
 )
 """Keys that follow from the speed where they are not given."""
 
-_STRAIGHT = WbcParameters(weights=TaskWeights(com_vertical=1.2), knees=StraightKnees(weight=0.006))
+_STRAIGHT = WbcParameters(weights=TaskWeights(com_vertical=2.0), knees=StraightKnees(weight=0.006))
 """The controller of legs that are nearly straight: the knees say as much as the plan does how high the CoM is.
 
 Legs that are to be bent have the usual one, since a task that straightens their knees works against the plan."""

@@ -22,8 +22,9 @@ from surefoot.parts.plugins import PluginError
 from surefoot.planner.parameters import RecoveryParameters
 from surefoot.scenarios.errors import Key, Problem, nearest
 from surefoot.scenarios.file.criteria import Bound
+from surefoot.scenarios.file.gait import Gait
 from surefoot.scenarios.file.group import groups_in
-from surefoot.scenarios.file.schema import Gait, Rates, RobotSettings, Scenario, model_of
+from surefoot.scenarios.file.schema import Rates, RobotSettings, Scenario, model_of
 from surefoot.scenarios.file.source import Overrides, Source, apply_overrides
 from surefoot.scenarios.file.units import Unit, is_number, unit_of
 from surefoot.scenarios.judge.metric import Metric

@@ -60,20 +60,21 @@ def search_table(name: str, head: str = "N·s/kg") -> str:
     return table([head, *across.values], lines)
 
 
-def gaits_table(name: str) -> str:
-    """Thresholds of a search by direction and phase, of two gaits, with how much higher those of the first are.
+def gaits_table(*names: str) -> str:
+    """Thresholds of searches by direction and phase, of their gaits beside each other, and the mean of each gait.
 
     A cell that survives all of the range counts as its end.
     """
-    found, (gaits, *where) = searches(name)
-    by = {(one.labels[gaits.name], *(one.labels[axis.name] for axis in where)): one for one in found}
-    lines = []
-    for place in product(*(axis.values for axis in where)):
-        one, other = (by[gait, *place] for gait in gaits.values)
-        lines.append([*place, _shown(one), _shown(other), f"{100 * (one.shown / other.shown - 1):+.0f} %"])
-    first, second = (fmean(one.shown for key, one in by.items() if key[0] == gait) for gait in gaits.values)
-    lines.append(["mean", "", f"{first:.2f}", f"{second:.2f}", f"{100 * (first / second - 1):+.0f} %"])
-    return table(["N·s/kg", "phase", *map(text, gaits.values), "change"], lines)
+    by: dict[Any, dict[tuple[Any, ...], Found]] = {}
+    for name in names:
+        found, (gaits, *where) = searches(name)
+        for one in found:
+            place = tuple(one.labels[axis.name] for axis in where)
+            by.setdefault(one.labels[gaits.name], {})[place] = one
+    places = product(*(axis.values for axis in where))
+    lines = [[*place, *(_shown(of[place]) for of in by.values())] for place in places]
+    lines.append(["mean", "", *(f"{fmean(one.shown for one in of.values()):.2f}" for of in by.values())])
+    return table(["N·s/kg", "phase", *map(text, by)], lines)
 
 
 def rules_table() -> str:

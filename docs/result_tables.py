@@ -9,7 +9,7 @@ from itertools import groupby
 from pathlib import Path
 from typing import Any
 
-from measured import HEEL_OFF, HIDDEN, PELVIS, RESULTS, ROUGH, SENSED, SPEEDS, WITHOUT, head, rows
+from measured import HEEL_OFF, HIDDEN, KNEES, PELVIS, RESULTS, ROUGH, SENSED, SPEEDS, WITHOUT, head, rows
 from page_table import table
 from push_tables import (
     beside_table,
@@ -302,7 +302,7 @@ TABLES: dict[str, tuple[str, Callable[[], str]]] = {
     "given-up": ("recovery.md", given_up_table),
     "rules": ("recovery-results.md", rules_table),
     "abilities": ("recovery-results.md", partial(search_table, "abilities")),
-    "rolling-pushes": ("fast-walking.md", partial(gaits_table, "rolling-pushes")),
+    "rolling-pushes": ("fast-walking.md", partial(gaits_table, "rolling-pushes", "flat-pushes")),
     "profiles-walk": (
         "profiles.md",
         partial(
@@ -320,6 +320,7 @@ TABLES: dict[str, tuple[str, Callable[[], str]]] = {
     "fastest": ("fast-walking.md", fastest_table),
     "heel-off": ("fast-walking.md", partial(runs_table, "heel-off", ("gait.heel_off",), HEEL_OFF)),
     "pelvis": ("fast-walking.md", partial(runs_table, "pelvis", ("gait.speed", "pelvis"), PELVIS)),
+    "knees": ("paper.md", partial(runs_table, "knees", ("gait.speed", "feet", "knees"), KNEES)),
     "speeds": ("fast-walking.md", partial(runs_table, "speeds", ("terrain.friction", "gait.speed"), SPEEDS)),
     "rough-ground": ("scenarios.md", partial(runs_table, "rough-ground", ("ground",), ROUGH)),
     "sensor-faults": ("sensors.md", faults_table),

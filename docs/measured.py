@@ -52,6 +52,7 @@ SPEEDS = (
     *("speed_mean", "knee_stance_mean", "knee_heel_strike", "cost_of_transport", "landing_peak"),
     *("foot_slip_max", "torque_at_limit_fraction"),
 )
+KNEES = ("speed_mean", "knee_angle_mean", "knee_torque_rms", "cost_of_transport")
 PELVIS = ("knee_stance_mean", "cost_of_transport", "landing_peak", "foot_slip_max")
 HIDDEN = ("cop_ratio_p99", "step_shift", "ghost_force_max")
 WITHOUT = (*(f"com_estimation_error_rms.{axis}" for axis in range(3)), "estimation_drift", "ghost_force_max")
@@ -81,10 +82,12 @@ MADE = {
     "abilities": Made("docs/campaigns/abilities.yaml"),
     "rules": Made("docs/campaigns/rules.yaml"),
     "rolling-pushes": Made("docs/campaigns/rolling-pushes.yaml"),
+    "flat-pushes": Made("docs/campaigns/flat-pushes.yaml"),
     "profiles": _of_page("profiles", "profile", "fidelity", *_PLANNED),
     "profiles-on-stairs": _of_page("profiles-on-stairs", "terrain.riser", "planner.profile", *_ZMP),
     "speeds": _of_page("speeds", "terrain.friction", "gait.speed", *SPEEDS),
     "pelvis": _of_page("pelvis", "gait.speed", "pelvis", *PELVIS),
+    "knees": _of_page("knees", "gait.speed", "feet", "knees", *KNEES),
     "heel-off": _of_page("heel-off", "gait.heel_off", *HEEL_OFF),
     "rough-ground": _of_page("rough-ground", "ground", *ROUGH),
     "sensor-faults": Made("sensor-faults", columns=("fault", "status", *SENSED, *HIDDEN)),

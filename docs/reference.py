@@ -25,18 +25,15 @@ from surefoot.planner.laws.profiles import PROFILES, Profile
 from surefoot.planner.rules import RULES, rule_name
 from surefoot.scenarios import catalogue
 from surefoot.scenarios.check.signs import SIGNS
+from surefoot.scenarios.file.gait import CommandSettings, FootstepSettings, PlaceSettings, VelocitySettings
 from surefoot.scenarios.file.registries import INSTRUMENTS
 from surefoot.scenarios.file.schema import (
-    CommandSettings,
     Fault,
-    FootstepSettings,
     GroundError,
     InstrumentFault,
     InstrumentSettings,
-    PlaceSettings,
     PushSettings,
     Scenario,
-    VelocitySettings,
     own_keys,
 )
 from surefoot.scenarios.file.sensing import SENSOR_KEYS, Sensing

@@ -234,7 +234,7 @@ class RecoveryParameters:
     least_double: float = positive(
         0.02,
         "s",
-        "least time to which the rest of a double support is shortened; the load changes feet in one or two plans",
+        "least time to which the rest of a double support is shortened; the foot behind bears next to nothing then",
     )
     least_single: float = positive(
         0.10, "s", "least time to which the rest of a single support is shortened; a foot has to lift and land in it"

@@ -1,5 +1,5 @@
 cimport cython
-from surefoot.planner.model.leg_chain cimport Body
+from surefoot.planner.model.leg_body cimport Body
 from surefoot.planner.model.nominal cimport NominalMotion
 from surefoot.planner.references.nominal_feet cimport NominalFeet
 

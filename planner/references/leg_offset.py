@@ -6,7 +6,7 @@ momentum L at up to hundreds of N·m, which moves the ZMP by decimetres. The mom
 
     p_x = c_x - c_x'' / λ - L_y' / (m (g + z'')),      p_y = c_y - c_y'' / λ + L_x' / (m (g + z'')).
 
-L' follows from the planned soles and a CoM motion near the one that will be planned (see `planner.model.leg_chain`).
+L' follows from the planned soles and a CoM motion near the one that will be planned (see `planner.model.leg_body`).
 What still depends on the CoM is kept to first order: with point masses μ m at both soles at rest,
 L' = -2 μ m h c'' e_y, so that
 
@@ -19,7 +19,7 @@ Takanishi et al., 1988; Sato, Sakaino and Tsuji, ICRA 2010.)
 
 import numpy as np
 
-from surefoot.planner.model.leg_chain import Body
+from surefoot.planner.model.leg_body import Body
 from surefoot.planner.model.nominal import NominalMotion
 from surefoot.planner.parameters import LegInertia
 from surefoot.planner.references.com_height import HeightPreview

@@ -17,9 +17,9 @@ from surefoot.scenarios.check.check import Checked
 from surefoot.scenarios.check.record import scenario_json
 from surefoot.scenarios.errors import LogError, ScenarioError
 from surefoot.scenarios.file.criteria import Bound
-from surefoot.scenarios.file.schema import NAME
 from surefoot.scenarios.file.search import Bisect
 from surefoot.scenarios.file.source import decoded
+from surefoot.scenarios.file.values import NAME
 from surefoot.scenarios.output import reason
 from surefoot.scenarios.record.provenance import git, versions
 

@@ -10,7 +10,7 @@ from surefoot.planner.geometry.plane import headings
 from surefoot.scenarios.columns import Reads
 from surefoot.scenarios.errors import LogError
 from surefoot.scenarios.file.criteria import Bound
-from surefoot.scenarios.file.schema import CommandSettings
+from surefoot.scenarios.file.gait import CommandSettings
 from surefoot.scenarios.judge.digest import CONTROL_TOPICS, Array, RunView
 from surefoot.scenarios.judge.feet import terrain_of
 from surefoot.scenarios.judge.walking import fall_time, runs_of

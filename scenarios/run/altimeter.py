@@ -6,8 +6,9 @@ import numpy as np
 from pydantic import Field
 
 from surefoot.scenarios.file.group import Many, key
-from surefoot.scenarios.file.schema import InstrumentFault, InstrumentSettings, Length
+from surefoot.scenarios.file.schema import InstrumentFault, InstrumentSettings
 from surefoot.scenarios.file.units import METRE
+from surefoot.scenarios.file.values import Length
 from surefoot.scenarios.log import FieldSpec
 from surefoot.scenarios.run.instruments import Instrument, Read
 from surefoot.scenarios.setup.walk import Walk

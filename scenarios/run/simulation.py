@@ -20,7 +20,8 @@ from surefoot.planner.laws.profiles import Profile
 from surefoot.planner.plan.plan import Planner
 from surefoot.planner.steps.commands import Command
 from surefoot.scenarios.errors import LogError, nearest
-from surefoot.scenarios.file.schema import CommandSettings, Scenario
+from surefoot.scenarios.file.gait import CommandSettings
+from surefoot.scenarios.file.schema import Scenario
 from surefoot.scenarios.log import LogWriter, NoLog
 from surefoot.scenarios.record.provenance import COMMAND_RECORD, PUSH_RECORD, STOPPED, AskedPush, relevant_versions
 from surefoot.scenarios.run.assembly import Parts

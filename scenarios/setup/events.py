@@ -15,7 +15,8 @@ from surefoot.planner.steps.commands import velocity_bouts
 from surefoot.planner.steps.source import AWAY
 from surefoot.planner.types import Twist
 from surefoot.scenarios.errors import Key, Problem
-from surefoot.scenarios.file.schema import CommandSettings, PushSettings, VelocitySettings
+from surefoot.scenarios.file.gait import CommandSettings, VelocitySettings
+from surefoot.scenarios.file.schema import PushSettings
 from surefoot.scenarios.file.sensing import MOTOR_SIZES, SENSOR_SIZES
 from surefoot.scenarios.file.units import meant
 from surefoot.scenarios.record.provenance import Event

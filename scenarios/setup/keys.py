@@ -58,6 +58,7 @@ _NO_CONTACT = (
     ("errors", "ground_pitch"),
     ("errors", "ground_roll"),
     *(("sensing", name) for name in SENSOR_KEYS),
+    ("rates", "physics"),
 )
 """Keys that the pendulum, whose feet are ideal and which has no joints, does not feel."""
 

@@ -33,7 +33,6 @@ from surefoot.scenarios.setup.groups.speed import FOLLOWING
 from surefoot.scenarios.setup.keys import scenario_problem
 from surefoot.scenarios.setup.robot.robots import Robots
 from surefoot.scenarios.setup.sized import say_for, sized_walk
-from surefoot.scenarios.setup.terrain import kind_of
 
 LOG_ENDING = ".mcap"
 MOST_PROBLEMS = 20
@@ -334,8 +333,7 @@ def _sound(values: dict[str, Any], robots: Robots) -> Scenario | None:
 def _checked(scenario: Scenario, robots: Robots) -> tuple[Scenario, list[Problem]]:
     """The scenario with what follows from its ground, and what of it does not fit together."""
     try:
-        gait = kind_of(scenario.terrain.kind).completed(scenario.terrain, scenario.gait)
-        walk = sized_walk(scenario.model_copy(update={"gait": gait}), robots)
+        walk = sized_walk(scenario, robots)
         return walk.keys, check(walk, robots)
     except PartError as fault:  # of the ground: what is wrong with a robot is among the checks
         return scenario, [Problem(("terrain", "kind"), fault.what, fault.right)]

@@ -22,14 +22,16 @@ from surefoot.parts.plugins import PluginError
 from surefoot.planner.parameters import RecoveryParameters
 from surefoot.scenarios.errors import Key, Problem, nearest
 from surefoot.scenarios.file.criteria import Bound
+from surefoot.scenarios.file.gait import Gait
 from surefoot.scenarios.file.group import groups_in
-from surefoot.scenarios.file.schema import Gait, Rates, RobotSettings, Scenario, model_of
+from surefoot.scenarios.file.schema import Rates, RobotSettings, Scenario, model_of
 from surefoot.scenarios.file.source import Overrides, Source, apply_overrides
 from surefoot.scenarios.file.units import Unit, is_number, unit_of
 from surefoot.scenarios.judge.metric import Metric
 from surefoot.scenarios.judge.metrics import known
 from surefoot.scenarios.setup.groups.speed import with_speed
 from surefoot.scenarios.setup.robot.robots import POSTURE, Robots, Rule, is_known, nearer_landings, rules
+from surefoot.scenarios.setup.terrain import kind_of
 from surefoot.scenarios.setup.walk import Walk
 from surefoot.similarity import REFERENCE, REFERENCE_SIZE, Similarity, sized_unit
 from surefoot.wbc.parameters import WbcParameters
@@ -51,12 +53,33 @@ G = TypeVar("G", bound=BaseModel)
 
 
 def sized_walk(scenario: Scenario, robots: Robots) -> Walk:
-    """The walk of a scenario, with the defaults of its robot."""
+    """The walk of a scenario, with what follows from its ground, its robot and its speed.
+
+    Raises:
+        ParameterError: the scenario gives more than fits together.
+        PartError: the ground, of others, fails to say what follows from it.
+    """
+    gait = kind_of(scenario.terrain.kind).completed(scenario.terrain, scenario.gait)
+    scenario = scenario.model_copy(update={"gait": gait})
     facts = None if scenario.robot == REFERENCE else _facts(scenario.robot, RobotSettings(), robots)
     if facts is None or facts.size == REFERENCE_SIZE:
         return Walk(_with_speed(scenario, scenario, robots))
     size, sized = facts.size, with_defaults(scenario, facts.size, robots)
     return Walk(_with_speed(sized, scenario, robots), size, stance_widening(facts, size), facts.foot_length)
+
+
+def unsaid(scenario: Scenario, group: str, name: str, robots: Robots) -> Any:
+    """The value that a key of a group would have if the scenario did not give it, and gave all others of the group.
+
+    Args:
+        scenario: as `sized_walk` has it, or as its log has it.
+        group: of keys.
+        name: of the key.
+        robots: that the scenario may name.
+    """
+    settings = getattr(scenario, group)
+    bare = type(settings).model_validate(settings.model_dump(mode="json", exclude={name}))
+    return getattr(getattr(sized_walk(scenario.model_copy(update={group: bare}), robots).keys, group), name)
 
 
 def _with_speed(sized: Scenario, written: Scenario, robots: Robots) -> Scenario:
@@ -248,8 +271,10 @@ def with_defaults(scenario: Scenario, size: Similarity, robots: Robots) -> Scena
     if size == REFERENCE_SIZE:
         return scenario
     followed = _followed(scenario, size)
-    before, after = (_facts(name, RobotSettings(), robots) for name in (REFERENCE, scenario.robot))
     gait, changed = scenario.gait, {}
+    before = after = None
+    if not gait.model_fields_set.issuperset(POSTURE):
+        before, after = (_facts(name, RobotSettings(), robots) for name in (REFERENCE, scenario.robot))
     if before is not None and after is not None:
         posture = rules(nearer_landings(gait.model_dump(exclude_unset=True), bool(scenario.commands)))
         for name in POSTURE:

@@ -51,7 +51,7 @@ TEXTS = {
     "speed": """
         duration: 0.06
         robot_options: {foot_length: 0.22, foot_width: 0.11}
-        gait: {steps: 4, speed: 0.4}
+        gait: {steps: 4, speed: 0.4, pelvis_yaw: 0.06, pelvis_list: 0.03}
         """,
     "velocity": """
         duration: 0.06

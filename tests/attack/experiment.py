@@ -29,6 +29,7 @@ LOADED = "errors: {payload: {mass: 4.0}}\n"
 BASES = {
     "walk-level": POINT + STEPS,
     "stand": POINT + STAND + "duration: 1.0\n",
+    "speed": POINT + "gait: {speed: 0.4, steps: 4, initial_stand: 0.1}\n",
     "cart": POINT + STEPS + "pendulum: {plant: cart_table}\n",
     "velocity": POINT + f"gait: {{velocity: [{{time: 0, v_x: 0.2}}, {{time: 1}}], {PACE}}}\n",
     "footsteps": POINT

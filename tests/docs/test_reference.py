@@ -51,8 +51,9 @@ def test_a_generated_table_has_a_maker(reference):
 
 def test_every_kept_result_says_what_made_it_and_is_shown(reference):
     """In its first two lines; by a table or a picture."""
-    results = ROOT / "docs" / "results"
-    makers = (ROOT / "docs" / "result_tables.py").read_text() + (ROOT / "docs" / "images" / "sources.py").read_text()
+    docs = ROOT / "docs"
+    results, written = docs / "results", ("result_tables.py", "push_tables.py", "images/sources.py")
+    makers = "".join((docs / name).read_text() for name in written)
     for path in results.glob("*.csv"):
         command, code, *_ = path.read_text(encoding="utf-8").splitlines()
         assert re.match(r"# (surefoot|python|make) ", command), path.name

@@ -17,7 +17,7 @@ from surefoot.planner.swing.step_region import StepRegion, check_reach, soles_ap
 from surefoot.planner.swing.trajectory import FEWEST_SWING_SAMPLES
 from surefoot.planner.types import Footstep, Twist
 from surefoot.scenarios.errors import Key, Problem, nearest
-from surefoot.scenarios.file.schema import Gait
+from surefoot.scenarios.file.gait import Gait
 from surefoot.scenarios.file.units import meant
 from surefoot.scenarios.setup.events import command_problems, cut_off, idle_commands, never_act, slight
 from surefoot.scenarios.setup.groups.formulation import LONGEST_REACH

@@ -1,46 +1,47 @@
 """Notes on a scenario that passes the checks: keys without effect, odd times, and what its robot lacks."""
 
-from collections.abc import Iterable, Iterator
-
-from pydantic import BaseModel
+from collections.abc import Iterator
 
 from surefoot.parts.plugins import PluginError
 from surefoot.scenarios.file.group import Unfelt
 from surefoot.scenarios.file.registries import DEFAULTS
-from surefoot.scenarios.file.schema import PendulumSettings, Rates, Scenario, TerrainSettings
+from surefoot.scenarios.file.schema import PendulumSettings, Scenario, TerrainSettings
 from surefoot.scenarios.file.units import meant
 from surefoot.scenarios.record.provenance import Agenda, AskedPush
+from surefoot.scenarios.setup.checks.given import Given
 from surefoot.scenarios.setup.events import events
 from surefoot.scenarios.setup.groups.gait import EQUAL_STEPS, commanded
-from surefoot.scenarios.setup.sized import clock, default_of
 from surefoot.scenarios.setup.walk import Walk
 
 _PLANT_READS = {"pendulum": ("feedback",), "cart_table": ()}
 """Keys of `pendulum` that each of its plants reads."""
 
 
-def notes(walk: Walk, driven: bool = False) -> tuple[str, ...]:
-    """List them, one sentence each; those of a robot that was driven by hand if it was ``driven``."""
-    still = (
-        ()
-        if driven or walk.keys.gait.steps or commanded(walk.keys.gait) or walk.takes_commands
-        else _without_steps(walk)
-    )
-    keys = (*_unlikely(walk), *_without_effect(walk), *_without_occasion(walk), *still, *_cut_short(walk))
-    return (*keys, *_left_out(walk))
+def notes(walk: Walk) -> tuple[str, ...]:
+    """List them, one sentence each."""
+    return _notes(walk)[0]
 
 
 def agenda(walk: Walk) -> Agenda:
     """The agenda of a run, as its log holds it."""
-    said, driven = notes(walk), notes(walk, driven=True)
+    said, standing = _notes(walk)
     pushes = (*walk.pushes, *(push for _, push in walk.gait_pushes))
     return Agenda(
         events=events(walk),
         bodies=tuple(dict.fromkeys(push.body for push in pushes)),
         notes=said,
-        standing=tuple(note for note in said if note not in driven),
+        standing=standing,
         pushes=tuple(map(AskedPush.of, walk.pushes)),
     )
+
+
+def _notes(walk: Walk) -> tuple[tuple[str, ...], tuple[str, ...]]:
+    """All notes, and those of them that hold only while nobody tells the robot by hand how to walk."""
+    given = Given(walk.keys)
+    stands = not (walk.keys.gait.steps or commanded(walk.keys.gait) or walk.takes_commands)
+    still = tuple(_without_steps(walk, given)) if stands else ()
+    keys = (*_unlikely(walk), *_without_effect(walk, given), *_without_occasion(walk, given), *still, *_cut_short(walk))
+    return (*keys, *_left_out(walk)), still
 
 
 _LONG = 60.0
@@ -62,21 +63,14 @@ def _left_out(walk: Walk) -> Iterator[str]:
         yield from (f"robot {walk.robot.name}, {line}" for line in walk.robot.left_out)
 
 
-def _without_effect(walk: Walk) -> Iterator[str]:
-    keys = walk.keys
-    yield from _no_equal_steps(walk)
-    yield from _unshaped(walk)
+def _without_effect(walk: Walk, given: Given) -> Iterator[str]:
+    yield from _no_equal_steps(walk, given)
+    yield from _unshaped(walk, given)
     walker = walk.walker
-    yield from () if walker.has_body else _not_felt(walk)
+    yield from () if walker.has_body else _not_felt(walk, given)
     for group, name in walker.unfelt:
-        if group == "gait" and keys.gait.speed is not None:
-            continue  # it follows from the speed, of which something is felt
-        yield from (f"{key} has no effect on a {walker.thing}" for key in _given(walk, group, (name,)))
+        yield from (f"{key} has no effect on a {walker.thing}" for key in given.of(group, (name,)))
     yield from _unfelt(walk)
-    if walker.has_body:
-        return
-    if keys.rates.physics not in (Rates().physics, clock(Rates(), walk.size.time).physics):
-        yield "rates.physics has no effect on a pendulum"
 
 
 def _unfelt(walk: Walk) -> Iterator[str]:
@@ -89,14 +83,7 @@ def _unfelt(walk: Walk) -> Iterator[str]:
             yield f"{name} has no effect {beside}"
 
 
-def _given(walk: Walk, group: str, names: Iterable[str]) -> Iterator[str]:
-    """Keys of a group, dotted, that are not the defaults of a robot of this size."""
-    settings = getattr(walk.keys, group)
-    model: type[BaseModel] = type(Scenario.model_fields[group].default)
-    return (f"{group}.{name}" for name in names if getattr(settings, name) != default_of(model, name, walk.size))
-
-
-def _no_equal_steps(walk: Walk) -> Iterator[str]:
+def _no_equal_steps(walk: Walk, given: Given) -> Iterator[str]:
     """Note keys of equal steps in a walk whose steps are given in another way."""
     gait, commands = walk.keys.gait, walk.keys.commands
     instead = next((f"gait.{name}" for name in ("velocity", "footsteps", "waypoints") if getattr(gait, name)), None)
@@ -106,18 +93,17 @@ def _no_equal_steps(walk: Walk) -> Iterator[str]:
     # Of a walk to a place it is the longest stride.
     bound = gait.waypoints or any(command.place is not None for command in commands)
     taken = [name for name in names if instead and not (bound and name == "step_length")]
-    yield from (f"{key} has no effect beside {instead}" for key in _given(walk, "gait", taken))
+    yield from (f"{key} has no effect beside {instead}" for key in given.of("gait", taken))
 
 
-def _not_felt(walk: Walk) -> Iterator[str]:
+def _not_felt(walk: Walk, given: Given) -> Iterator[str]:
     """Note what a pendulum, which is one body, and its plant make nothing of."""
     pendulum, load = walk.keys.pendulum, walk.keys.errors.payload
     unread = [name for name in PendulumSettings.model_fields if name not in ("plant", *_PLANT_READS[pendulum.plant])]
-    yield from (f"{key} has no effect on pendulum.plant {pendulum.plant}" for key in _given(walk, "pendulum", unread))
+    yield from (f"{key} has no effect on pendulum.plant {pendulum.plant}" for key in given.of("pendulum", unread))
     bodies = {f"pushes.{index}.body": push.body for index, push in enumerate(walk.keys.pushes)}
     bodies["errors.payload.body"] = None if load is None else load.body
-    if walk.keys.sensing.preset is None:  # else it follows from that, and is noted with it
-        yield from (f"{key} has no effect on a pendulum" for key in _given(walk, "sensing", ("source", "options")))
+    yield from (f"{key} has no effect on a pendulum" for key in given.of("sensing", ("source", "options")))
     yield from (f"{name} has no effect on a pendulum" for name, body in bodies.items() if body is not None)
 
 
@@ -140,23 +126,23 @@ _TIMES = ("single_support", "double_support", "initial_stand")
 """Keys of an instant, by which a run lasts that has no duration of its own."""
 
 
-def _without_steps(walk: Walk) -> Iterator[str]:
+def _without_steps(walk: Walk, given: Given) -> Iterator[str]:
     """Note what a robot that takes no step has no use for."""
     names = (*_STEPPING, *(() if walk.keys.duration is None else _TIMES))
-    unused = list(_given(walk, "gait", names))
-    if walk.keys.planner.knee == "straight":
+    unused = list(given.of("gait", names))
+    if given.straight_knees:
         unused.append("planner.knee straight")
     yield from (f"{key} has no effect on a robot that takes no step" for key in unused)
 
 
-def _without_occasion(walk: Walk) -> Iterator[str]:
+def _without_occasion(walk: Walk, given: Given) -> Iterator[str]:
     """Note keys that shape what this scenario has not got: a climb, a load."""
     keys, load = walk.keys, walk.keys.errors.payload
     if keys.planner.rise is not None and keys.terrain.kind == "flat":
         yield "planner.rise has no effect on level ground"
     if keys.robot_options.payload_body is not None and keys.robot_options.payload_mass == 0.0:
         yield "robot_options.payload_body has no effect without robot_options.payload_mass"
-    if keys.planner.knee == "straight" and walk.formulation.profile.height is not None:
+    if walk.formulation.profile.height is not None and given.straight_knees:
         profile = keys.planner.profile
         yield f"planner.knee straight has no effect with planner.profile {profile}, which has its own height"
     yield from _without_weight(walk)
@@ -169,12 +155,12 @@ def _without_occasion(walk: Walk) -> Iterator[str]:
 def _without_weight(walk: Walk) -> Iterator[str]:
     """Note numbers of the task of the knees where that has no weight."""
     knees = getattr(walk.keys.wbc, "knees", None)
-    given = {} if knees is None else knees.model_dump(exclude_none=True)
+    numbers = {} if knees is None else knees.model_dump(exclude_none=True)
     if walk.walker.has_body and not walk.controller.knees.weight:
-        yield from (f"wbc.knees.{name} has no effect without wbc.knees.weight" for name in given if name != "weight")
+        yield from (f"wbc.knees.{name} has no effect without wbc.knees.weight" for name in numbers if name != "weight")
 
 
-def _unshaped(walk: Walk) -> Iterator[str]:
+def _unshaped(walk: Walk, given: Given) -> Iterator[str]:
     terrain = walk.keys.terrain
     try:
         shaping = ("kind", "friction", *walk.ground.kind.keys)
@@ -182,7 +168,7 @@ def _unshaped(walk: Walk) -> Iterator[str]:
     except PluginError:  # a package that is broken where the log is judged, which needs nothing of it
         return
     elsewhere = [name for name in TerrainSettings.model_fields if name not in shaping]
-    yield from (f"{key} has no effect on terrain.kind {terrain.kind}" for key in _given(walk, "terrain", elsewhere))
+    yield from (f"{key} has no effect on terrain.kind {terrain.kind}" for key in given.of("terrain", elsewhere))
 
 
 def _cut_short(walk: Walk) -> Iterator[str]:

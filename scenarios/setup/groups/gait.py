@@ -15,7 +15,8 @@ from surefoot.planner.steps.gait import GaitParameters
 from surefoot.planner.steps.source import CommandSource, steps_ordered
 from surefoot.planner.swing.step_region import StepRegion
 from surefoot.planner.types import Array, Foot, Footstep, PhaseInfo, PhaseKind, Twist
-from surefoot.scenarios.file import schema
+from surefoot.scenarios.file.gait import CommandSettings, FootstepSettings, Gait, VelocitySettings
+from surefoot.scenarios.file.schema import PushSettings, Start
 
 EQUAL_STEPS = ("steps", "step_length", "lateral_step", "turn", "ramp")
 """Keys of a gait of equal steps, which say nothing beside a velocity or footsteps."""
@@ -30,17 +31,17 @@ FINAL_STAND = 2.5
 """Standing after the last double support that ends a run whose duration is not given, of the reference robot [s]."""
 
 
-def commanded(keys: schema.Gait) -> bool:
+def commanded(keys: Gait) -> bool:
     """Return true if the gait is given by a velocity or by footsteps."""
     return bool(keys.velocity or keys.footsteps)
 
 
-def uncommanded(keys: schema.Gait) -> schema.Gait:
+def uncommanded(keys: Gait) -> Gait:
     """The same gait without velocity and footsteps."""
     return keys.model_copy(update={"velocity": (), "footsteps": ()})
 
 
-def gait_of(keys: schema.Gait) -> GaitParameters:
+def gait_of(keys: Gait) -> GaitParameters:
     """The gait in the planner's terms; the widths of its strides are not yet fitted to where feet may land.
 
     Raises:
@@ -80,22 +81,22 @@ def longest_landing(gait: GaitParameters) -> float:
     return max((abs(float(place.position[0])) for place in places), default=0.0)
 
 
-def twist_of(command: schema.VelocitySettings) -> Twist:
+def twist_of(command: VelocitySettings) -> Twist:
     """The velocity that a command asks for."""
     return Twist(command.v_x, command.v_y, command.yaw_rate)
 
 
-def velocities_of(commands: Sequence[schema.VelocitySettings]) -> list[Command]:
+def velocities_of(commands: Sequence[VelocitySettings]) -> list[Command]:
     """Velocity commands in the planner's terms."""
     return [Command(twist_of(command), time=command.time) for command in commands]
 
 
-def footsteps_of(footsteps: Sequence[schema.FootstepSettings]) -> list[Footstep]:
+def footsteps_of(footsteps: Sequence[FootstepSettings]) -> list[Footstep]:
     """Footsteps in the planner's terms, in the frame between the start feet."""
     return [Footstep(Foot[step.foot.upper()], np.array([step.x, step.y, 0.0]), step.yaw) for step in footsteps]
 
 
-def command_of(settings: schema.CommandSettings) -> Command:
+def command_of(settings: CommandSettings) -> Command:
     """A command in the planner's terms."""
     place, names = settings.place, ("v_x", "v_y", "yaw_rate", "march", *_DURABLE, "time")
     places = None if place is None else (Twist(place.x, place.y, place.yaw),)
@@ -124,14 +125,14 @@ _DURABLE = ("single_support", "double_support", "swing_height")
 """Values of a gait that a command changes, by the names that `Command` and the key have in common."""
 
 
-def waypoints_of(keys: schema.Gait, start: schema.Start) -> tuple[Twist, ...]:
+def waypoints_of(keys: Gait, start: Start) -> tuple[Twist, ...]:
     """The places of `gait.waypoints` in the world frame."""
     origin, rotation = np.array([start.x, start.y]), frame_rotation(start.yaw)
     places = ((origin + rotation @ (to.x, to.y), to.yaw + start.yaw) for to in keys.waypoints)
     return tuple(Twist(float(place[0]), float(place[1]), heading) for place, heading in places)
 
 
-def commanded_until(gait: GaitParameters, command: schema.CommandSettings) -> float:
+def commanded_until(gait: GaitParameters, command: CommandSettings) -> float:
     """Time at which the robot stands after a command that lets it stop, or a little later [s]."""
     return command.time + _STOPPING * gait.period
 
@@ -157,7 +158,7 @@ def step_region(
     return StepRegion(parameters.reach_length, width, sole, gap, leg_span=leg_span, hip_width=hip_width)
 
 
-def push_time(gait: GaitParameters, push: schema.PushSettings) -> float:
+def push_time(gait: GaitParameters, push: PushSettings) -> float:
     """Begin [s] of a push, given directly or by step, phase and fraction of that phase.
 
     Raises:
@@ -188,7 +189,7 @@ class PushPoint:
     promised: bool = True
 
     @classmethod
-    def of(cls, push: schema.PushSettings) -> "PushPoint | None":
+    def of(cls, push: PushSettings) -> "PushPoint | None":
         """The point of a push; None of one that begins at a time."""
         if push.step is None or push.phase is None:
             return None
@@ -205,7 +206,7 @@ class PushPoint:
         return f"fraction {self.fraction:g} of the {self.kind.name.lower()} support of step {self.step}"
 
 
-def push_force(push: schema.PushSettings, mass: float) -> Array:
+def push_force(push: PushSettings, mass: float) -> Array:
     """Force of a push, given directly or by its impulse per mass [kg], shape (3,) [N]."""
     if push.impulse is None:
         return np.array(push.force or np.zeros(3))

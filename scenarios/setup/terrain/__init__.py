@@ -7,8 +7,8 @@ from surefoot.parts.guard import Guarded, taken_for
 from surefoot.parts.plugins import Registry
 from surefoot.planner.ground.terrain import Terrain
 from surefoot.scenarios.errors import Problem
+from surefoot.scenarios.file.gait import Gait
 from surefoot.scenarios.file.registries import TERRAIN_KINDS
-from surefoot.scenarios.file.schema import Gait
 from surefoot.scenarios.setup.terrain.ground import Ground, TerrainKind
 
 KINDS: Registry[TerrainKind] = TERRAIN_KINDS

@@ -17,7 +17,8 @@ from surefoot.planner.steps.footsteps import plan_footsteps
 from surefoot.planner.steps.gait import GaitParameters
 from surefoot.planner.types import Array, FeetState, Footstep
 from surefoot.scenarios.errors import Problem
-from surefoot.scenarios.file.schema import Gait, GroundError, Scenario, Start, TerrainSettings
+from surefoot.scenarios.file.gait import Gait
+from surefoot.scenarios.file.schema import GroundError, Scenario, Start, TerrainSettings
 from surefoot.scenarios.file.units import meant
 from surefoot.similarity import Similarity
 from surefoot.streams import Stream, generator

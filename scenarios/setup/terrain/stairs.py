@@ -10,7 +10,8 @@ from surefoot.models.facts import RobotFacts
 from surefoot.planner.ground.stairs import Direction, Stairs
 from surefoot.planner.ground.terrain import Terrain
 from surefoot.scenarios.errors import Problem
-from surefoot.scenarios.file.schema import Gait, TerrainSettings
+from surefoot.scenarios.file.gait import Gait
+from surefoot.scenarios.file.schema import TerrainSettings
 from surefoot.scenarios.setup.terrain.ground import PLATFORM, Ground, TerrainKind, climb_problems, unreached
 
 LANDING_TREADS = 3

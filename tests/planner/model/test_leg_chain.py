@@ -3,7 +3,8 @@ from dataclasses import replace
 import numpy as np
 import pytest
 
-from surefoot.planner.model.leg_chain import Body, LegChain, Link
+from surefoot.planner.model.leg_body import Body
+from surefoot.planner.model.leg_chain import LegChain, Link
 
 pytestmark = pytest.mark.unit
 

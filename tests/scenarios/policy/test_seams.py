@@ -27,6 +27,25 @@ def test_a_policy_stands_and_its_log_runs_again_to_the_bit(scenario, stander, sa
     np.testing.assert_allclose(np.linalg.norm(gravity, axis=1), 1.0, atol=1e-6)
 
 
+@pytest.mark.parametrize("robot", ["g1", "humanoid100"])
+def test_a_gait_of_one_speed_is_a_velocity_to_it_and_its_pelvis_is_told(
+    policies, scenario, same_content, tmp_path, robot
+):
+    def run(name, **sway):
+        gait = {"steps": 3, "speed": 0.4, "initial_stand": 0.2, **sway}
+        walk = scenario(policy, f"{name}.yaml", name=name, robot=robot, duration=0.6, gait=gait)
+        return surefoot.run(walk, out=tmp_path / "runs")
+
+    policy = policies.stander(tmp_path / f"of-{robot}", robot)
+    plain, swaying = run("plain"), run("swaying", pelvis_yaw=0.08, pelvis_list=0.05)
+    again = surefoot.run(str(swaying.log), out=tmp_path / "again")
+    assert same_content(swaying.log, again.log) == same_content(swaying.log, plain.log) == []
+    np.testing.assert_allclose(surefoot.read(again.log)["/command"].field("velocity")[0], (0.4, 0.0))
+    unfelt = [f"gait.{name} has no effect on a controller without a planner" for name in ("pelvis_yaw", "pelvis_list")]
+    for result, said in ((plain, []), (swaying, unfelt), (again, unfelt)):
+        assert [note for note in result.verdict.notes if "no effect" in note] == said
+
+
 def test_what_only_a_planner_has_is_absent_by_name(scenario, stander, tmp_path):
     result = surefoot.run(scenario(stander), out=tmp_path / "runs")
     for name, metric in OWN.items():

@@ -1,12 +1,22 @@
 """Walks of one number in full physics, from sensors: straight legs, and what they save."""
 
+from itertools import pairwise
+
 import numpy as np
 import pytest
+import yaml
 
+import surefoot
 from surefoot.planner.geometry.plane import rotations
+from surefoot.scenarios.check.check import cases, check, updated
 from surefoot.scenarios.log.reader import read
+from surefoot.scenarios.many.engine import local_workers
+from surefoot.scenarios.many.journal import Journal, outcome_of
+from surefoot.scenarios.many.points import Base, Point, Single
+from surefoot.scenarios.many.slots import run_cells
+from surefoot.scenarios.run.processes import processes
 from surefoot.scenarios.run.run import run_scenario
-from surefoot.scenarios.setup.load import load
+from surefoot.scenarios.setup.load import load, written
 
 SOUND = {
     "fell": False,
@@ -70,13 +80,18 @@ def test_hips_knees_and_ankles_move_as_peoples(tmp_path):
     assert verdict.reasons == ()
 
 
+def pelvis_of(log):
+    """Yaw and roll of the pelvis."""
+    R = rotations(log["/truth"].field("q")[:, 3:7])
+    return np.arctan2(R[:, 1, 0], R[:, 0, 0]), np.arctan2(R[:, 2, 1], R[:, 2, 2])
+
+
 def swayed(folder, **gait):
     """Verdict of a walk, and yaw and roll of its pelvis as each foot is planned to land, and that foot."""
     keys = {"gait": {"speed": 0.8, "steps": 14, **gait}, "criteria": SOUND}
     result = run_scenario(load("walk", keys), folder)
     log = read(result.log)
-    R = rotations(log["/truth"].field("q")[:, 3:7])
-    yaw, roll = np.arctan2(R[:, 1, 0], R[:, 0, 0]), np.arctan2(R[:, 2, 1], R[:, 2, 2])
+    yaw, roll = pelvis_of(log)
     ticks, feet = np.nonzero(np.diff(log["/contact"].field("planned").astype(int), axis=0) > 0)
     steady = slice(4, -4)
     return result.verdict, yaw[ticks + 1][steady], feet[steady], np.ptp(roll[len(roll) // 3 : len(roll) // 2])
@@ -94,6 +109,96 @@ def test_the_pelvis_turns_and_lists_with_the_steps_and_saves_work(tmp_path):
     assert np.abs(still[1]).max() < 0.01
     assert turned[0].metrics["cost_of_transport"] < 0.99 * still[0].metrics["cost_of_transport"]
     assert verdict.metrics["knee_stance_mean"] < still[0].metrics["knee_stance_mean"] - 0.04
+
+
+SWAY = {"pelvis_yaw": 0.08, "pelvis_list": 0.05}
+BEGIN = {"speed": 0.6, "steps": 3, "initial_stand": 0.1}
+WALKERS = [("humanoid100", "full"), ("g1", "full"), ("talos", "full"), ("humanoid100", "pendulum"), ("g1", "pendulum")]
+
+
+def begin(robot="humanoid100", fidelity="full", **gait):
+    """Keys of the begin of a walk of one number, whose pelvis sways."""
+    keys = {"robot": robot, "fidelity": fidelity, "gait": {**BEGIN, **SWAY, **gait}, "duration": 1.1}
+    return {**keys, "criteria": {"fell": False}}
+
+
+def begun(folder, *arguments, **gait):
+    return surefoot.run(load("walk-level", begin(*arguments, **gait)), out=folder)
+
+
+def configurations(arguments):
+    return read(begun(*arguments).log)["/truth"].field("q")
+
+
+@pytest.mark.physics
+@pytest.mark.parametrize(("robot", "fidelity"), WALKERS)
+def test_its_log_runs_again_to_the_bit_and_tells_the_same_notes(robot, fidelity, same_content, tmp_path):
+    result, other = (
+        begun(tmp_path / str(list_), robot, fidelity, pelvis_list=list_) for list_ in (SWAY["pelvis_list"], 0.04)
+    )
+    again = surefoot.run(str(result.log), out=tmp_path / "again")
+    assert result.verdict.passed, result.verdict.reasons
+    assert same_content(result.log, again.log) == []
+    assert again.verdict.notes == result.verdict.notes
+    said = {f"gait.{name} has no effect on a pendulum" for name in SWAY}
+    assert said & set(result.verdict.notes) == (said if fidelity == "pendulum" else set())
+    assert ("/truth" in same_content(result.log, other.log)) is (fidelity == "full")
+
+
+@pytest.mark.physics
+def test_a_process_of_its_own_walks_it_alike(tmp_path):
+    with processes() as pool:
+        (there,) = pool.map(configurations, [(tmp_path / "there", "talos")])
+    np.testing.assert_array_equal(there, configurations((tmp_path / "here", "talos")))
+
+
+@pytest.mark.physics
+def test_it_is_held_to_its_baseline_in_two_processes(tmp_path):
+    files = [tmp_path / f"{robot}.yaml" for robot in ("humanoid100", "g1")]
+
+    def checked(**gait):
+        for file in files:
+            file.write_text(yaml.safe_dump(begin(file.stem, **gait)))
+        return check(cases(list(map(str, files))), tmp_path / "runs", jobs=2)
+
+    first = checked()
+    assert [updated(one).status for one in first] == ["written"] * 2
+    assert [one.status for one in checked()] == ["same"] * 2
+    assert "same" not in [one.status for one in checked(pelvis_yaw=0.0)]
+
+
+@pytest.mark.physics
+def test_a_campaign_over_its_list_is_the_same_in_two_processes(same_content, tmp_path):
+    (tmp_path / "walk.yaml").write_text(yaml.safe_dump(begin()))
+    base = Base("walk.yaml", written(str(tmp_path / "walk.yaml")))
+    points = [Single(Point(base, {"gait.pelvis_list": list_}, {}, f"list-{list_}")) for list_ in (0.0, 0.02, 0.05)]
+
+    def swept(jobs):
+        folder = tmp_path / str(jobs)
+        with Journal(folder) as journal:
+            run_cells(iter(points), journal, local_workers(folder, jobs, keep_all=True))
+            records = [outcome_of(point, journal).runs for point in points]
+        assert [record.status for ((_, record),) in records] == ["pass"] * 3
+        return sorted(folder.rglob("log.mcap"))
+
+    alone, beside = swept(1), swept(2)
+    assert [same_content(one, other) for one, other in zip(alone, beside, strict=True)] == [[]] * 3
+    assert all(same_content(one, other) for one, other in pairwise(alone))
+
+
+@pytest.mark.physics
+@pytest.mark.parametrize("robot", ["humanoid100", "talos"])
+def test_who_is_driven_sways_as_well_and_the_log_walks_it_again(robot, same_content, tmp_path):
+    path = tmp_path / "driven.mcap"
+    scenario = load("walk-level", {**begin(robot, steps=0), "duration": 2.5})
+    with surefoot.Simulation(scenario, log=path) as simulation:
+        simulation.command(v_x=0.4)
+        while not simulation.done:
+            simulation.advance()
+    assert simulation.end.kind == "completed"
+    yaw, _ = pelvis_of(read(path))
+    assert 1.2 * SWAY["pelvis_yaw"] > np.abs(yaw).max() > 0.6 * SWAY["pelvis_yaw"]
+    assert same_content(path, surefoot.run(path, out=tmp_path / "again").log) == []
 
 
 ROWS = {

@@ -5,7 +5,8 @@ from surefoot.planner.ground.terrain import flat
 from surefoot.planner.steps.schedule import Schedule
 from surefoot.planner.swing.course import Ground
 from surefoot.planner.types import PhaseKind
-from surefoot.scenarios.file.schema import Gait, Scenario
+from surefoot.scenarios.file.gait import Gait
+from surefoot.scenarios.file.schema import Scenario
 from surefoot.scenarios.setup.groups.gait import FINAL_STAND, phase_of
 from surefoot.scenarios.setup.walk import Walk
 

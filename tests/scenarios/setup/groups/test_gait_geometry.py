@@ -8,7 +8,8 @@ from hypothesis import strategies as st
 
 from surefoot.models.facts import longest_step
 from surefoot.planner.references.com_height import BENT_KNEES
-from surefoot.scenarios.file.schema import Gait, PushSettings, Scenario
+from surefoot.scenarios.file.gait import Gait
+from surefoot.scenarios.file.schema import PushSettings, Scenario
 from surefoot.scenarios.setup.groups.formulation import CATCHING_HIPS
 from surefoot.scenarios.setup.groups.gait import (
     FINAL_STAND,

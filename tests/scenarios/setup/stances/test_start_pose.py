@@ -8,7 +8,8 @@ from surefoot.models.facts import STOPS_OFF
 from surefoot.models.registry import describe
 from surefoot.models.types import RobotOptions
 from surefoot.planner.geometry.plane import wrap_angle
-from surefoot.scenarios.file.schema import Gait, Scenario, Start
+from surefoot.scenarios.file.gait import Gait
+from surefoot.scenarios.file.schema import Scenario, Start
 from surefoot.scenarios.setup.robot.body import body_of, feet_at
 from surefoot.scenarios.setup.stances.start import SOLE_SINKAGE, at_believed_start, disturbed, pressed, start_posture
 from surefoot.scenarios.setup.walk import resolve

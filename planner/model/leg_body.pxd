@@ -4,7 +4,7 @@ from surefoot.maths cimport algebra
 from surefoot.maths.algebra cimport vector3
 
 cdef double _BEND, _GUESS
-cdef Py_ssize_t HIPS, KNEES, ANKLES, FEET, TRUNK, BESIDE, _LEFT, _RIGHT, _MIDDLE
+cdef Py_ssize_t HIPS, KNEES, ANKLES, FEET, TRUNK, BESIDE, LEFT, RIGHT, MIDDLE
 
 @cython.final
 cdef class Body:

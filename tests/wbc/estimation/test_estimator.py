@@ -5,6 +5,7 @@ import pinocchio as pin
 import pytest
 
 from surefoot.readings import Reading, Readings
+from surefoot.wbc.estimation.estimate import Planned
 from surefoot.wbc.estimation.estimator import SensedState
 from surefoot.wbc.estimation.footing import Footing, ImuMount
 from surefoot.wbc.estimation.parameters import EstimatorParameters, GroundNoise
@@ -27,17 +28,24 @@ class Standing:
         self.count, self.joints, self.tick = robot.nv - 6, robot.standing[7:].copy(), -1
         self.rate, self.force = np.zeros(3), GRAVITY * up
 
-    def sense(self, share=0.5, fresh=True):
-        """The estimate of the next tick, with a share of the weight on the left foot, encoders fresh or not."""
+    def sense(self, share=0.5, fresh=True, late=0):
+        """The estimate of the next tick.
+
+        A share of the weight is on the left foot; encoders are fresh or not, and the IMU is late by some ticks.
+        """
         load = np.zeros((2, 6))
         load[:, 2] = 980.0 * share, 980.0 * (1.0 - share)
         load[:, 3] = 5.0 * share, -7.0 * share
         self.tick += 1
         encoders = Reading(self.joints, 0.0, fresh)
-        torque, rate, force, wrench = (
-            Reading(values, 0.0, True) for values in (np.zeros(self.count), self.rate, self.force, load)
-        )
+        torque, wrench = (Reading(values, 0.0, True) for values in (np.zeros(self.count), load))
+        rate, force = (Reading(values, PERIOD * late, True) for values in (self.rate, self.force))
         return self.inner.sense(Readings(PERIOD * self.tick, encoders, None, torque, rate, rate, force, wrench))
+
+    def told(self, base):
+        """Tell it how the base is to be accelerated until the next tick, shape (6,) [m/s^2, rad/s^2]."""
+        planned = np.concatenate((base, np.zeros(self.count)))
+        self.inner.told(Planned(planned, np.zeros(self.count), (True, True), (0, 0)))
 
 
 def test_standing_soles_sink_by_all_that_their_loads_change(robot):
@@ -56,6 +64,42 @@ def test_standing_soles_sink_by_all_that_their_loads_change(robot):
     for k in (0, 1):
         rolled = pin.log3(state.Z[k] @ turn[k].T)
         assert rolled[0] == pytest.approx(-give * changed[k, 3] / 0.05**2, rel=1e-6)
+
+
+@pytest.mark.parametrize("late", [0, 1, 4, 9])
+def test_of_late_readings_the_state_has_gained_what_was_planned_since(robot, late):
+    """As its readings tell, and from then on as planned: the sum of all that, and the way that comes of it."""
+    still, driven, rng = Standing(robot), Standing(robot), np.random.default_rng(late)
+    plan = np.zeros((40, 6))
+    plan[:, :3] = rng.normal(size=(40, 3))
+    for tick in range(30):
+        before, now = (one.sense(late=late).state for one in (still, driven))
+        ago = min(late, tick)
+        since = plan[tick - ago : tick]
+        np.testing.assert_allclose(now.v - before.v, np.append(PERIOD * since.sum(axis=0), np.zeros(still.count)))
+        way = 0.5 * ago * PERIOD * (now.v[:3] - before.v[:3])
+        np.testing.assert_allclose(now.q[:3] - before.q[:3], pin.Quaternion(now.q[3:7]) * way, atol=1e-12)
+        still.told(np.zeros(6))
+        driven.told(plan[tick])
+
+
+@pytest.mark.parametrize("late", [0, 1, 4])
+def test_of_a_noisy_gyroscope_less_is_believed_than_of_the_turning_that_was_planned(robot, late):
+    told, alone, rng = Standing(robot), Standing(robot), np.random.default_rng(7)
+    noise = EstimatorParameters().sensors.gyro_density / np.sqrt(PERIOD)
+    plan = np.zeros((400, 6))
+    plan[:, 3:] = rng.normal(size=(400, 3))
+    turning = np.vstack((np.zeros(3), PERIOD * np.cumsum(plan[:, 3:], axis=0)))
+    errors = []
+    for tick in range(400):
+        read = turning[max(tick - late, 0)] + noise * rng.normal(size=3)
+        told.rate, alone.rate = read, read
+        found = [one.sense(fresh=False, late=late).state.v[3:6] for one in (told, alone)]
+        errors.append((found[0] - turning[tick], found[1] - turning[max(tick - late, 0)]))
+        told.told(plan[tick])
+    spread = np.std(errors[100:], axis=0)
+    np.testing.assert_allclose(spread[1], noise, rtol=0.15)
+    assert (spread[0] < 0.75 * noise).all()
 
 
 @pytest.mark.parametrize("made", [list, np.float32])

@@ -24,13 +24,17 @@ def body() -> Body:
     return body_of(describe("humanoid100", RobotOptions()))
 
 
-def terms_at(body: Body, left: float, speed: float = 0.0) -> RobotTerms:
-    """A robot whose left ankle pitch is that far from the upper end of its range."""
+UP, DOWN = 1.0, -1.0
+
+
+def terms_at(body: Body, left: float, speed: float = 0.0, end: float = UP) -> RobotTerms:
+    """A robot whose left ankle pitch is that far from an end of its range, and as fast on its way there."""
     terms = RobotTerms(body.model, body.frames)
     q, v = pin.neutral(body.model), np.zeros(body.model.nv)
     joint = body.robot.joint_names.index(ANKLE)
     q[2] = 1.0
-    q[7 + joint], v[6 + joint] = body.limits.upper[joint] - left, speed
+    stop = body.limits.upper if end == UP else body.limits.lower
+    q[7 + joint], v[6 + joint] = stop[joint] - end * left, end * speed
     terms.update(q, v)
     return terms
 
@@ -52,25 +56,37 @@ def test_an_ankle_in_the_middle_of_its_range_turns_the_foot(body: Body) -> None:
     assert yielding(stops, terms, 0, pitched(terms, 0.5)) == []
 
 
-def test_at_its_end_it_yields_about_its_own_axis_and_only_towards_the_end(body: Body) -> None:
-    terms = terms_at(body, 0.0)
+@pytest.mark.parametrize("end", [UP, DOWN])
+def test_at_its_end_it_yields_about_its_own_axis_and_only_towards_the_end(body: Body, end: float) -> None:
+    terms = terms_at(body, 0.0, end=end)
     stops = AnkleStops(body.model, body.frames, body.limits)
-    [(column, axis, share)] = yielding(stops, terms, 0, pitched(terms, 0.1))
+    [(column, axis, share)] = yielding(stops, terms, 0, pitched(terms, end * 0.1))
     assert column == 6 + body.robot.joint_names.index(ANKLE)
     np.testing.assert_allclose(axis, [0.0, 1.0, 0.0], atol=1e-9)
     assert share == pytest.approx(1.0)
-    assert yielding(stops, terms, 0, pitched(terms, -0.1)) == []
+    assert yielding(stops, terms, 0, pitched(terms, -end * 0.1)) == []
     # One that keeps to its target does, lest its shank push the end of the range ahead of it.
     assert [share for *_, share in yielding(stops, terms, 0, pitched(terms, 0.0))] == [pytest.approx(1.0)]
-    assert yielding(stops, terms, 1, terms.contact_rotation[1] @ pin.utils.rotate("y", 0.1)) == []
+    assert yielding(stops, terms, 1, terms.contact_rotation[1] @ pin.utils.rotate("y", end * 0.1)) == []
 
 
-def test_it_yields_the_more_the_nearer_it_will_be(body: Body) -> None:
+@pytest.mark.parametrize("back", [0.01, 0.025, 0.04])
+@pytest.mark.parametrize("end", [UP, DOWN])
+def test_the_farther_a_foot_has_turned_beyond_its_target_the_less_its_ankle_yields(
+    body: Body, end: float, back: float
+) -> None:
+    terms, stops = terms_at(body, 0.0, end=end), AnkleStops(body.model, body.frames, body.limits)
+    [(*_, share)] = yielding(stops, terms, 0, pitched(terms, -end * back))
+    assert share == pytest.approx(1.0 - back / 0.05)
+
+
+@pytest.mark.parametrize("end", [UP, DOWN])
+def test_it_yields_the_more_the_nearer_it_will_be(body: Body, end: float) -> None:
     stops = AnkleStops(body.model, body.frames, body.limits)
     shares = []
     for speed in (0.0, 0.5, 1.0):
-        terms = terms_at(body, 0.5 * YIELDING, speed)
-        shares.append(sum(share for *_, share in yielding(stops, terms, 0, pitched(terms, 0.1))))
+        terms = terms_at(body, 0.5 * YIELDING, speed, end)
+        shares.append(sum(share for *_, share in yielding(stops, terms, 0, pitched(terms, end * 0.1))))
     assert shares[0] == pytest.approx(0.5)
     assert shares == sorted(shares) and shares[-1] == pytest.approx(1.0)
 

@@ -11,14 +11,16 @@ from surefoot.scenarios.run.controller import comes_down
 pytestmark = pytest.mark.unit
 
 
-def coming(touchdown: float, speed: float) -> tuple[SimpleNamespace, SimpleNamespace, np.ndarray]:
-    """Plan, terms and soles of a robot whose left foot is 1 cm above the ground."""
+def coming(
+    touchdown: float, speed: float, ground: float = 0.0, foot: Foot = Foot.LEFT
+) -> tuple[SimpleNamespace, SimpleNamespace, np.ndarray]:
+    """Plan, terms and soles of a robot whose swing foot is 1 cm above the ground, which is so high [m]."""
     plan = SimpleNamespace(
-        swing=SimpleNamespace(foot=Foot.LEFT, touchdown_time=touchdown),
-        footsteps=[SimpleNamespace(position=np.zeros(3))],
+        swing=SimpleNamespace(foot=foot, touchdown_time=touchdown),
+        footsteps=[SimpleNamespace(position=np.array([0.0, 0.0, ground]))],
     )
     terms = SimpleNamespace(
-        sole_position=np.full((2, 3), 0.01),
+        sole_position=np.full((2, 3), ground + 0.01),
         sole_rotation=np.tile(np.eye(3), (2, 1, 1)),
         sole_velocity=np.full((2, 6), speed),
     )
@@ -29,7 +31,10 @@ def coming(touchdown: float, speed: float) -> tuple[SimpleNamespace, SimpleNames
     ("touchdown", "speed", "lands", "due"),
     [(1.5, -0.5, True, True), (1.03, -0.1, False, True), (1.05, -0.1, False, False), (1.5, 0.5, False, False)],
 )
-def test_a_foot_lands_that_falls_so_fast_or_is_due_by_then(touchdown, speed, lands, due):
-    now, left = 1.0, 0.04
-    assert comes_down(*coming(touchdown, speed), now, left) == (lands, False)
-    assert comes_down(*coming(touchdown, speed), now, left, due=True) == (due, False)
+@pytest.mark.parametrize("ground", [0.0, 0.3, -0.2])
+@pytest.mark.parametrize("foot", Foot)
+def test_a_foot_lands_that_falls_so_fast_or_is_due_by_then(touchdown, speed, lands, due, ground, foot):
+    """Whichever foot it is, and however high the ground."""
+    now, left, robot = 1.0, 0.04, coming(touchdown, speed, ground, foot)
+    assert comes_down(*robot, now, left) == (lands and foot is Foot.LEFT, lands and foot is Foot.RIGHT)
+    assert comes_down(*robot, now, left, due=True) == (due and foot is Foot.LEFT, due and foot is Foot.RIGHT)

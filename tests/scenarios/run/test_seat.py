@@ -2,6 +2,7 @@
 
 import subprocess
 import sys
+from dataclasses import replace
 
 import numpy as np
 import pinocchio as pin
@@ -177,3 +178,18 @@ def test_no_simulator_is_loaded_by_a_controller_that_steps():
     done = subprocess.run([sys.executable, "-c", code], capture_output=True, text=True, check=True)
     assert "world" not in done.stdout
     assert "surefoot.sim.measurement" in done.stdout
+
+
+def test_a_walk_is_the_same_whenever_its_first_readings_come():
+    """Its clock begins with them."""
+    benches = [Bench("walk-level", {"gait.steps": 1}) for _ in range(2)]
+    every = benches[0].walk.rates.physics // benches[0].walk.rates.control
+    for _ in range(250):
+        torques = []
+        for bench, begin in zip(benches, (0.0, 64.0), strict=True):
+            seen = bench.world.measure()
+            command = bench.controller.step(replace(seen, time=begin + seen.time))
+            bench.world.advance(command.torque, every)
+            torques.append(command.torque)
+        assert benches[0].controller.time == pytest.approx(benches[1].controller.time, abs=1e-9)
+        np.testing.assert_allclose(*torques, atol=1e-4)

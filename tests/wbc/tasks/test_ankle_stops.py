@@ -27,11 +27,11 @@ def body() -> Body:
 UP, DOWN = 1.0, -1.0
 
 
-def terms_at(body: Body, left: float, speed: float = 0.0, end: float = UP) -> RobotTerms:
-    """A robot whose left ankle pitch is that far from an end of its range, and as fast on its way there."""
+def terms_at(body: Body, left: float, speed: float = 0.0, end: float = UP, name: str = ANKLE) -> RobotTerms:
+    """A robot whose left ankle pitch, or another joint, is that far from an end, and as fast on its way there."""
     terms = RobotTerms(body.model, body.frames)
     q, v = pin.neutral(body.model), np.zeros(body.model.nv)
-    joint = body.robot.joint_names.index(ANKLE)
+    joint = body.robot.joint_names.index(name)
     q[2] = 1.0
     stop = body.limits.upper if end == UP else body.limits.lower
     q[7 + joint], v[6 + joint] = stop[joint] - end * left, end * speed
@@ -147,16 +147,53 @@ def test_while_a_step_catches_the_body_an_ankle_that_yields_is_to_rest(body: Bod
     assert axis @ target[3:] == pytest.approx(0.0)
 
 
+@pytest.mark.parametrize("catching", [False, True])
+@pytest.mark.parametrize(("name", "other"), [(ANKLE, "left_ankle_roll"), ("left_ankle_roll", ANKLE)])
+def test_an_ankle_takes_its_share_of_what_turns_about_its_axis_and_nothing_across_it(
+    body: Body, references, name: str, other: str, catching: bool
+) -> None:
+    """Whatever that axis is in the sole, which the other joint of the ankle turns."""
+    terms = terms_at(body, 0.4 * YIELDING, 0.1, name=name)
+    q, aside = terms.q.copy(), body.robot.joint_names.index(other)
+    q[7 + aside] = 0.3 * body.limits.upper[aside]
+    terms.update(q, terms.v.copy())
+    stops = AnkleStops(body.model, body.frames, body.limits)
+    n = stops.columns[0].index(6 + body.robot.joint_names.index(name))
+    R, axis = terms.contact_rotation[0], np.array(stops.axis(terms, 0, n))
+    reference = references[1](
+        swing_foot=0, swing_position=terms.sole_position[0].copy(), swing_rotation=R @ pin.exp3(0.1 * axis),
+        swing_angular_velocity=np.array([0.3, -0.2, 0.1]), swing_angular_acceleration=np.array([1.0, 2.0, -3.0]),
+        catching=catching,
+    )  # fmt: skip
+    [(column, _, share)] = yielding(stops, terms, 0, reference.swing_rotation)
+    wide = replace(body.limits, lower=body.limits.lower - 1.0, upper=body.limits.upper + 1.0)
+    (rows, target), (less, asked) = (rows_and_target(body, one, terms, reference) for one in (wide, body.limits))
+    across = np.eye(3) - np.outer(axis, axis)
+    assert 0.5 < share < 0.9
+    assert np.abs(across @ rows[3:]).max() > 0.1
+    np.testing.assert_allclose(across @ less[3:], across @ rows[3:], atol=1e-9)
+    np.testing.assert_allclose(across @ asked[3:], across @ target[3:], atol=1e-9)
+    rests = np.zeros(body.model.nv)
+    rests[column] = 0.3 * catching
+    np.testing.assert_allclose(axis @ less[3:], (1.0 - share) * axis @ rows[3:] + share * rests, atol=1e-9)
+    braking = -2.0 * terms.v[column] / stops.ahead * rests[column]
+    assert axis @ asked[3:] == pytest.approx((1.0 - share) * axis @ target[3:] + share * braking)
+
+
 @pytest.mark.parametrize(("rolled", "catching"), [(0.0, True), (0.2, True), (0.2, False)])
 @pytest.mark.parametrize(("hung", "length"), [(0.02, 1.0), (0.5, 1.0), (0.5, 0.5)])
+@pytest.mark.parametrize("leant", [0.0, 0.1])
 def test_a_foot_that_its_ankle_tilts_is_lifted_for_what_hangs_but_only_a_little_for_its_toe(
-    body: Body, references, hung: float, length: float, rolled: float, catching: bool
+    body: Body, references, hung: float, length: float, rolled: float, catching: bool, leant: float
 ) -> None:
     """It is lifted by what its toe hangs too low, four millimetres on a robot of this size at most.
 
     While a step catches the body by all that its side edge hangs lower, too.
     """
     terms, toe, side = terms_at(body, 0.0), 0.11 * length, 0.055 * length
+    q = terms.q.copy()
+    q[3:7] = pin.Quaternion(pin.utils.rotate("x", leant) @ pin.utils.rotate("y", 0.5 * leant)).coeffs()
+    terms.update(q, terms.v.copy())
     R = terms.contact_rotation[0].copy()
     # The wanted rotation differs from that of the sole by a pitch and a roll, towards which the ankle still has room.
     turned = pin.utils.rotate("x", rolled) @ pin.utils.rotate("y", hung)
@@ -174,5 +211,5 @@ def test_a_foot_that_its_ankle_tilts_is_lifted_for_what_hangs_but_only_a_little_
     of_ankle = gains.swing[0] * (reference.swing_rotation @ ankle - R @ ankle)
     low, beside, _ = (toe, side, 0.0) * np.abs(R[2] - reference.swing_rotation[2])
     lifted = (targets[1] - targets[0] - of_ankle) / gains.swing[0]
-    assert low > 0.001 and bool(beside > 0.004 * length) is (rolled > 0.0)
+    assert low > 5e-4 and bool(beside > 0.004 * length) is (rolled > 0.0)
     np.testing.assert_allclose(lifted, [0.0, 0.0, min(low, 0.004 * length) + catching * beside], atol=1e-9)

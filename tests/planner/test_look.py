@@ -81,6 +81,7 @@ def test_a_look_sees_the_same_wherever_a_walk_goes_and_whichever_way(stand, orig
         if here.step is not None:
             np.testing.assert_allclose(there.step.swing, here.step.swing, atol=1e-5)
             np.testing.assert_allclose(there.step.nominal, here.step.nominal, atol=1e-6)
+            assert there.step.place.yaw == pytest.approx(here.step.place.yaw, abs=1e-9)
             np.testing.assert_allclose(there.step.face, here.step.face, atol=1e-6)
             swung = max(swung, np.abs(here.step.swing[1]).max())
     assert swung > 0.5

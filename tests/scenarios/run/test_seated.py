@@ -92,3 +92,22 @@ def test_all_of_its_time_is_that_of_the_state(monkeypatch):
     walker.sense(0, 0.0)
     monkeypatch.setattr(time, "perf_counter", lambda: float(next(looks)))
     assert walker.control(0, 0.0) == (None, (1.0, 0.0, 0.0, 0.0))
+
+
+@pytest.mark.parametrize("above", [0.0, 1.0, 3.0])
+def test_a_body_lies_where_it_is_low_over_its_lower_sole_however_high_that_is(above):
+    walk = walk_of()
+    body, upright = body_of(walk.robot), np.array(walk.robot.nominal_joint_positions)
+    names, folded = walk.robot.joint_names, upright.copy()
+    for side in ("left", "right"):
+        for joint, angle in (("hip_pitch", -1.9), ("knee", 2.2), ("ankle_pitch", -0.3)):
+            folded[names.index(f"{side}_{joint}")] = angle
+    for posture, lies in ((upright, False), (folded, True)):
+        walker = closed_loop(walk, NoLog()).walker
+        q = standing(walk, body, posture)
+        q[2] += above
+        walker.plant.reset(q)
+        walker.sense(0, 0.0)
+        walker.control(0, 0.0)
+        assert not walker.measurement.nonfoot_contact
+        assert walker.fallen(None) is lies

@@ -20,13 +20,13 @@ PERIOD = 2e-3
 class Standing:
     """A robot that stands still under its estimator."""
 
-    def __init__(self, robot, parameters=None):
-        feet, up = np.array([[0.0, 0.1, 0.0], [0.0, -0.1, 0.0]]), np.array([0.0, 0.0, 1.0])
-        footing = Footing(feet, np.zeros(2), (0.1, 0.05), lambda x, y: 0.0, lambda x, y: up)
+    def __init__(self, robot, parameters=None, place=(0.0, 0.0, 0.0), begin=0.0):
+        feet, up = np.array([[0.0, 0.1, 0.0], [0.0, -0.1, 0.0]]) + place, np.array([0.0, 0.0, 1.0])
+        footing = Footing(feet, np.zeros(2), (0.1, 0.05), lambda x, y: place[2], lambda x, y: up)
         names, parameters = robot.frames.soles, parameters or EstimatorParameters()
         self.inner = SensedState(robot.model, names, ImuMount(), footing, PERIOD, parameters)
         self.count, self.joints, self.tick = robot.nv - 6, robot.standing[7:].copy(), -1
-        self.rate, self.force = np.zeros(3), GRAVITY * up
+        self.rate, self.force, self.begin = np.zeros(3), GRAVITY * up, begin
 
     def sense(self, share=0.5, fresh=True, late=0):
         """The estimate of the next tick.
@@ -40,12 +40,13 @@ class Standing:
         encoders = Reading(self.joints, 0.0, fresh)
         torque, wrench = (Reading(values, 0.0, True) for values in (np.zeros(self.count), load))
         rate, force = (Reading(values, PERIOD * late, True) for values in (self.rate, self.force))
-        return self.inner.sense(Readings(PERIOD * self.tick, encoders, None, torque, rate, rate, force, wrench))
+        time = self.begin + PERIOD * self.tick
+        return self.inner.sense(Readings(time, encoders, None, torque, rate, rate, force, wrench))
 
-    def told(self, base):
-        """Tell it how the base is to be accelerated until the next tick, shape (6,) [m/s^2, rad/s^2]."""
+    def told(self, base, edge=(0, 0)):
+        """Tell it how the base is to be accelerated until the next tick, shape (6,) [m/s^2, rad/s^2], and edges."""
         planned = np.concatenate((base, np.zeros(self.count)))
-        self.inner.told(Planned(planned, np.zeros(self.count), (True, True), (0, 0)))
+        self.inner.told(Planned(planned, np.zeros(self.count), (True, True), edge))
 
 
 def test_standing_soles_sink_by_all_that_their_loads_change(robot):
@@ -64,6 +65,40 @@ def test_standing_soles_sink_by_all_that_their_loads_change(robot):
     for k in (0, 1):
         rolled = pin.log3(state.Z[k] @ turn[k].T)
         assert rolled[0] == pytest.approx(-give * changed[k, 3] / 0.05**2, rel=1e-6)
+
+
+@pytest.mark.parametrize(
+    ("place", "begin"), [((3.0, -2.0, 0.4), 0.0), ((0.0, 0.0, -0.5), 0.0), ((0.0, 0.0, 0.0), 64.0)]
+)
+def test_a_robot_is_estimated_the_same_wherever_it_stands_and_whenever(robot, place, begin):
+    """While its feet lift and land, too; and at first its soles are where it is said to stand."""
+    here, there = Standing(robot), Standing(robot, place=place, begin=begin)
+    data, soles = robot.model.createData(), [robot.model.getFrameId(name) for name in robot.frames.soles]
+    pin.framesForwardKinematics(robot.model, data, there.sense().state.q)
+    middle = np.mean([data.oMf[sole].translation for sole in soles], axis=0)
+    here.sense()
+    np.testing.assert_allclose(middle, place, atol=1e-6)
+    for share in np.repeat([0.5, 1.0, 0.5, 0.0, 0.5], 30):
+        one, other = here.sense(share), there.sense(share)
+        np.testing.assert_allclose(other.state.q, one.state.q + np.append(place, np.zeros(4 + here.count)), atol=1e-9)
+        np.testing.assert_allclose(other.state.v, one.state.v, atol=1e-9)
+        assert other.contact == one.contact
+        for tells in (here, there):
+            tells.told(np.zeros(6))
+
+
+@pytest.mark.parametrize("edge", [1, -1])
+def test_a_foot_that_rolls_is_seen_from_its_edge_and_then_from_its_centre_again(robot, edge):
+    standing = Standing(robot)
+    seen = []
+    for rolls in (0, edge, edge, 0, 0):
+        standing.told(np.zeros(6), (0, rolls))
+        standing.sense(fresh=False)
+        seen.append(standing.inner.filter.stand.d.copy())
+    flat, rolled = seen[0], seen[2]
+    np.testing.assert_allclose(rolled[0], flat[0], atol=1e-6)
+    np.testing.assert_allclose(rolled[1], flat[1] + (0.1 * edge, 0.0, 0.0), atol=1e-3)
+    np.testing.assert_allclose(seen[-1], flat, atol=1e-6)
 
 
 @pytest.mark.parametrize("late", [0, 1, 4, 9])

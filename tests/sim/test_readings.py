@@ -1,4 +1,4 @@
-"""The errors of sensors are added: at the first tick each is its deviation times the first numbers of its own stream."""
+"""Errors of sensors are added: at the first tick each is its deviation times the first numbers of its own stream."""
 
 from types import SimpleNamespace
 

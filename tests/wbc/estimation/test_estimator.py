@@ -187,3 +187,40 @@ def test_torques_that_come_every_other_tick_count_once(robot, velocity):
     np.testing.assert_allclose(found[1::2], found[::2], atol=1e-12)
     assert np.abs(np.diff(found[::2], axis=0)).max() > 1e-3
     np.testing.assert_allclose(ages[3::2] - ages[2::2], PERIOD)
+
+
+def on_one_leg(robot, time):
+    """Joints, torques and the left sole's wrench of a robot that stands on one leg, and swings the other from rest."""
+    q, v, a, rate = robot.standing.copy(), np.zeros(robot.nv), np.zeros(robot.nv), 3.0 * np.pi
+    for name, far in (("right_hip_pitch", 0.15), ("right_knee", 0.2)):
+        joint = robot.model.joints[robot.model.getJointId(name)]
+        q[joint.idx_q] += far * (1.0 - np.cos(rate * time))
+        v[joint.idx_v], a[joint.idx_v] = far * rate * np.sin(rate * time), far * rate**2 * np.cos(rate * time)
+    data = robot.model.createData()
+    needed = pin.rnea(robot.model, data, q, v, a).copy()
+    pin.computeJointJacobians(robot.model, data, q)
+    pin.updateFramePlacements(robot.model, data)
+    J = pin.getFrameJacobian(robot.model, data, robot.model.getFrameId(robot.frames.soles[0]), pin.LOCAL)
+    wrench = np.linalg.solve(J[:, :6].T, needed[:6])
+    return q[7:], needed[6:] - J[:, 6:].T @ wrench, wrench
+
+
+@pytest.mark.parametrize("every", [1, 2])
+@pytest.mark.parametrize("age", [0, 1])
+def test_of_feet_without_sensors_the_wrenches_are_those_of_the_motion_that_encoders_tell(robot, every, age):
+    """However often encoders and torques come, and however late; the foot in the air bears nothing."""
+    standing, still, up = Standing(robot), Reading(np.zeros(3), 0.0, True), np.array([0.0, 0.0, GRAVITY])
+    found, true = [], []
+    for tick in range(300):
+        seen = tick // every * every - age
+        joints, torque, wrench = on_one_leg(robot, PERIOD * max(seen, 0))
+        encoders, motors = (Reading(one, PERIOD * (tick - seen), tick % every == 0) for one in (joints, torque))
+        gravity = Reading(up, 0.0, True)
+        now = standing.inner.sense(Readings(PERIOD * tick, encoders, None, motors, still, still, gravity, None))
+        found.append(now.wrench.copy())
+        true.append(wrench)
+        assert PERIOD * (tick - seen) < now.wrench_age < PERIOD * (tick - seen) + 0.01
+    found, true = np.array(found)[100:], np.array(true)[100:]
+    assert np.ptp(true[:, 2]) > 50.0
+    np.testing.assert_allclose(found[:, 0, 2], true[:, 2], atol=4.0)
+    np.testing.assert_allclose(found[:, 1, :3], 0.0, atol=4.0)

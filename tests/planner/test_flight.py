@@ -68,7 +68,7 @@ def test_a_footstep_that_is_shifted_lands_on_the_ground_that_is_there(stand, shi
 def test_feet_go_astray_by_as_much_as_they_stand_over_the_map(stand, height, off):
     plateau = Terrain((Box(np.array([0.0, 0.0, 0.5 * height]), np.array([9.0, 9.0, 0.5 * height]), np.eye(3)),))
     feet = stand(GAIT.step_width)
-    feet = replace(feet, position=feet.position + (0.0, 0.0, height + off))
+    feet = replace(feet, position=np.array([0.0, 0.0, height + off]) + feet.position)
     state, measured = swinging(feet, plateau if height else None)
     swung = swinging_to(state, upcoming(state, 0.0, STILL)[0], measured, False)
     assert swung.astray == pytest.approx(off, abs=1e-9)
@@ -105,7 +105,7 @@ def test_a_swing_goes_on_until_its_footstep_is_another_one(stand, unsure):
 
 
 def heights(stand, lowering):
-    """CoM heights now and a sample later of a step that lowers the body from its third tick on, and their transition."""
+    """CoM heights, now and a sample later, of a step that lowers the body from its third tick on; and a transition."""
     state, measured = swinging(stand(GAIT.step_width), ticks=2)
     state, found = look(state, measured).state, []
     for tick in range(20):
@@ -122,4 +122,4 @@ def test_a_body_that_is_to_go_lower_gets_there_without_a_jump_and_stays_there(st
     np.testing.assert_allclose(lower[1:, :, 0], lower[:-1, :, 1], atol=1e-6)
     np.testing.assert_allclose(lower[0, 0, 0], usual[0, 0, 0], atol=2e-3)
     np.testing.assert_allclose(usual[-1, 0] - lower[-1, 0], 0.04, atol=1e-5)
-    assert none is None is over
+    assert none is None and over is None

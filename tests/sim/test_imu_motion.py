@@ -14,7 +14,8 @@ ROBOT = """
 <mujoco>
   <worldbody>
     <body name="base"><freejoint/><geom size="0.1"/>
-      <body name="hip" pos="0.05 0.1 -0.1"><joint name="follower" axis="0.6 0.8 0" pos="0 0 {beside}"/><geom size="0.1"/>
+      <body name="hip" pos="0.05 0.1 -0.1"><joint name="follower" axis="0.6 0.8 0" pos="0 0 {beside}"/>
+        <geom size="0.1"/>
         <body name="knee" pos="0 0 -0.3"><joint name="leader" axis="1 0 0"/><geom size="0.1"/></body>
       </body>
     </body>

@@ -151,6 +151,19 @@ def test_a_nominal_footstep_may_land_as_far_as_the_reach_box_goes_to_rounding(fo
             check_reach(3, footstep, PlannerParameters())
 
 
+@pytest.mark.parametrize("free", [(True, False), (False, True), (False, False)])
+def test_a_step_that_is_not_free_has_room_to_either_side_of_where_it_is(free):
+    """It stays there since it costs something to move; the room of the other one is its own."""
+    parameters, increment = PlannerParameters(reach_length=0.8), np.array([[0.1, 0.25], [0.2, -0.3]])
+    both, found = (reachable_shifts(parameters, increment, 1.0, kind, None, 0.0) for kind in ((True, True), free))
+    for step in (0, 1):
+        if free[step]:
+            np.testing.assert_array_equal([ends[step] for ends in found], [ends[step] for ends in both])
+        else:
+            np.testing.assert_array_equal(found[0][step], -found[1][step])
+            assert (found[1][step] > 0.5).all()
+
+
 def test_shifts_are_those_that_keep_both_steps_in_the_reachable_area():
     """The first step lands beside its stance foot, the second one on the other side."""
     parameters, increment = PlannerParameters(reach_length=0.8), np.array([[0.1, 0.25], [0.2, -0.3]])

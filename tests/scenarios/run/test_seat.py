@@ -2,6 +2,7 @@
 
 import subprocess
 import sys
+import time
 from dataclasses import replace
 
 import numpy as np
@@ -193,3 +194,12 @@ def test_a_walk_is_the_same_whenever_its_first_readings_come():
             torques.append(command.torque)
         assert benches[0].controller.time == pytest.approx(benches[1].controller.time, abs=1e-9)
         np.testing.assert_allclose(*torques, atol=1e-4)
+
+
+def test_the_time_of_finding_the_state_is_that_between_two_looks_at_the_clock(monkeypatch):
+    """The clock is a second later whenever it is looked at."""
+    bench, looks = Bench("walk-level", {}), iter(range(1, 100))
+    seen = bench.world.measure()
+    monkeypatch.setattr(time, "perf_counter", lambda: float(next(looks)))
+    bench.controller.step(seen)
+    assert bench.controller.spent.state == 1.0

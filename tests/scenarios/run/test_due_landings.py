@@ -49,11 +49,11 @@ def test_the_foot_of_a_step_that_catches_arrives_once_its_place_is_decided():
 
     def listening(view):
         feet, plan, swing = view.measured.feet, view.state.plan, view.state.phase.swing_foot
-        if plan is not None and plan.swing is not None and plan.balance.catching and swing is plan.swing.foot:
-            if not feet.contact[swing]:
-                left = plan.swing.touchdown_time - view.measured.time
-                due.append((left, view.state.model.parameters.freeze_catching, feet.arriving[swing]))
-                assert not feet.arriving[swing.other]
+        flown = plan is not None and plan.swing is not None and swing is plan.swing.foot
+        if flown and plan.balance.catching and not feet.contact[swing]:
+            left = plan.swing.touchdown_time - view.measured.time
+            due.append((left, view.state.model.parameters.freeze_catching, feet.arriving[swing]))
+            assert not feet.arriving[swing.other]
         return view
 
     push = {"step": 1, "phase": "single", "fraction": 0.5, "duration": 0.1, "impulse": 0.6, "direction": 0.2}

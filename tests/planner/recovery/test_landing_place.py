@@ -43,7 +43,9 @@ def test_it_may_be_moved_on_its_face_to_either_side_of_where_it_lands(stand):
     half = np.array([0.2, 0.25, 0.05])
     blocks = tuple(Box(np.array([0.4 * n, 0.0, 0.05]), half, np.eye(3)) for n in range(-2, 7))
     gait = replace(GAIT, turn=0.0, com_height=0.9, step_length=0.4)
+    rooms = []
     for landing, face, *_ in places(stand, terrain=Terrain(blocks, path_start=(0.0, 0.0, 0.05)), gait=gait):
         (low, high), place = face, landing.position[:2]
         assert (low <= place).all() and (place <= high).all()
-        assert 0.2 < high[1] - low[1] < 0.4 and high[0] - low[0] < 0.2
+        rooms.append(high - low)
+    assert np.max(rooms, axis=0) == pytest.approx([0.15, 0.35], abs=0.05)

@@ -91,7 +91,7 @@ def _stamp(seconds: int, nanos: int) -> bytes:
 
 
 def _slot_bytes(index: int) -> bytes:
-    return struct.pack("<Q", _SLOT + index)
+    return struct.pack("<Q", _SLOT | index)
 
 
 def _all(data: bytes, part: bytes) -> list[int]:

@@ -1,4 +1,4 @@
-"""Where the next footsteps land and when, and how the swing foot gets there from where it was measured."""
+"""Landings of the next footsteps, and ways of swing feet there from where they were measured."""
 
 from dataclasses import replace
 
@@ -117,7 +117,7 @@ def heights(stand, lowering):
 
 
 def test_a_body_that_is_to_go_lower_gets_there_without_a_jump_and_stays_there(stand):
-    """What is lower by a hair is the same."""
+    """A height that is lower by a hair is the same."""
     (usual, none), (lower, over) = heights(stand, 0.0), heights(stand, 0.04)
     np.testing.assert_allclose(lower[1:, :, 0], lower[:-1, :, 1], atol=1e-6)
     np.testing.assert_allclose(lower[0, 0, 0], usual[0, 0, 0], atol=2e-3)

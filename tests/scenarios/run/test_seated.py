@@ -72,7 +72,7 @@ def test_a_walk_that_is_placed_begins_as_wide_as_its_feet_stand(yaw):
 
 
 def test_it_hears_a_command_in_the_tick_of_its_time_whatever_rounding_makes_of_that():
-    """Those that are not due wait."""
+    """Commands that are not due wait."""
     loop = closed_loop(walk_of(), NoLog())
     ticks = [1, 7, 29, 58, 115]
     for tick, late in zip(reversed(ticks), (1e-10, -1e-10, 0.0, 1e-10, -1e-10), strict=True):

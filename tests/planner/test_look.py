@@ -73,6 +73,7 @@ def looked_at(stand, origin=(0.0, 0.0), yaw=0.0, deviation=(0.0, 0.0), terrain=N
 def test_a_look_sees_the_same_wherever_a_walk_goes_and_whichever_way(stand, origin, yaw):
     swung = 0.0
     for here, there in zip(looked_at(stand), looked_at(stand, origin, yaw), strict=True):
+        assert here.state.info.landed == here.state.landed
         np.testing.assert_allclose(there.dcm, here.dcm, atol=1e-6)
         np.testing.assert_allclose(there.local, here.local, atol=1e-5)
         assert there.balance.planned == pytest.approx(here.balance.planned, abs=1e-6)

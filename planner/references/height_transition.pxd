@@ -5,6 +5,7 @@ from surefoot.planner.geometry cimport quintic
 from surefoot.planner.geometry.quintic cimport quintic6
 
 cdef Py_ssize_t _LOOKED_AT
+cdef double _ROUNDING
 
 @cython.locals(
     last=Py_ssize_t, best=Py_ssize_t, samples=Py_ssize_t, i=Py_ssize_t, least=double, hardest=double, lasting=double,

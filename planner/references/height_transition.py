@@ -55,7 +55,7 @@ class HeightTransition:
         """
         now, bound = tuple(state.tolist()), max(lifting, abs(float(state[2])))
         soonest = max(ceil(left - CLOCK_ROUNDING), 1)
-        samples = soonest_calm(height, now, soonest, bound + _ROUNDING, sample_time)
+        samples = soonest_calm(height, now, soonest, bound, sample_time)
         way = quintic.between(now, tuple(height[:, samples].tolist()), samples * sample_time)
         return cls(start, samples, np.array(way)[:, None], sample_time)
 
@@ -79,7 +79,7 @@ def soonest_calm(height: Array, now: Vector, soonest: int, bound: float, sample_
         height: the law, see `HeightTransition.onto`.
         now: z, z', z'' now.
         soonest: no sooner than after so many samples, or than the law's last one.
-        bound: of its acceleration [m/s^2].
+        bound: of its acceleration, to rounding [m/s^2].
         sample_time: length of a sample [s].
 
     Returns:
@@ -96,6 +96,6 @@ def soonest_calm(height: Array, now: Vector, soonest: int, bound: float, sample_
             hardest = max(hardest, abs(quintic.bend(way, lasting * i / (_LOOKED_AT - 1))))
         if hardest < least:
             least, best = hardest, samples
-        if hardest <= bound:
+        if hardest - bound <= _ROUNDING:
             break
     return best

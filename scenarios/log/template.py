@@ -5,6 +5,7 @@ where values shall come, and then only these are written anew. Doubles take eigh
 ``google.protobuf.Timestamp`` are padded by zero groups, which every decoder accepts, so that they keep their size.
 """
 
+import re
 import struct
 
 import numpy as np
@@ -90,13 +91,9 @@ def _stamp(seconds: int, nanos: int) -> bytes:
 
 
 def _slot_bytes(index: int) -> bytes:
-    return struct.pack("<Q", _SLOT + index)
+    return struct.pack("<Q", _SLOT | index)
 
 
 def _all(data: bytes, part: bytes) -> list[int]:
     """Every offset of a part."""
-    offsets, start = [], data.find(part)
-    while start >= 0:
-        offsets.append(start)
-        start = data.find(part, start + len(part))
-    return offsets
+    return [found.start() for found in re.finditer(re.escape(part), data)]

@@ -71,3 +71,35 @@ def test_free_fall_has_the_same_acceleration_in_both_engines(pair: EnginePair) -
     M = pin.crba(pair.pin_model, pin_data, q)
     h = pin.nonLinearEffects(pair.pin_model, pin_data, q, v)
     np.testing.assert_allclose(M @ a + h, 0.0, atol=1e-9)
+
+
+FOLLOWING = """
+<mujoco>
+  <worldbody>
+    <body name="base"><freejoint/><geom size="0.1"/>
+      <body><joint name="follower" axis="0 1 0"/><geom size="0.1"/>
+        <body pos="0 0 0.3"><joint name="leader" axis="1 0 0"/><geom size="0.1"/>
+          <body pos="0 0 0.3"><joint name="other" axis="0 0 1"/><geom size="0.1"/></body>
+        </body>
+      </body>
+    </body>
+  </worldbody>
+  <equality><joint joint1="follower" joint2="leader" polycoef="0.3 -0.7 0 0 0"/></equality>
+  <actuator><motor joint="leader"/><motor joint="other"/></actuator>
+</mujoco>
+"""
+
+
+def test_a_joint_that_follows_another_one_is_where_the_equality_wants_it() -> None:
+    """As MuJoCo has it, also where it is apart from there."""
+    model = mujoco.MjModel.from_xml_string(FOLLOWING)
+    data, of, rng = mujoco.MjData(model), convert.Coordinates(model), np.random.default_rng(7)
+    for leader, other in rng.normal(size=(5, 2)):
+        of.bend(np.array([leader, other]), data.qpos)
+        np.testing.assert_allclose(data.qpos[7:], [0.3 - 0.7 * leader, leader, other])
+        np.testing.assert_allclose(of.apart(data.qpos), 0.0, atol=1e-12)
+        data.qpos[7:] += rng.normal(size=3)
+        mujoco.mj_forward(model, data)
+        np.testing.assert_allclose(of.apart(data.qpos), data.efc_pos[:1], atol=1e-12)
+    assert of.law_of(1) == (0, -0.7, 0.3)
+    assert of.law_of(2) == (0, 1.0, 0.0)

@@ -2,6 +2,7 @@ import mujoco
 import numpy as np
 import pytest
 
+from surefoot.joints import JointCommand, Servo
 from surefoot.models.registry import describe
 from surefoot.models.types import RobotOptions
 from surefoot.planner.ground.terrain import flat
@@ -191,3 +192,18 @@ def test_a_push_into_the_past_is_refused() -> None:
     assert refused.value.key == ("push", "time")
     world.push(Push(0.1 * 0.1, 0.1, FORCE, "torso"))  # 0.010000000000000002
     world.push(Push(0.01 - 1e-16, 0.1, FORCE, "torso"))
+
+
+@pytest.mark.parametrize("stiffness", [0.0, 50.0])
+@pytest.mark.parametrize(("time", "duration"), [(0.0, 0.01), (0.0103, 0.0042), (0.0017, 0.0013)])
+def test_joints_that_follow_targets_by_themselves_leave_the_measured_impulse_as_it_is(
+    stiffness: float, time: float, duration: float
+) -> None:
+    world, total = _floating((Push(time, duration, FORCE, "torso"),)), np.zeros(3)
+    still = np.zeros(25)
+    servo = Servo(world.description.nominal_joint_positions, still, still + stiffness, still + 0.1 * stiffness)
+    while world.tick < 40:
+        world.act(JointCommand(still, servo), 0.002)
+        total += 0.002 * world.measure().external_force
+    np.testing.assert_allclose(total, duration * FORCE, rtol=1e-9)
+    np.testing.assert_allclose(_momentum(world), FORCE * duration, rtol=0.005, atol=0.005)

@@ -1,5 +1,6 @@
 """The laws of physics, the contacts and the limits hold in what the controller answers."""
 
+import time
 from dataclasses import replace
 
 import numpy as np
@@ -156,3 +157,12 @@ def test_the_same_inputs_give_the_same_bits(robot, rng, reference):
             torques.append(controller.update(reference, FootSensing((500.0, 400.0))).torque.tobytes())
         runs.append(torques)
     assert runs[0] == runs[1]
+
+
+def test_the_time_of_an_update_is_that_of_building_and_that_of_solving(robot, reference, loaded, monkeypatch):
+    """The clock is three seconds later when the QP is built, and five more when it is solved."""
+    controller, looks = robot.controller(), iter((10.0, 13.0, 18.0))
+    controller.observe(RobotState(robot.standing, np.zeros(robot.nv)))
+    monkeypatch.setattr(time, "perf_counter", lambda: next(looks))
+    report = controller.update(reference, loaded)
+    assert (report.build_time, report.solve_time) == (3.0, 5.0)

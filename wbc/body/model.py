@@ -181,7 +181,7 @@ class RobotTerms:
 
     def _update(self) -> None:
         """Work out what follows from Pinocchio's terms."""
-        self.is_finite = math.isfinite(linear.dot(self._q, self._q) + linear.dot(self._v, self._v))
+        self.is_finite = math.isfinite(linear.dot(self._q, self._q)) and math.isfinite(linear.dot(self._v, self._v))
         for i in range(3):
             self._c_dot[i] = self._linear_momentum[i] / self.model_mass
             self._w_base[i] = self._v[3 + i]

@@ -170,7 +170,7 @@ class LoadObserver:
 
     def _end(self, deviation: float, turning: float) -> None:
         """End a span, whose load has that deviation of its force and moment [N, N·m]."""
-        is_found, is_known = self._balance(self._late()), math.isfinite(deviation + turning)
+        is_found, is_known = self._balance(self._late()), math.isfinite(deviation) and math.isfinite(turning)
         # What comes before it is known would say least, and must not count.
         if not is_known:
             self._waits, self._filled = True, 0

@@ -48,7 +48,7 @@ cdef class SensedState:
     cdef _turn(self, Readings readings)
     @cython.locals(back=Py_ssize_t)
     cdef bint _hears(self, Py_ssize_t at)
-    @cython.locals(step=Py_ssize_t, i=Py_ssize_t, back=Py_ssize_t, gained=double)
+    @cython.locals(step=Py_ssize_t, i=Py_ssize_t, k=Py_ssize_t, back=Py_ssize_t, gained=double)
     cdef void _add_accelerations(self, Py_ssize_t first, Py_ssize_t last) noexcept
     @cython.locals(filter_=InvariantFilter, body=SensedBody)
     cdef _renew(self, bint changed)

@@ -265,10 +265,10 @@ class SensedState:
         """Set what the base was planned to gain from a tick to another one, so many ticks ago."""
         step = -1 if first > last else 1
         for i in range(6):
-            gained, back = 0.0, first
-            while back != last + step:
+            gained = 0.0
+            for k in range(1 + step * (last - first)):
+                back = first + step * k
                 gained += self._accelerations[(self._accelerated - back) % len(self._accelerations), i]
-                back += step
             self._gained[i] = self._period * gained
 
     def _renew(self, changed: bool) -> None:

@@ -306,4 +306,4 @@ class InvariantFilter:
     @property
     def finite(self) -> bool:
         """Return true if state and covariance are numbers."""
-        return bool(np.isfinite(self.stand.columns.sum() + np.trace(self.P)))
+        return bool(np.isfinite(self.stand.columns.sum()) and np.isfinite(np.trace(self.P)))

@@ -125,14 +125,15 @@ def test_swing_is_there_only_in_single_support(diagonal):
             np.testing.assert_allclose([sample.swing, sample.swing_velocity, sample.swing_acceleration], expected)
 
 
-def test_a_swing_is_its_own_also_where_it_touches_down_between_samples(diagonal):
+@pytest.mark.parametrize("single", [0.506, 0.513])
+def test_a_swing_is_its_own_also_where_it_touches_down_between_samples(walk, single):
     """Going on with the descent would accelerate, by up to several m/s^2, a foot that is to press gently."""
-    touching = [
-        p for p in diagonal[1].plans if p.swing is not None and 0.0 < p.swing.touchdown_time - p.time < p.sample_time
-    ]
+    plans = walk(GaitParameters(steps=3, single_support=single, double_support=0.2))[1].plans
+    touching = [p for p in plans if p.swing is not None and 0.0 < p.swing.touchdown_time - p.time < p.sample_time]
     assert touching
     for plan in touching:
         sampler, touchdown = PlanSampler(plan), plan.swing.touchdown_time
+        assert 0.1 * plan.sample_time < touchdown - plan.time < 0.99 * plan.sample_time
         for time in (touchdown - 1e-4, touchdown, 0.5 * (touchdown + plan.time + plan.sample_time), touchdown - 2e-4):
             sample = sampler.sample(time)
             flown = [sample.swing, sample.swing_velocity, sample.swing_acceleration]

@@ -1,6 +1,7 @@
 import numpy as np
 import pytest
 
+from surefoot.forces import ExternalLoad
 from surefoot.planner.model.leg_chain import LegChain, Link
 from surefoot.planner.parameters import LegInertia, PlannerParameters
 from surefoot.planner.plan.sampling import PlanSampler
@@ -91,6 +92,32 @@ def test_a_body_at_rest_has_no_offset(stand):
     planner = WalkingPlanner(GaitParameters(steps=0), stand(), 0.2, 0.1, parameters=PlannerParameters(leg=LEG))
     plan = planner.update(CentroidalState(0.0, np.array([0.0, 0.0, 1.0]), np.zeros(3)), IdealFeet(stand()).state)
     np.testing.assert_allclose(plan.zmp_offset, 0.0, atol=1e-6)
+
+
+def test_a_body_that_leans_at_rest_into_a_force_has_the_offset_of_that_force_alone(stand):
+    """Its CoM is where the force holds it over the middle of its feet, and the legs have nothing to turn."""
+    load = ExternalLoad(np.array([0.25, 0.35, 0.0]), np.array([-0.03, 0.02, 0.0]))
+    leaning = np.append(load.force[:2] * 1.0 + [load.moment[1], -load.moment[0]], 0.0) / GRAVITY
+    planner = WalkingPlanner(GaitParameters(steps=0), stand(), 0.2, 0.1, parameters=PlannerParameters(leg=LEG))
+    state = CentroidalState(0.0, np.array([0.0, 0.0, 1.0]) - leaning, np.zeros(3), load)
+    plan = planner.update(state, IdealFeet(stand()).state)
+    np.testing.assert_allclose(plan.zmp_offset, np.tile(leaning[:2], (len(plan.zmp_offset), 1)), atol=1e-6)
+
+
+def test_offsets_serve_for_some_ticks_until_the_robot_stands_for_good(stand):
+    """From then on they are made anew at each, since the clock of the walk tells nothing of them any more."""
+    gait = GaitParameters(steps=2, step_length=0.2, initial_stand=0.0, single_support=0.4, double_support=0.1)
+    planner = WalkingPlanner(gait, stand(gait.step_width), 0.2, 0.1, parameters=PlannerParameters(leg=LEG), legs=LEGS)
+    com, velocity, ideal, ages = np.array([0.0, 0.0, 1.0]), np.zeros(3), IdealFeet(stand(gait.step_width)), {}
+    for tick in range(round(gait.duration / 0.02) + 40):
+        plan = planner.update(CentroidalState(0.02 * tick, com, velocity), ideal.state)
+        com, velocity = plan.com[1], plan.com_velocity[1]
+        ideal.follow(PlanSampler(plan), 0.02 * (tick + 1))
+        state = planner.state
+        stands = state.clock.now >= state.schedule.last_phase.start
+        ages.setdefault(stands, []).append(state.clock.ticks - state.memory.offsets.start)
+    assert len(ages[True]) > 20 and set(ages[True]) == {0}
+    assert max(ages[False]) > 2
 
 
 @pytest.mark.parametrize("ratio", [-0.1, 0.5, float("nan")])

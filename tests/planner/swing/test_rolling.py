@@ -271,15 +271,21 @@ def test_a_foot_lands_the_more_on_its_heel_the_farther_ahead_it_lands(way, usual
         assert pitch(0.5 * (usual + 0.165)) == pytest.approx(0.15, abs=1e-5)
 
 
-def test_a_step_that_is_moved_back_lands_flat_unless_its_toes_are_on_their_way_up(stand):
+def starting(stand, gait):
+    """The first swing of a gait as it begins: state, what is measured, and where its foot lands."""
     ground = Ground(flat(), np.array([0.11, 0.055]), PlannerParameters(reach_length=0.8))
-    feet = stand(GAIT.step_width)
-    state = WalkState.start(WalkModel.of(ROLLING, ground, SmoothHeight(), None), feet)
-    measured = Measured(CentroidalState(0.0, np.array([0.0, 0.0, GAIT.com_height]), np.zeros(3)), feet)
+    feet = stand(gait.step_width)
+    state = WalkState.start(WalkModel.of(gait, ground, SmoothHeight(), None), feet)
+    measured = Measured(CentroidalState(0.0, np.array([0.0, 0.0, gait.com_height]), np.zeros(3)), feet)
     while state.phase.kind is not PhaseKind.SINGLE:
         state = advanced(state, measured)
-    strike = state.schedule.step(1).heel_strike
     (landing,) = upcoming(state, 0.0, np.zeros((2, 2)))[:1]
+    return state, measured, landing
+
+
+def test_a_step_that_is_moved_back_lands_flat_unless_its_toes_are_on_their_way_up(stand):
+    state, measured, landing = starting(stand, ROLLING)
+    strike = state.schedule.step(1).heel_strike
     short = replace(landing, position=landing.position * (0.0, 1.0, 1.0))
     middle = replace(landing, position=landing.position * (0.7, 1.0, 1.0))
     (half,) = [span for span in swinging_to(state, middle, measured, False).phase.rolls if span.angle < 0.0]
@@ -296,15 +302,9 @@ def test_a_step_that_is_moved_back_lands_flat_unless_its_toes_are_on_their_way_u
 @pytest.mark.parametrize("begun", [False, True])
 def test_a_step_that_catches_lands_flat_and_arrives_as_feet_that_do(stand, begun):
     """It does so before its swing has begun, and after it: what is left of the swing is then sooner over."""
-    ground = Ground(flat(), np.array([0.11, 0.055]), PlannerParameters(reach_length=0.8))
-    feet = stand(GAIT.step_width)
-    measured = Measured(CentroidalState(0.0, np.array([0.0, 0.0, GAIT.com_height]), np.zeros(3)), feet)
 
     def swung(gait, catches):
-        state = WalkState.start(WalkModel.of(gait, ground, SmoothHeight(), None), feet)
-        while state.phase.kind is not PhaseKind.SINGLE:
-            state = advanced(state, measured)
-        (landing,) = upcoming(state, 0.0, np.zeros((2, 2)))[:1]
+        state, measured, landing = starting(stand, gait)
         if begun:
             state = swinging_to(state, landing, measured, False)
         return swinging_to(replace(state, adapted=catches), landing, measured, False)
@@ -315,6 +315,29 @@ def test_a_step_that_catches_lands_flat_and_arrives_as_feet_that_do(stand, begun
     speeds = [state.swing.trajectory.search.touchdown_speed for state in (flatly, heels, caught)]
     assert arrivals[2] == pytest.approx(arrivals[0]) and arrivals[1] > arrivals[0] + 0.01
     assert speeds[2] == pytest.approx(speeds[0]) and speeds[1] > speeds[0] + 0.05
+
+
+@pytest.mark.parametrize(("back", "same"), [(0.0, True), (0.002, True), (-0.1, True), (0.02, False)])
+def test_a_step_keeps_its_schedule_until_it_is_moved_far_enough_to_land_otherwise(stand, back, same):
+    state, measured, landing = starting(stand, ROLLING)
+    moved = replace(landing, position=landing.position - (back, 0.0, 0.0))
+    swung = swinging_to(state, moved, measured, False)
+    assert (swung.schedule is state.schedule) is same
+
+
+@pytest.mark.parametrize(("ticks", "goes_on"), [(2, False), (12, False), (17, True)])
+def test_a_swing_that_is_nearly_over_arrives_when_it_would_have(stand, ticks, goes_on):
+    """Else it arrives as one that lands flat: sooner by what such a foot waits less for the ground."""
+    state, measured, landing = starting(stand, replace(ROLLING, double_support=0.05))
+    state = swinging_to(state, landing, measured, False)
+    for _ in range(ticks):
+        state = advanced(state, measured)
+    assert state.clock.now < state.schedule.step(1).heel_strike.start
+    later = replace(measured, body=replace(measured.body, time=0.02 * ticks))
+    caught = swinging_to(replace(state, adapted=True), landing, later, False)
+    assert caught.schedule.step(1).heel_strike is None
+    sooner = state.swing.trajectory.touchdown_time - caught.swing.trajectory.touchdown_time
+    assert sooner == pytest.approx(0.0 if goes_on else 0.75 * state.model.parameters.touchdown_lead)
 
 
 def test_a_rolling_foot_turns_about_its_toe_edge_and_lifts_the_ankle():

@@ -5,12 +5,13 @@ import pytest
 from hypothesis import example, given
 from hypothesis import strategies as st
 
+from surefoot.errors import ParameterError
 from surefoot.planner.geometry.plane import seen_from, sole_corners
 from surefoot.planner.ground.terrain import flat
 from surefoot.planner.parameters import PlannerParameters
 from surefoot.planner.steps.footsteps import plan_footsteps
 from surefoot.planner.steps.gait import Bout, GaitParameters
-from surefoot.planner.swing.step_region import StepRegion, reach_box, reachable_shifts
+from surefoot.planner.swing.step_region import StepRegion, check_reach, reach_box, reachable_shifts
 from surefoot.planner.types import Foot, Footstep, Twist
 
 pytestmark = pytest.mark.unit
@@ -132,6 +133,35 @@ def test_a_foot_may_land_as_far_ahead_and_beside_as_it_may_to_rounding(ahead):
     near, far = REGION.nearest(0.0), REGION.width[1]
     for beside, right in ((near, True), (near - 1e-3, False), (far, True), (far + 1e-3, False)):
         assert (REGION.why_not(at(0.0, beside, 0.0)) is None) is right
+
+
+@pytest.mark.parametrize("foot", Foot)
+@pytest.mark.parametrize("axis", [0, 1])
+@pytest.mark.parametrize("end", [0, 1])
+def test_a_nominal_footstep_may_land_as_far_as_the_reach_box_goes_to_rounding(foot, axis, end):
+    box, out = reach_box(PlannerParameters(), 1.0), (-1.0, 1.0)[end]
+    for beyond, refused in ((0.0, False), (1e-9, False), (1e-7, True), (-1e-7, False)):
+        place = np.array([0.0, 0.2, 0.0])
+        place[axis] = box[end][axis] + out * beyond
+        footstep = Footstep(foot, place * (1.0, foot.side, 1.0), 0.0)
+        if refused:
+            with pytest.raises(ParameterError, match="footstep 3 would land"):
+                check_reach(3, footstep, PlannerParameters())
+        else:
+            check_reach(3, footstep, PlannerParameters())
+
+
+@pytest.mark.parametrize("free", [(True, False), (False, True), (False, False)])
+def test_a_step_that_is_not_free_has_room_to_either_side_of_where_it_is(free):
+    """It stays there since it costs something to move; the room of the other one is its own."""
+    parameters, increment = PlannerParameters(reach_length=0.8), np.array([[0.1, 0.25], [0.2, -0.3]])
+    both, found = (reachable_shifts(parameters, increment, 1.0, kind, None, 0.0) for kind in ((True, True), free))
+    for step in (0, 1):
+        if free[step]:
+            np.testing.assert_array_equal([ends[step] for ends in found], [ends[step] for ends in both])
+        else:
+            np.testing.assert_array_equal(found[0][step], -found[1][step])
+            assert (found[1][step] > 0.5).all()
 
 
 def test_shifts_are_those_that_keep_both_steps_in_the_reachable_area():

@@ -54,3 +54,14 @@ def test_a_walk_that_stops_for_good_comes_to_rest():
     """A phase without an end asks for no time: the angle goes back as soon as it may."""
     back = AWAY.towards(0.0, 1.5, np.inf, SOONEST)
     assert back.evaluate(1.5 + SOONEST) == (0.0, 0.0, 0.0)
+
+
+@pytest.mark.parametrize(
+    ("time", "end", "ends"),
+    [(0.5, 0.8, 0.8), (0.5, 0.52, 0.6), (0.96, 0.965, 1.0), (0.96, 1.3, 1.3), (0.93, 0.5, 1.0)],
+)
+def test_to_the_same_extreme_it_hurries_no_more_than_it_does_already(time, end, ends):
+    """It takes a while at least, or as long as it would have taken."""
+    way = STILL.towards(0.2, 0.0, 1.0, SOONEST)
+    assert way.towards(0.2, time, end, SOONEST).end == pytest.approx(ends)
+    assert way.towards(-0.1, time, time, SOONEST).end == pytest.approx(time + SOONEST)

@@ -7,6 +7,7 @@ from foxglove_schemas_protobuf.JointStates_pb2 import JointStates
 from google.protobuf.timestamp_pb2 import Timestamp
 
 from surefoot.scenarios.log import ChannelSpec, FieldSpec, LogWriter, read
+from surefoot.scenarios.log.channel import Slab
 from surefoot.scenarios.log.layout import RowLayout
 from surefoot.scenarios.log.template import NANOS, SECONDS, Template, slot
 
@@ -94,3 +95,12 @@ def test_a_number_too_few_or_too_many_shifts_nothing_in_silence(tmp_path, number
     row = writer.rows(RowLayout(((b, ("y",)),), ((b, ("z",)),), more_numbers=("more",)))
     with pytest.raises(ValueError, match="where there are places for 2"), writer:
         row.append(0, numbers, np.zeros(4))
+
+
+@pytest.mark.parametrize(("row", "column", "size"), [(0, 0, 12), (0, 5, 3), (2, 0, 4), (1, 5, 7), (2, 11, 1)])
+def test_a_piece_of_a_slab_is_that_of_its_row_and_column(row, column, size):
+    slab = Slab(3, 12)
+    slab.memory[:] = np.arange(36).reshape(3, 12)
+    assert bytes(slab.piece(row, column, size)) == slab.memory[row, column : column + size].tobytes()
+    slab.piece(row, column, size)[:] = bytes(size)
+    assert not slab.memory[row, column : column + size].any()

@@ -124,8 +124,13 @@ def test_points_and_forces_are_where_the_numbers_say(log):
             assert np.allclose(at[f"{name} planned"][: len(known)], known, rtol=0.0, atol=1e-12)
         drawn = {entity.id: entity.arrows[0] for entity in forces.entities}
         for foot in ("left", "right"):
-            size = np.linalg.norm(measured.field(f"wrench_{foot}")[row][:3])
-            assert drawn[f"{foot} contact"].shaft_length == pytest.approx(METRES_PER_NEWTON * size)
+            wrench, arrow = measured.field(f"wrench_{foot}")[row], drawn[f"{foot} contact"]
+            assert arrow.shaft_length == pytest.approx(METRES_PER_NEWTON * np.linalg.norm(wrench[:3]))
+            if wrench[2] > 50.0:  # It acts where it has no moment along the sole.
+                sole, r = pin.XYZQUATToSE3(truth.field(f"{foot}_sole")[row]), arrow.pose.orientation
+                at, along = sole.actInv(vector(arrow.pose.position)), pin.Quaternion(r.w, r.x, r.y, r.z) * np.eye(3)[0]
+                assert np.allclose(along, sole.rotation @ wrench[:3] / np.linalg.norm(wrench[:3]), atol=1e-9)
+                assert np.allclose([*np.cross(at, wrench[:3])[:2], at[2]], [*wrench[3:5], 0.0], atol=1e-6)
         push = np.linalg.norm(measured.field("external_force")[row])
         assert drawn["push"].shaft_length == pytest.approx(METRES_PER_NEWTON * push)
 

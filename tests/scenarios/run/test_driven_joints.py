@@ -4,6 +4,7 @@ import numpy as np
 import pytest
 
 import surefoot
+from surefoot.joints import Servo
 from surefoot.scenarios.file.control import ControlSettings
 from surefoot.scenarios.log import NoLog
 from surefoot.scenarios.run.driven import Somebody
@@ -89,3 +90,24 @@ def test_a_controller_is_told_what_drives_them():
     torque -= terms.contact_jacobian.T @ report.wrench.ravel()
     driven = [i for i, name in enumerate(controller.walk.robot.joint_names) if "elbow" in name or "shoulder" in name]
     assert torque[6:][driven] == pytest.approx(0.5, abs=1e-5)
+
+
+def test_drives_that_follow_targets_give_way_until_the_end_of_a_period():
+    """Their torque is that of where they are then, as they are found to be accelerated."""
+    keys = ControlSettings.model_validate(arms("humanoid100")["control"])
+    stand = load("stand", {"sensing.source": "truth"})
+    controller = surefoot.Controller("humanoid100", stand, control=keys.model_dump(exclude_none=True))
+    q, period = controller.posture, 1.0 / controller.walk.rates.control
+    controller.reset(q)
+    driven = np.array(["elbow" in name or "shoulder" in name for name in controller.walk.robot.joint_names])
+    v = np.concatenate((np.zeros(6), np.where(driven, 2.0, 0.0)))
+    still, stiff, damped = np.zeros(len(driven)), np.full(len(driven), 300.0), np.full(len(driven), 2.0)
+    target = q[7:] + 0.05
+    command = surefoot.JointCommand(still, Servo(target, still, stiff, damped))
+    controller.step(surefoot.Measurement.of_state(0.0, q, v), driven_joints=command)
+    report, terms = controller.report, controller.terms
+    torque = terms.mass_matrix @ report.acceleration + terms.bias - terms.contact_jacobian.T @ report.wrench.ravel()
+    bend = report.acceleration[6:]
+    ends = q[7:] + period * v[6:] + 0.5 * period**2 * bend, v[6:] + period * bend
+    expected = stiff * (target - ends[0]) - damped * ends[1]
+    np.testing.assert_allclose(torque[6:][driven], expected[driven], atol=1e-5)

@@ -12,12 +12,12 @@ from surefoot.scenarios.setup.groups.gait import PushPoint
 
 pytestmark = pytest.mark.unit
 
-PERIOD = 0.002
+PERIOD = 2.0**-9
 
 
-def walked(spells, gait=None):
-    """Phases of a gait after loads of both feet for so long each."""
-    gait, told, now = gait or FeltGait(50.0), [], 0.0
+def walked(spells, begin=0.0):
+    """Phases of a gait after loads of both feet for so long each, from an instant on."""
+    gait, told, now = FeltGait(50.0), [], begin
     for left, right, lasts in spells:
         for _ in range(round(lasts / PERIOD)):
             gait.update(now, np.array([250.0 * left, 250.0 * right]))
@@ -53,3 +53,30 @@ def test_a_push_finds_its_point_of_the_felt_gait():
     reached = next(now for now, phase, _ in told if now + point.left(phase) < now + PERIOD)
     assert reached == pytest.approx(0.9 + GRAZE + 0.15, abs=4 * PERIOD)
     assert math.isinf(PushPoint(9, PhaseKind.SINGLE, 0.5).left(told[-1][1]))
+
+
+WALK = [(1, 1, 0.8), (1, 0, 0.3), (1, 1, 0.1), (0, 1, 0.35), (1, 1, 0.12), (0, 0, 0.2), (1, 1, 1.0)]
+
+
+def test_time_passes_in_each_phase_as_on_the_clock_and_none_is_left_over():
+    """A phase that lasts longer than it is taken to has nothing left."""
+    for (before, was, _), (now, phase, _) in pairwise(walked(WALK)):
+        begins = phase.kind is not was.kind and phase.kind is not PhaseKind.STAND
+        passed = phase.elapsed if begins else phase.elapsed - was.elapsed
+        assert passed == pytest.approx(0.0 if begins else now - before)
+        assert phase.left == pytest.approx(max(phase.duration - phase.elapsed, 0.0))
+        if phase.kind is not PhaseKind.STAND and phase.elapsed < phase.duration:
+            assert phase.elapsed + phase.left == pytest.approx(phase.duration)
+
+
+@pytest.mark.parametrize("begin", [3.0, 100.0])
+def test_a_gait_is_felt_the_same_whenever_it_is(begin):
+    """But for how long it has stood at first, of which nobody tells."""
+    for (_, phase, landed), (_, other, there) in zip(walked(WALK), walked(WALK, begin), strict=True):
+        assert (phase.kind, phase.stance, phase.step, phase.leads_to) == (
+            other.kind, other.stance, other.step, other.leads_to
+        )  # fmt: skip
+        assert landed == there
+        if phase.step:
+            assert phase.elapsed == pytest.approx(other.elapsed, abs=1e-9)
+            assert phase.duration == pytest.approx(other.duration, abs=1e-9)

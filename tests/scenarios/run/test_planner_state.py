@@ -1,8 +1,11 @@
 """Noise and filter of what the planner measures, and plants that are not what it believes, on the pendulum."""
 
+from types import SimpleNamespace
+
 import numpy as np
 import pytest
 
+from surefoot.planner.model.jerk import jerk_model
 from surefoot.planner.types import CentroidalState
 from surefoot.scenarios.errors import ScenarioError
 from surefoot.scenarios.file.schema import Scenario
@@ -58,6 +61,53 @@ def test_noise_follows_the_seed_and_each_sensor_has_its_own():
     np.testing.assert_array_equal(measured(both, 5)[:, 0], measured(zmp_only, 5)[:, 0])
     assert not measured(zmp_only, 5)[:, 1:].any()
     assert (measured(both, 5) != measured(scenario(1, zmp_noise=0.01, com_noise=0.002), 5)).all()
+
+
+def test_noise_is_what_is_measured_less_what_is_true():
+    """The first row of the stream of random numbers is the ZMP's, then come CoM and velocity."""
+    state = CentroidalState(0.0, np.array([0.3, -0.2, 1.0]), np.array([0.1, 0.4, -0.1]))
+    told = PlannerSensing(resolve(scenario(3, zmp_noise=0.01, com_noise=0.002))).sense(
+        state, np.array([0.2, -0.1]), None
+    )
+    stream = np.random.default_rng(np.random.SeedSequence(3, spawn_key=(1,)))
+    zmp, com, velocity = np.clip(stream.standard_normal((3, 2)), -2.0, 2.0)
+    np.testing.assert_allclose(told.measured_zmp, np.array([0.2, -0.1]) + 0.01 * zmp)
+    np.testing.assert_allclose(told.measured.com, state.com + 0.002 * np.append(com, 0.0))
+    np.testing.assert_allclose(told.measured.com_velocity, state.com_velocity + 0.01 * np.append(velocity, 0.0))
+
+
+@pytest.mark.parametrize("made", [0.0, 2.0])
+def test_a_mass_that_does_what_was_planned_leaves_the_filter_no_innovation(made):
+    """From a plan made at any time, while it is followed for longer than it looks ahead, and with legs that swing."""
+    walk, T, count = resolve(Scenario(planner={"filter": "kalman"})), 0.02, 3
+    sensing = PlannerSensing(walk)
+    rng, (transition, drive) = np.random.default_rng(2), jerk_model(T)
+    plan = SimpleNamespace(
+        time=made, sample_time=T, jerk=rng.normal(size=(count, 2)), stiffness=rng.uniform(8.0, 12.0, count + 1),
+        zmp_offset=0.05 * rng.normal(size=(count + 1, 2)),
+    )  # fmt: skip
+    motion = np.zeros((3, 2))
+    motion[0] = walk.ground.stance.position[:, :2].mean(axis=0)
+    for tick in range(6):
+        done = min(tick, count)
+        zmp = motion[0] - motion[2] / plan.stiffness[done] + (plan.zmp_offset[done] if tick else 0.0)
+        state = CentroidalState(made + T * tick, np.append(motion[0], 1.0), np.append(motion[1], 0.0))
+        told = sensing.sense(state, zmp, plan if tick else None)
+        np.testing.assert_allclose(told.innovation, 0.0, atol=1e-12)
+        np.testing.assert_allclose(told.acceleration, motion[2], atol=1e-9)
+        motion = transition @ motion + np.outer(drive, plan.jerk[tick] if tick < count else np.zeros(2))
+
+
+def test_heights_count_from_the_ground_on_which_the_robot_stands():
+    """At the first measurement, which no plan precedes: raised with its ground, a mass is as unstable as before."""
+    estimates = []
+    for terrain in ({"kind": "flat"}, {"kind": "blocks", "riser": 0.05}):
+        walk = resolve(Scenario(planner={"filter": "kalman"}, terrain=terrain))
+        state = CentroidalState(0.0, np.array([0.02, 0.01, 0.9 + walk.ground.start_height]), np.zeros(3))
+        estimates.append(PlannerSensing(walk).sense(state, np.array([0.01, 0.03]), None).acceleration)
+    assert walk.ground.start_height > 0.05
+    assert np.abs(estimates[0]).max() > 1e-3
+    np.testing.assert_allclose(*estimates, rtol=1e-6)
 
 
 def test_a_filter_is_used_when_there_is_noise_or_when_asked_for():

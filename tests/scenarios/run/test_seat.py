@@ -2,6 +2,8 @@
 
 import subprocess
 import sys
+import time
+from dataclasses import replace
 
 import numpy as np
 import pinocchio as pin
@@ -177,3 +179,27 @@ def test_no_simulator_is_loaded_by_a_controller_that_steps():
     done = subprocess.run([sys.executable, "-c", code], capture_output=True, text=True, check=True)
     assert "world" not in done.stdout
     assert "surefoot.sim.measurement" in done.stdout
+
+
+def test_a_walk_is_the_same_whenever_its_first_readings_come():
+    """Its clock begins with them."""
+    benches = [Bench("walk-level", {"gait.steps": 1}) for _ in range(2)]
+    every = benches[0].walk.rates.physics // benches[0].walk.rates.control
+    for _ in range(250):
+        torques = []
+        for bench, begin in zip(benches, (0.0, 64.0), strict=True):
+            seen = bench.world.measure()
+            command = bench.controller.step(replace(seen, time=begin + seen.time))
+            bench.world.advance(command.torque, every)
+            torques.append(command.torque)
+        assert benches[0].controller.time == pytest.approx(benches[1].controller.time, abs=1e-9)
+        np.testing.assert_allclose(*torques, atol=1e-4)
+
+
+def test_the_time_of_finding_the_state_is_that_between_two_looks_at_the_clock(monkeypatch):
+    """The clock is a second later whenever it is looked at."""
+    bench, looks = Bench("walk-level", {}), iter(range(1, 100))
+    seen = bench.world.measure()
+    monkeypatch.setattr(time, "perf_counter", lambda: float(next(looks)))
+    bench.controller.step(seen)
+    assert bench.controller.spent.state == 1.0

@@ -9,7 +9,7 @@ import pytest
 from surefoot.models.pinocchio import limb_shapes
 from surefoot.models.registry import describe
 from surefoot.models.types import RobotOptions
-from surefoot.wbc.body.separation import Separation, SeparationParameters
+from surefoot.wbc.body.separation import Pair, Separation, SeparationParameters
 from surefoot.wbc.parameters import WbcParameters
 from surefoot.wbc.types import FootSensing, RobotState, SolveStatus
 
@@ -206,3 +206,37 @@ def test_pairs_are_looked_at_before_they_come_near_whichever_way_they_lie(robot,
         assert lower[0] == pytest.approx(least)
         near += bool(anew.any())
     assert 10 < near < 110
+
+
+def test_a_distance_changes_as_a_shape_turns_by_no_more_than_its_farthest_point_moves(robot, geometry) -> None:
+    """One that turns about its own middle does not come nearer than that, and the whole robot may move as it likes."""
+    rng, shapes, data = np.random.default_rng(6), geometry.copy(), robot.model.createData()
+    pin.computeAllTerms(robot.model, data, robot.standing, np.zeros(robot.nv))
+    for shape in shapes.geometryObjects:
+        shape.placement = shape.placement * pin.SE3(pin.exp3(rng.normal(size=3)), 0.05 * rng.normal(size=3))
+
+    def put(joint: int, place: pin.SE3) -> None:
+        data.oMi[joint].rotation, data.oMi[joint].translation = place.rotation, place.translation
+
+    for of in shapes.collisionPairs:
+        pair = Pair(robot.model, data, np.zeros((6, robot.nv)), shapes, of)
+        first, second = (shapes.geometryObjects[k] for k in (of.first, of.second))
+        one, two = first.parentJoint, second.parentJoint
+        still, there = data.oMi[one].copy(), data.oMi[two].copy()
+        second.geometry.computeLocalAABB()
+        centre, radius = second.placement.act(np.array(second.geometry.aabb_center)), second.geometry.aabb_radius
+        assert pair.is_due(0.0)
+        pair.distance = 0.1
+        for axis in rng.normal(size=(4, 3)):
+            turned = pin.exp3(0.05 * axis / np.linalg.norm(axis)) @ there.rotation
+            away = pin.SE3.Random()
+            put(one, away * still)
+            put(two, away * pin.SE3(turned, there.act(centre) - turned @ centre))
+            most = 2.0 * np.sin(0.025) * radius
+            assert not pair.is_due(0.1 - 1.001 * most)
+            put(two, away * pin.SE3(there.rotation, there.translation + 0.03 * axis / np.linalg.norm(axis)))
+            assert not pair.is_due(0.07 - 1e-6)
+        put(one, still)
+        put(two, pin.SE3(turned, there.act(centre) - turned @ centre + (0.0, 0.0, 0.02)))
+        assert pair.is_due(0.08 - 0.999 * most)
+        put(two, there)

@@ -164,3 +164,16 @@ def test_a_heavier_body_has_as_much_more_inertia_but_for_its_rotors(robot, state
     np.testing.assert_allclose(loaded.mass_matrix - rotors, 1.2 * (free.mass_matrix - rotors), atol=1e-9)
     np.testing.assert_allclose(loaded.bias, 1.2 * free.bias, atol=1e-9)
     assert loaded.mass == pytest.approx(1.2 * free.mass)
+
+
+@pytest.mark.parametrize("foot", [0, 1])
+@pytest.mark.parametrize(("forward", "pitch"), [(0.1, 0.3), (-0.08, -0.2), (0.05, 0.0)])
+def test_a_foot_that_is_pitched_is_level_seen_from_its_edge(robot, foot, forward, pitch):
+    """Heel up about its toes, or toes up about its heel; the frame lies ahead of the sole's centre."""
+    terms = RobotTerms(robot.model, robot.frames)
+    q = pin.integrate(robot.model, robot.standing, 0.2 * np.random.default_rng(4).normal(size=robot.nv))
+    terms.update(q, np.zeros(robot.nv))
+    R, p = terms.sole_rotation[foot].copy(), terms.sole_position[foot].copy()
+    terms.shift_foot(foot, forward, pitch)
+    np.testing.assert_allclose(terms.contact_rotation[foot] @ pin.utils.rotate("y", pitch), R, atol=1e-12)
+    np.testing.assert_allclose(terms.contact_position[foot], p + forward * R[:, 0], atol=1e-12)

@@ -7,6 +7,7 @@ import pytest
 from surefoot.wbc.body.model import RobotTerms
 from surefoot.wbc.contact.cone import TOE_DEPTH, wrench_cone
 from surefoot.wbc.contact.contacts import ContactParameters, ContactSchedule
+from surefoot.wbc.parameters import ContactGains
 from surefoot.wbc.reference import LEVEL
 from surefoot.wbc.tasks.balance import SupportRegion
 from surefoot.wbc.types import FootSensing, RobotState, SolveStatus
@@ -179,3 +180,26 @@ def test_a_foot_in_the_air_stands_on_no_edge_and_one_that_carries_alone_may(refe
     assert schedule.update(lifted, FootSensing((900.0, 0.0))).edge == (0, 0)
     both = standing(planned_contact=(True, False), swing_foot=1, edge=(1, -1))
     assert schedule.update(both, FootSensing((900.0, 0.0))).edge == (1, 0)
+
+
+@pytest.mark.parametrize("seed", range(3))
+def test_a_foot_that_moves_and_leans_is_brought_back_to_its_roll(robot, references, loaded, side, seed):
+    """Its edge comes to rest, and about it the foot turns with the roll: the harder at heel strike."""
+    standing, _ = references
+    controller, gains = robot.controller(), ContactGains()
+    controller.observe(robot.moved(np.random.default_rng(seed), 0.03, 0.2))
+    _, rate, bend = roll = (0.0, side * 0.5, side * 4.0)
+    reference = standing(zmp=np.array([side * 0.02, 0.0]), load_share=(0.7, 0.3), edge=(0, side), roll=(LEVEL, roll))
+    report = controller.update(reference, loaded)
+    assert report.status is SolveStatus.SOLVED
+    terms = controller.terms
+    v, normal = terms.sole_velocity[1].copy(), terms.contact_rotation[1, 2]
+    expected = -gains.damping * v
+    expected[3] -= gains.levelling * normal[1]
+    if side > 0:
+        expected[4] += gains.levelling * normal[0] + gains.damping * rate + bend
+    else:
+        expected[4] = gains.striking * normal[0] + gains.striking_damping * (rate - v[4]) + bend
+    motion = terms.sole_jacobian[1] @ report.acceleration + terms.sole_bias[1]
+    assert np.abs(terms.sole_bias[1]).min() > 1e-4
+    np.testing.assert_allclose(motion, expected, atol=1e-5)

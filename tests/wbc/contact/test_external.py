@@ -86,6 +86,15 @@ def test_forces_that_are_told_late_are_held_against_the_motion_of_their_time(lat
     assert max(np.abs(load.moment).max() for load in taken_for_new) > 10.0
 
 
+@pytest.mark.parametrize("told", [PAST - 1, PAST, 10 * PAST])
+def test_an_age_beyond_what_is_remembered_is_that_of_the_oldest(told):
+    pull, oldest = lambda time: np.array([40.0, -15.0, 0.0]), PAST - 2
+    found, wanted = (observed(pull=pull, late=oldest, told=age)[-1] for age in (told, oldest))
+    np.testing.assert_allclose(found.force, wanted.force)
+    np.testing.assert_allclose(found.moment, wanted.moment)
+    np.testing.assert_allclose(found.force, [40.0, -15.0, 0.0], atol=0.1)
+
+
 @pytest.mark.parametrize("told", [np.nan, -3.0])
 def test_an_age_that_is_no_time_is_none(told):
     found, wanted = observed(told=told), observed()

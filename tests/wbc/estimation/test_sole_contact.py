@@ -70,6 +70,22 @@ def test_a_touch_is_felt_soon_and_a_light_one_when_it_lasts():
     assert light is not None and light <= 60
 
 
+@pytest.mark.parametrize("said", [12.0, 15.0, -15.0])
+def test_what_a_sensor_says_that_was_never_tared_is_no_touch_unless_it_is_more_than_a_bias(said):
+    """Two deviations of that are; a foot that has swung high enough is felt by what would be a bias."""
+    sensors, bias = SensorNoise(wrench_force=0.1, wrench_bias=20.0, wrench_moment=0.01), np.zeros((2, 6))
+    bias[0, 2] = said
+    feet = Feet(sensors, bias=bias)
+    feet.update(0.0, 1.0, ticks=40)
+    assert not feet.contact.felt[0]
+    assert feet.update(0.0, 1.0, ticks=400) is None
+    assert feet.update(0.08, 0.92, ticks=40) is not None
+    feet = Feet(sensors, bias=bias)
+    feet.update(0.0, 1.0, ticks=40)
+    feet.update(0.0, 1.0, above=(0.05, 0.0), ticks=2000)
+    assert feet.update(0.02, 0.98, ticks=40) is not None
+
+
 def test_a_touch_near_the_ground_is_not_tared_away():
     feet = swung()
     feet.update(0.02, 0.98, above=(0.001, 0.0), ticks=2000)

@@ -4,8 +4,8 @@ import numpy as np
 import pytest
 from scipy.optimize import nnls
 
-from surefoot.wbc.qp.data import EQUALITY_ROWS, UNBOUNDED, QpLayout, allocate
-from surefoot.wbc.qp.solvers import equalities_only, make_solver
+from surefoot.wbc.qp.data import EQUALITY_ROWS, FOOT_ROWS, UNBOUNDED, QpLayout, allocate
+from surefoot.wbc.qp.solvers import Daqp, equalities_only, make_solver
 
 pytestmark = pytest.mark.unit
 
@@ -64,6 +64,23 @@ def test_an_infeasible_problem_gets_no_answer(problems, name):
     qp.bounds_lower[row], qp.bounds_upper[row] = 1.0, 2.0
     solution = make_solver(name).solve(qp)
     assert solution is None or solution.violation > 0.1
+
+
+@pytest.mark.parametrize("soft", [None, np.array([3, 4])])
+def test_what_lets_go_of_soles_counts_all_violations_but_theirs(problems, soft):
+    """And breaks the rows of a sole where they contradict the dynamics, which it keeps."""
+    for qp in (problem.copy() for problem in problems):
+        n, held = qp.g.size, np.arange(2 * FOOT_ROWS)
+        held = held[qp.A[held, : n - 2 * FOOT_ROWS].any(axis=1)]
+        assert held.size
+        qp.A[held[1]] = qp.A[held[0]]
+        qp.bounds_lower[n + held[:2]] = qp.bounds_upper[n + held[:2]] = -5.0, 5.0
+        assert Daqp(soft=soft).solve(qp) is None
+        solution = Daqp(1e-6, soft=soft, lets_go=True).solve(qp)
+        broken = np.concatenate((n + held, np.zeros(0, dtype=int) if soft is None else soft))
+        assert np.abs(qp.A[held[:2]] @ solution.x - (-5.0, 5.0)).max() > 1.0
+        assert solution.violation == pytest.approx(qp.violation(solution.x, broken), abs=1e-12)
+        assert solution.violation < 1e-4
 
 
 @pytest.mark.parametrize("name", NAMES)

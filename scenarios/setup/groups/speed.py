@@ -10,7 +10,7 @@ from surefoot.scenarios.errors import Key
 from surefoot.scenarios.file.group import ControllerSettings
 from surefoot.scenarios.file.schema import Scenario
 from surefoot.similarity import Similarity
-from surefoot.wbc.parameters import StraightKnees, TaskWeights, WbcParameters
+from surefoot.wbc.parameters import StraightKnees
 
 G = TypeVar("G", bound=BaseModel)
 
@@ -34,15 +34,14 @@ _ASKED = ("step_length", "single_support", "double_support", "heel_strike")
 FOLLOWING: tuple[Key, ...] = (
     *(("gait", name) for name in _OF_STEPS),
     ("planner", "knee"),
-    ("wbc", "weights", "com_vertical"),
     ("wbc", "knees", "weight"),
 )
 """Keys that follow from the speed where they are not given."""
 
-_STRAIGHT = WbcParameters(weights=TaskWeights(com_vertical=2.0), knees=StraightKnees(weight=0.006))
-"""The controller of legs that are nearly straight: the knees say as much as the plan does how high the CoM is.
+_STRAIGHT = StraightKnees(weight=0.008)
+"""The task of knees that are nearly straight.
 
-Legs that are to be bent have the usual one, since a task that straightens their knees works against the plan."""
+Legs that are to be bent have none, since a task that straightens their knees works against the plan."""
 
 
 def with_speed(scenario: Scenario, facts: RobotFacts, size: Similarity, given: frozenset[str]) -> Scenario:
@@ -80,7 +79,7 @@ def with_speed(scenario: Scenario, facts: RobotFacts, size: Similarity, given: f
     if "knee" not in scenario.planner.model_fields_set:
         update["planner"] = scenario.planner.model_copy(update={"knee": "straight"})
     if scenario.walker == "full" and scenario.planner.knee != "bent":
-        update["wbc"] = _controller(scenario.wbc, size.scaled(_STRAIGHT))
+        update["wbc"] = _controller(scenario.wbc, size.scaled(_STRAIGHT).weight)
     return scenario.model_copy(update=update)
 
 
@@ -89,15 +88,10 @@ def _with(group: G, wanted: dict[str, Any], given: frozenset[str]) -> G:
     return group.model_copy(update={name: value for name, value in wanted.items() if name not in given})
 
 
-def _controller(settings: ControllerSettings | None, straight: WbcParameters) -> ControllerSettings:
-    """The group ``wbc`` with the numbers of straight legs where it has none."""
+def _controller(settings: ControllerSettings | None, weight: float) -> ControllerSettings:
+    """The group ``wbc`` with that weight of the knees where it has none [s^4]."""
     values: dict[str, Any] = {} if settings is None else settings.model_dump()
-    for group, name, value in (
-        ("weights", "com_vertical", straight.weights.com_vertical),
-        ("knees", "weight", straight.knees.weight),
-    ):
-        inner = dict(values.get(group) or {})
-        if inner.get(name) is None:
-            inner[name] = value
-        values[group] = inner
-    return ControllerSettings.model_validate(values)
+    knees = dict(values.get("knees") or {})
+    if knees.get("weight") is None:
+        knees["weight"] = weight
+    return ControllerSettings.model_validate({**values, "knees": knees})

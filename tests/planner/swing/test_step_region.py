@@ -175,3 +175,12 @@ def test_shifts_are_those_that_keep_both_steps_in_the_reachable_area():
             if k == 1:
                 least, most = np.minimum(least, 0.0), np.maximum(most, 0.0)
             np.testing.assert_allclose([lower[k], upper[k]], [least, most])
+
+
+@pytest.mark.parametrize("yaw", [0.4, -0.4])
+@pytest.mark.parametrize("ahead", [0.25, -0.25])
+def test_in_a_turn_feet_stand_no_wider_than_the_outer_one_can_go(yaw, ahead):
+    region = StepRegion(length=0.4, width=(0.08, 3.0), sole=(0.05, 0.03))
+    fitted = region.fitted(Twist(ahead, 0.0, yaw, 2.5))
+    farthest = max(abs(fitted.landing(foot).position[0]) for foot in Foot)
+    assert farthest == pytest.approx(region.length) and region.admits(fitted)

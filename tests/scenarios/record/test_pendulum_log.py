@@ -60,3 +60,13 @@ def test_parts_of_a_tick_take_no_longer_than_the_tick_and_all_no_longer_than_the
         assert (timing.field(name) >= 0.0).all()
     assert (parts <= timing.field("tick") + 1e-3).all()
     assert timing.field("tick").sum() < 1e6 * took
+
+
+def test_the_zmp_lies_on_the_ground_between_the_soles(tmp_path):
+    keys = {"fidelity": "pendulum", "terrain.kind": "blocks", "terrain.riser": 0.05, "duration": 0.2}
+    log = surefoot.read(surefoot.run(surefoot.load("stand", keys), out=tmp_path).log)
+    soles = [log["/truth"].field(f"{name}_sole")[:, 2] for name in ("left", "right")]
+    share = log["/contact"].field("normal_force")
+    share = share / share.sum(axis=1)[:, None]
+    assert np.min(soles) > 0.05 and share.min() > 0.1
+    np.testing.assert_allclose(log["/contact"].field("zmp")[:, 2], share[:, 0] * soles[0] + share[:, 1] * soles[1])

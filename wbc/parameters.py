@@ -168,6 +168,10 @@ class StraightKnees:
         check(self, "wbc", "knees")
 
 
+STRAIGHTENED = StraightKnees(weight=0.008)
+"""The task in walks whose knees are nearly straight."""
+
+
 @dataclass(frozen=True, slots=True)
 class SeparationParameters:
     """The distances and gains by which limbs keep away from each other.

@@ -366,6 +366,14 @@ class Scenario(Group):
         return self.fidelity if self.controller is None else "seat"
 
     @property
+    def straightens(self) -> bool:
+        """True if a task straightens knees unless the scenario says otherwise: by a speed, on legs not to be bent.
+
+        A task that straightens knees which are to be bent works against the plan.
+        """
+        return self.gait.speed is not None and self.walker == "full" and self.planner.knee != "bent"
+
+    @property
     def left_out(self) -> tuple[str, ...]:
         """Criteria that are not asked of what has the seat."""
         return () if self.controller is None else self.controller.left_out

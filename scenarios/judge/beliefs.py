@@ -7,7 +7,7 @@ masses and CoM, docs/serve.md of late commands. Of gains it is a factor, and of 
 import math
 import re
 from collections.abc import Iterator
-from dataclasses import dataclass, fields, is_dataclass
+from dataclasses import dataclass, fields, is_dataclass, replace
 from typing import Any
 
 import numpy as np
@@ -18,6 +18,7 @@ from surefoot.scenarios.judge.digest import RunView
 from surefoot.scenarios.judge.scenario import scenario_of
 from surefoot.sim.sensor_errors import PRESETS
 from surefoot.similarity import Similarity
+from surefoot.wbc.parameters import STRAIGHTENED
 
 SAME_FRICTION = 0.02
 """Difference of friction coefficients that is none [-]."""
@@ -136,6 +137,8 @@ def _gains(scenario: Scenario, run: RunView) -> Iterator[Departure]:
     size, control = run.constants.similarity, scenario.control
     if scenario.wbc is not None:
         usual, given = controller_parameters(None, size), controller_parameters(scenario.wbc, size)
+        if scenario.straightens:
+            usual = replace(usual, knees=size.scaled(STRAIGHTENED))
         yield from _changed(usual, given, "wbc")
     if control is None or control.output != "position":
         return

@@ -10,7 +10,7 @@ from surefoot.scenarios.errors import Key
 from surefoot.scenarios.file.group import ControllerSettings
 from surefoot.scenarios.file.schema import Scenario
 from surefoot.similarity import Similarity
-from surefoot.wbc.parameters import StraightKnees
+from surefoot.wbc.parameters import STRAIGHTENED
 
 G = TypeVar("G", bound=BaseModel)
 
@@ -37,11 +37,6 @@ FOLLOWING: tuple[Key, ...] = (
     ("wbc", "knees", "weight"),
 )
 """Keys that follow from the speed where they are not given."""
-
-_STRAIGHT = StraightKnees(weight=0.008)
-"""The task of knees that are nearly straight.
-
-Legs that are to be bent have none, since a task that straightens their knees works against the plan."""
 
 
 def with_speed(scenario: Scenario, facts: RobotFacts, size: Similarity, given: frozenset[str]) -> Scenario:
@@ -78,8 +73,8 @@ def with_speed(scenario: Scenario, facts: RobotFacts, size: Similarity, given: f
     update: dict[str, Any] = {"gait": _with(gait, dict(zip(_OF_STEPS, numbers, strict=True)), given)}
     if "knee" not in scenario.planner.model_fields_set:
         update["planner"] = scenario.planner.model_copy(update={"knee": "straight"})
-    if scenario.walker == "full" and scenario.planner.knee != "bent":
-        update["wbc"] = _controller(scenario.wbc, size.scaled(_STRAIGHT).weight)
+    if scenario.straightens:
+        update["wbc"] = _controller(scenario.wbc, size.scaled(STRAIGHTENED).weight)
     return scenario.model_copy(update=update)
 
 

@@ -50,7 +50,7 @@ def fell(tmp_path, motion, robot, two_steps):
         made = motion(**{"duration": 2.3, "fall_at": FALL, "changes": told, **how})
         found = digest(read(run_scenario(two_steps, tmp_path, simulate=made, robot=robot).log))
         # Keys of masses and motors ask for a model, which the robot of this folder has not.
-        scenario = Scenario(name="two-steps", gait={"steps": 2}, **(keys or {}))
+        scenario = Scenario(**{"name": "two-steps", "gait": {"steps": 2}, **(keys or {})})
         found.attachments = {**found.attachments, SCENARIO_FILE: scenario_yaml(scenario).encode()}
         return found
 
@@ -164,6 +164,13 @@ def test_what_is_wrong_all_the_time_is_a_cause_beyond_what_walks_bear(fell, kind
     assert causes(fell({}, little)) == []
     late = named(fell(slipping(1.8), much), "foot_slip")
     assert late.relation == "effect"
+
+
+def test_a_task_that_follows_from_the_speed_is_no_cause(fell):
+    """Without a speed nothing straightens the knees, and a task that does is none that walks are known to bear."""
+    straightening = {"wbc": {"knees": {"weight": 0.008}}}
+    assert causes(fell({}, {**straightening, "gait": {"steps": 2, "speed": 0.8}})) == []
+    assert causes(fell({}, straightening)) == ["gains"]
 
 
 def test_a_drive_of_a_joint_is_measured_by_its_own_torque(fell):

@@ -63,7 +63,8 @@ class Posture(DiagonalTerm):
             driven: which joints somebody else drives, and keep none, bool, shape (nj,); None for none.
         """
         weight = np.where(leg_joints, weights.leg_posture, weights.upper_posture)
-        self._weight, self._arms = weight if driven is None else np.where(driven, 0.0, weight), arms
+        self._weight = weight if driven is None else np.where(driven, 0.0, weight)
+        self._arms = arms
         stiffness, damping = gains.posture
         self._K, self._D = stiffness * self._weight, damping * self._weight
         self._pull = self._K * posture

@@ -34,7 +34,7 @@ is left."""
 LEVEL_AGAIN = 0.9
 """The same at most, of a swing that is shortened when its foot has begun to roll [-]."""
 
-BRAKING, LEAD, SINKING = 12.0, 0.25, 0.15
+BRAKING, LEAD, SINKING = 12.0, 0.25, 0.25
 """The arrival of a foot that lands on its heel, see `SwingCourse` [-, -, m/s].
 
 A foot that is ahead early is farther from its hip than its leg is long, which straightens the knee against its end

@@ -4,6 +4,7 @@ import math
 
 from surefoot.maths import algebra
 from surefoot.wbc.body.model import RobotTerms
+from surefoot.wbc.reference import WbcReference
 
 
 class ArmSwing:
@@ -22,14 +23,23 @@ class ArmSwing:
         (self.left, self.right), self.gain = joints, gain
         self.left_back, self.right_back = back
 
-    def offset(self, terms: RobotTerms) -> tuple[float, float]:
-        """Angle of the left arm back from the posture, and its rate [rad, rad/s]; the right one mirrors it."""
+    def offset(self, terms: RobotTerms, reference: WbcReference) -> algebra.Vector:
+        """Angle of the left arm back from the posture, its rate and acceleration; the right arm mirrors it.
+
+        [rad, rad/s, rad/s^2]
+        """
         x, y = terms._R_base[0, 0], terms._R_base[1, 0]
         scale = self.gain / max(math.hypot(x, y), 1e-3)
         left = algebra.rotate(terms._R_contact[0], algebra.vector(terms._v_sole[0]))
         right = algebra.rotate(terms._R_contact[1], algebra.vector(terms._v_sole[1]))
         p = terms._p_sole
+        ahead = 0.0
+        if reference.swing_foot >= 0:
+            ahead = x * reference._s_ddot[0] + y * reference._s_ddot[1]
+            if reference.swing_foot == 1:
+                ahead = -ahead
         return (
             scale * (x * (p[0, 0] - p[1, 0]) + y * (p[0, 1] - p[1, 1])),
             scale * (x * (left[0] - right[0]) + y * (left[1] - right[1])),
+            scale * ahead,
         )

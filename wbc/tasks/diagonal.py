@@ -66,6 +66,7 @@ class Posture(DiagonalTerm):
         self._weight = weight if driven is None else np.where(driven, 0.0, weight)
         self._arms = arms
         stiffness, damping = gains.posture
+        self._weights = self._weight
         self._K, self._D = stiffness * self._weight, damping * self._weight
         self._pull = self._K * posture
 
@@ -80,9 +81,11 @@ class Posture(DiagonalTerm):
         if self._arms is None:
             return
         arms = self._arms
-        angle, rate = arms.offset(terms)
-        linear[6 + arms.left] += arms.left_back * (self._K[arms.left] * angle + self._D[arms.left] * rate)
-        linear[6 + arms.right] += -arms.right_back * (self._K[arms.right] * angle + self._D[arms.right] * rate)
+        angle, rate, acceleration = arms.offset(terms, reference)
+        left = self._K[arms.left] * angle + self._D[arms.left] * rate + self._weights[arms.left] * acceleration
+        right = self._K[arms.right] * angle + self._D[arms.right] * rate + self._weights[arms.right] * acceleration
+        linear[6 + arms.left] += arms.left_back * left
+        linear[6 + arms.right] -= arms.right_back * right
 
 
 class ForceDistribution(DiagonalTerm):

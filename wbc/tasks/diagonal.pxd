@@ -10,9 +10,8 @@ cdef class Regularisation(DiagonalTerm):
     cdef object _weight
 
 cdef class Posture(DiagonalTerm):
-    cdef object _weight
     cdef ArmSwing _arms
-    cdef double[::1] _weights, _K, _D, _pull
+    cdef double[::1] _W, _K, _D, _pull
 
     @cython.locals(j=Py_ssize_t, arms=ArmSwing, angle=double, rate=double, acceleration=double, left=double, right=double)
     cdef void put(self, RobotTerms terms, WbcReference reference, double[::1] linear) noexcept

@@ -41,7 +41,10 @@ class Regularisation(DiagonalTerm):
 
 
 class Posture(DiagonalTerm):
-    """Joint accelerations that return the joints to a posture, in which the arms may swing: K (q_0 - q) - D q'."""
+    """Joint accelerations that return the joints to a posture, in which the arms may swing.
+
+    K (q_0 + q_a - q) + D (q_a' - q') + q_a'' with the swing q_a of `ArmSwing`, which is zero for all but the shoulders.
+    """
 
     def __init__(
         self,
@@ -63,16 +66,15 @@ class Posture(DiagonalTerm):
             driven: which joints somebody else drives, and keep none, bool, shape (nj,); None for none.
         """
         weight = np.where(leg_joints, weights.leg_posture, weights.upper_posture)
-        self._weight = weight if driven is None else np.where(driven, 0.0, weight)
+        self._W = weight if driven is None else np.where(driven, 0.0, weight)
         self._arms = arms
         stiffness, damping = gains.posture
-        self._weights = self._weight
-        self._K, self._D = stiffness * self._weight, damping * self._weight
+        self._K, self._D = stiffness * np.asarray(self._W), damping * np.asarray(self._W)
         self._pull = self._K * posture
 
     def weigh(self, diagonal: Array) -> None:
         """See ``DiagonalTerm.weigh``."""
-        diagonal[6:-12] += self._weight
+        diagonal[6:-12] += self._W
 
     def put(self, terms: RobotTerms, reference: WbcReference, linear: Array) -> None:
         """See ``DiagonalTerm.put``."""
@@ -82,8 +84,8 @@ class Posture(DiagonalTerm):
             return
         arms = self._arms
         angle, rate, acceleration = arms.offset(terms, reference)
-        left = self._K[arms.left] * angle + self._D[arms.left] * rate + self._weights[arms.left] * acceleration
-        right = self._K[arms.right] * angle + self._D[arms.right] * rate + self._weights[arms.right] * acceleration
+        left = self._K[arms.left] * angle + self._D[arms.left] * rate + self._W[arms.left] * acceleration
+        right = self._K[arms.right] * angle + self._D[arms.right] * rate + self._W[arms.right] * acceleration
         linear[6 + arms.left] += arms.left_back * left
         linear[6 + arms.right] -= arms.right_back * right
 

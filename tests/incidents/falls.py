@@ -40,7 +40,7 @@ FALLS: dict[str, Fall] = {
         "walk-level",
         {
             "gait.steps": 5,
-            "wbc.balance.height_stiffness": 8000.0,
+            "wbc.balance.height_stiffness": 20000.0,
             "wbc.balance.height_damping": 0.01,
             "wbc.gains.posture": [25.0, 10.0],
             "pushes": [SLIGHT],

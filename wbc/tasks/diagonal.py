@@ -66,10 +66,10 @@ class Posture(DiagonalTerm):
             driven: which joints somebody else drives, and keep none, bool, shape (nj,); None for none.
         """
         weight = np.where(leg_joints, weights.leg_posture, weights.upper_posture)
-        self._W = weight if driven is None else np.where(driven, 0.0, weight)
-        self._arms = arms
+        weight = weight if driven is None else np.where(driven, 0.0, weight)
         stiffness, damping = gains.posture
-        self._K, self._D = stiffness * np.asarray(self._W), damping * np.asarray(self._W)
+        self._W, self._K, self._D = weight, stiffness * weight, damping * weight
+        self._arms = arms
         self._pull = self._K * posture
 
     def weigh(self, diagonal: Array) -> None:

@@ -39,7 +39,7 @@ BRAKING, LEAD, SINKING = 9.0, 0.25, 0.25
 
 A foot that is ahead early is farther from its hip than its leg is long, which straightens the knee against its end
 and pulls the body down. Then it waits for the ground while the hip comes nearer, and the knee bends until the foot
-carries. With a braking of 6 it is bent by 4 degrees more at heel strike at 0.8 m/s; with 12 a walk takes 5 % more energy.
+carries. With a braking of 6 it is bent by 4 degrees more at heel strike at 0.8 m/s. With 12 walks take 5 % more energy.
 Beyond 20 a foot would go too far and come back. One that sinks no faster than others then grazes the ground on its
 way. With 0.15 m/s it slips by 6 mm at 1.4 m/s, where it touches 8 ms early, with 0.25 by less than 3. With 0.35 knees
 are straighter by 3 degrees as it lands, but at 0.8 m/s it lands with 1.4 body weights in place of 1.3."""

@@ -28,17 +28,18 @@ class ArmSwing:
     def offset(self, terms: RobotTerms, reference: WbcReference) -> algebra.Vector:
         """Angle of the left arm back from the posture, and its derivatives [rad, rad/s, rad/s^2]; the right mirrors it.
 
-        Angle and rate are those of the soles as they are, the acceleration is that of the reference's swing foot.
+        Angle and rate are those of the soles as they are, the acceleration is that of the reference's swing foot. It
+        counts none while a step catches the body: such a foot is thrown, and the arms with it would spin the neck.
         """
         x, y = terms._R_base[0, 0], terms._R_base[1, 0]
         scale = self.gain / max(math.hypot(x, y), 1e-3)
         left = algebra.rotate(terms._R_contact[0], algebra.vector(terms._v_sole[0]))
         right = algebra.rotate(terms._R_contact[1], algebra.vector(terms._v_sole[1]))
-        swing = reference._s_ddot
-        ahead = scale * (x * swing[0] + y * swing[1])
-        p = terms._p_sole
+        swing, p, ahead = reference._s_ddot, terms._p_sole, 0.0
+        if reference.swing_foot >= 0 and not reference.catching:
+            ahead = scale * (x * swing[0] + y * swing[1])
         return (
             scale * (x * (p[0, 0] - p[1, 0]) + y * (p[0, 1] - p[1, 1])),
             scale * (x * (left[0] - right[0]) + y * (left[1] - right[1])),
-            0.0 if reference.swing_foot < 0 else (ahead if reference.swing_foot == 0 else -ahead),
+            -ahead if reference.swing_foot == 1 else ahead,
         )

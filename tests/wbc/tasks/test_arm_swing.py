@@ -86,6 +86,7 @@ def test_the_acceleration_is_the_derivative_of_the_rate_of_a_foot_that_follows_i
     assert swing.offset(terms, flying)[2] == pytest.approx((rates[1] - rates[0]) / 2e-5, rel=1e-6)
     assert abs(swing.offset(terms, flying)[2]) > 0.1
     assert swing.offset(terms, replace(flying, swing_foot=-1))[2] == 0.0
+    assert swing.offset(terms, replace(flying, catching=True))[2] == 0.0
 
 
 def test_a_shoulder_is_asked_for_the_acceleration_of_its_swing(robot, standing):

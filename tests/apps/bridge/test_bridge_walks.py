@@ -52,7 +52,8 @@ def test_two_processes_walk_as_one_to_the_bit(bridge, robot, same_content, tmp_p
 
 
 def test_a_line_that_is_far_too_late_is_the_cause_of_the_fall(bridge, tmp_path):
-    plant = bridge.serve("walk-level", "--set", "sensing.source=truth", "--set", "gait.steps=6", *SOON, "--delay", "0.06")
+    keys = ("--set", "sensing.source=truth", "--set", "gait.steps=6", *SOON)
+    plant = bridge.serve("walk-level", *keys, "--delay", "0.06")
     _, verdict, said = bridge.result(bridge.walk())
     assert verdict["fell"], said
     bridge.end(plant)

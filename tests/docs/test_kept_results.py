@@ -126,11 +126,12 @@ def test_every_kept_result_and_baseline_has_a_maker_whose_inputs_are_there(resul
     written = {path for result in every.values() for path in result.writes}
     there = [*(DOCS / "results").glob("*.csv"), *(DOCS.parent / "scenarios" / "baselines").glob("*.yaml")]
     assert {path.relative_to(DOCS.parent).as_posix() for path in there} <= written
-    for name in ("known-falls", "push-map", "baseline-walk", "sensors", "sabotage"):
-        assert every[name].digests()
-    walk, push = (every[name] for name in ("baseline-walk", "baseline-stand"))
-    assert walk.digests()["code"] == push.digests()["code"]
-    assert walk.digests()["inputs"] != push.digests()["inputs"]
+    names = ("known-falls", "push-map", "baseline-walk", "baseline-stand", "sensors", "sabotage")
+    made_of = {name: every[name].digests() for name in names}
+    assert all(made_of.values())
+    walk, stand = (made_of[name] for name in ("baseline-walk", "baseline-stand"))
+    assert walk["code"] == stand["code"]
+    assert walk["inputs"] != stand["inputs"]
 
 
 def test_the_code_of_a_campaign_is_its_runs_and_no_page_to_drive(results):

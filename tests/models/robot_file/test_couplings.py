@@ -331,7 +331,8 @@ def test_a_description_of_which_a_follower_is_driven_is_refused(robot):
 def test_it_walks_from_sensors_and_its_log_tells_that_the_coupling_holds(tmp_path, kind):
     robot = biped.write(tmp_path, urdf()) if kind == "urdf" else None
     robot = robot or biped.write(tmp_path, mjcf(equality(), motors(), armature=0.02), MJCF_FILE, "biped.xml")
-    result = run_scenario(surefoot.load("walk-level", {"robot": str(robot)}), tmp_path)
+    keys = {"robot": str(robot), "gait.steps": 4, "gait.initial_stand": 0.4, "criteria.speed_mean": {"min": 0.2}}
+    result = run_scenario(surefoot.load("walk-level", keys), tmp_path)
     assert result.verdict.passed, result.verdict.reasons
     assert 0.0 < result.verdict["coupling_error"] < 5e-5
     log = surefoot.read(result.log)
@@ -345,7 +346,7 @@ def test_it_walks_from_sensors_and_its_log_tells_that_the_coupling_holds(tmp_pat
 
 @pytest.mark.physics
 def test_damped_joints_give_way_more_and_the_log_tells_it(tmp_path):
-    keys = {"robot": str(biped.write(tmp_path, urdf())), "gait.steps": 4, "motors": {"damping": 0.5}, "criteria": {}}
+    keys = {"robot": str(biped.write(tmp_path, urdf())), "gait.steps": 2, "motors": {"damping": 0.5}, "criteria": {}}
     verdict = run_scenario(surefoot.load("walk-level", keys), tmp_path).verdict
     assert not verdict["fell"] and 5e-5 < verdict["coupling_error"] < 1e-3
 

@@ -109,7 +109,7 @@ def walks(policies, scenario, tmp_path):
     found = []
     for robot, height in HEIGHTS.items():
         stander = policies.stander(tmp_path / f"of-{robot}", robot)
-        keys = {"name": f"held-{robot}", "robot": robot, "gait": {"steps": 0, "com_height": height}}
+        keys = {"name": f"held-{robot}", "robot": robot, "duration": 0.5, "gait": {"steps": 0, "com_height": height}}
         found.append(scenario(stander, f"held-{robot}.yaml", **keys))
     return found
 
@@ -128,7 +128,7 @@ def test_check_in_two_processes_makes_equal_bits(walks, same_content, command, t
 
 
 def test_check_takes_a_policy_by_its_option(scenario, stander, command):
-    walk = scenario(None)
+    walk = scenario(None, duration=0.5)
     code, out = command("check", str(walk), "--policy", str(stander), "--update", "--out", "one")
     assert code == 0, out
     code, out = command("check", str(walk), "--policy", str(stander), "--out", "two")
@@ -136,16 +136,22 @@ def test_check_takes_a_policy_by_its_option(scenario, stander, command):
 
 
 def test_sweep_in_two_processes_makes_equal_bits(walks, same_content, command, tmp_path):
+    robots = {}
     for walk in walks:
-        spec = {"name": walk.stem, "scenario": str(walk), "keep": "all", "grid": {"start.yaw": [0.0, 0.1]}}
-        (tmp_path / "steps.yaml").write_text(yaml.safe_dump(spec))
-        for jobs in ("1", "2"):
-            code, out = command("sweep", "steps.yaml", "--jobs", jobs, "--out", f"{walk.stem}-{jobs}")
-            assert code == 0, out
-        logs = [sorted((tmp_path / f"{walk.stem}-{jobs}").rglob("log.mcap")) for jobs in "12"]
-        assert len(logs[0]) == len(logs[1]) == 2
-        for one, other in zip(*logs, strict=True):
-            assert same_content(one, other) == []
+        keys = yaml.safe_load(walk.read_text())
+        height, policy = keys["gait"]["com_height"], keys["controller"]["policy"]
+        robots[walk.stem] = {"robot": keys["robot"], "gait.com_height": height, "controller.policy": policy}
+    grid = {"held": robots, "start.yaw": [0.0, 0.1]}
+    spec = {"name": "held", "scenario": str(walks[0]), "keep": "all", "grid": grid}
+    (tmp_path / "held-twice.yaml").write_text(yaml.safe_dump(spec))
+    for jobs in ("1", "2"):
+        code, out = command("sweep", "held-twice.yaml", "--jobs", jobs, "--out", jobs)
+        assert code == 0, out
+    logs = [sorted((tmp_path / jobs).rglob("log.mcap")) for jobs in "12"]
+    assert len(logs[0]) == len(logs[1]) == 4
+    assert len({surefoot.read(log)["/truth"].field("q").shape[1] for log in logs[0]}) == len(walks)
+    for one, other in zip(*logs, strict=True):
+        assert same_content(one, other) == []
 
 
 def test_a_robot_under_a_policy_is_driven_and_commanded(scenario, stander, tmp_path):

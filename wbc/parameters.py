@@ -46,7 +46,7 @@ class TaskWeights:
     swing: float = number(
         10.0, "s^4/m^2", "linear acceleration of the swing foot, and angular one times the robot's size"
     )
-    upper_posture: float = number(0.055, "s^4", "joint acceleration of waist, arms and head")
+    upper_posture: float = number(0.07, "s^4", "joint acceleration of waist, arms and head")
     leg_posture: float = number(1e-5, "s^4", "joint acceleration of the legs")
     acceleration: float = positive(
         1e-5, "s^4/m^2", "any generalised acceleration, an angular one times the robot's size"

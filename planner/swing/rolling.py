@@ -34,15 +34,15 @@ is left."""
 LEVEL_AGAIN = 0.9
 """The same at most, of a swing that is shortened when its foot has begun to roll [-]."""
 
-BRAKING, LEAD, SINKING = 9.0, 0.25, 0.2
+BRAKING, LEAD, SINKING = 10.5, 0.25, 0.18
 """The arrival of a foot that lands on its heel, see `SwingCourse` [-, -, m/s].
 
 A foot that is ahead early is farther from its hip than its leg is long, which straightens the knee against its end
 and pulls the body down. Then it waits for the ground while the hip comes nearer, and the knee bends until the foot
-carries. With a braking of 6 it is bent by 4 degrees more at heel strike at 0.8 m/s. With 12 walks take 5 % more energy.
-Beyond 20 a foot would go too far and come back. One that sinks no faster than others then grazes the ground on its
-way. With 0.15 m/s the knee is bent by 2 degrees more as the foot lands at 0.8 m/s. With 0.25 it is straighter by 2, but
-walks on bent knees take 4 % more energy, and at 1.4 m/s the foot lands with 1.7 body weights in place of 1.4."""
+carries. With a braking of 12 walks take 2 % more energy. With 10 or less, knees that stretch as late unload the stance
+foot at 1.4 m/s: both feet leave the ground for 2 ms as it comes to a stop. Beyond 20 a foot would go too far and come
+back. One that sinks no faster than others then grazes the ground on its way, and slips by 6 mm at 1.4 m/s with 0.15 m/s
+in place of 4. With 0.2 and more, walks on bent knees take 4 % more energy."""
 
 _FLAT = 0.8
 """Share of double support after which the sole is flat on the ground after heel strike [-].

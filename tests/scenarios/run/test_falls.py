@@ -24,11 +24,11 @@ def fallen(out, seed, profile=PROFILES["default"]):
 
 
 def test_who_is_pushed_over_gives_way(tmp_path):
-    """Torques are spared, and joints go to their stops no faster: how fast is a mean over seeds of the sensors."""
+    """Torques are spared, and joints go to their stops no faster or farther, in the mean over seeds of the sensors."""
     profile = PROFILES["default"]
     deaf = replace(profile.parameters.recovery, fall_margin=1e9)
     rigid = replace(profile, parameters=replace(profile.parameters, recovery=deaf))
-    fast = []
+    fast, far = [], []
     for seed in SEEDS:
         given, stiff = fallen(tmp_path / "given", seed), fallen(tmp_path / "stiff", seed, rigid)
         assert given["fell"]
@@ -36,7 +36,8 @@ def test_who_is_pushed_over_gives_way(tmp_path):
         assert given["capture_margin_min"] < 0.0
         assert stiff["fell"]
         assert stiff["fall_warning"] is None
-        assert given["joint_limit_margin_min"] > 0.6 * stiff["joint_limit_margin_min"]
         assert given["torque_at_limit_fraction"] < 0.2 * stiff["torque_at_limit_fraction"]
         fast.append(given["joint_speed_ratio_max"] - stiff["joint_speed_ratio_max"])
+        far.append(given["joint_limit_margin_min"] - 0.6 * stiff["joint_limit_margin_min"])
     assert sum(fast) / len(fast) < -0.1
+    assert sum(far) / len(far) > 0.0

@@ -25,7 +25,7 @@ EXPECTED = {
     "encoders' errors doubled": ("control-sensors", "failed", "tilt_estimation_error_rms is 0.0026"),
     "no reading is lost": ("control-sensors", "moved", "moment of the ground on the right sole about its"),
     "motors at once": ("control-motors", "failed", "foot_slip_max is 0.00"),
-    "joints without friction": ("control-motors", "failed", "foot_slip_max is 0.0028"),
+    "joints without friction": ("control-motors", "failed", "foot_slip_max is 0.002"),
 }
 """Reasons of a control in a kinder world and with a blunt judge: which, how, and its first words."""
 

@@ -126,7 +126,7 @@ def test_a_fault_of_a_program_does_not_come_back_with_sound_parts(tmp_path):
 
 
 def test_a_run_that_cannot_be_repeated_begins_where_it_comes_closest(tmp_path):
-    push = [{"time": 2.4, "impulse": 1.7, "direction": 1.3}, {"time": 0.4, "impulse": 0.05}]
+    push = [{"time": 2.4, "impulse": 1.7, "direction": 1.3}, {"time": 0.1, "impulse": 0.05}]
     values = {"gait.steps": 4, "sensing.source": "truth", "pushes": push}
     parts = of_a_program(height_stiffness=70.0)
     log = surefoot.run(surefoot.load("walk-level", values), out=tmp_path, parts=parts).log

@@ -48,16 +48,16 @@ def test_a_punch_on_a_limp_arm_does_not_lift_it_off_its_stance_foot():
 
 
 def fallen(monkeypatch, stride):
-    """Number of five punches backward on a shoulder, of 440 to 490 N at most, after which it falls within 3.5 s."""
+    """Number of eight punches backward on a shoulder, of 430 to 500 N at most, after which it falls within 3.5 s."""
     monkeypatch.setattr(leg_reach, "STRIDE", stride)
     # So it stands, when the second punch comes, where these forces tell both strides apart.
     monkeypatch.setattr(rows, "FASTEST", (0.4, 0.2, 0.8))
     falls = 0
-    for force in (440.0, 450.0, 460.0, 470.0, 490.0):
-        falls += not ride_of(8, force).run(8.6).completed
+    for force in range(430, 510, 10):
+        falls += not ride_of(8, float(force)).run(8.6).completed
     return falls
 
 
 def test_a_body_that_runs_backward_is_caught_by_steps_as_far_as_its_own_leg_reaches(monkeypatch):
     """With steps no farther than both legs span flat, each lands short of the DCM by as much as the one before."""
-    assert fallen(monkeypatch, leg_reach.STRIDE) <= 1 < 3 <= fallen(monkeypatch, 2.0)
+    assert fallen(monkeypatch, leg_reach.STRIDE) <= 3 < 6 <= fallen(monkeypatch, 2.0)

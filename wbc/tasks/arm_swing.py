@@ -12,8 +12,8 @@ class ArmSwing:
 
     An arm goes back while the foot of its side is ahead of the other: q = q_0 ± a s with the stride s, how far the left
     sole is ahead of the right one along the pelvis. It needs no phase: it starts, stops and turns with the feet. Its
-    acceleration is that of the planned swing. An arm without it follows its leg 80 ms late. Its momentum then adds to the
-    leg's where the leg is braked. At 1.4 m/s a sole would have to hold a moment of 77 N·m in place of 49.
+    acceleration is that of the planned swing. An arm without it follows its leg 80 ms late. Its momentum then adds to
+    the leg's where the leg is braked. At 1.4 m/s a sole would have to hold a moment of 77 N·m in place of 49.
 
     Args:
         joints: indices of the left and right shoulder pitch among the actuated joints.

@@ -18,8 +18,8 @@ if TYPE_CHECKING:
 _BEND = 0.01
 """Share of its length by which a leg that comes to straight, or to a sole out of reach, stays bent [-].
 
-The knee of a straight leg would move infinitely fast. Two per cent cost ordinary walks a millimetre of ZMP; with 0.8
-two pushes of the paper's gait fell that are survived with one."""
+The knee of a straight leg would move infinitely fast. With two per cent the ZMP of ordinary walks is off by a
+millimetre more. With 0.8 the paper's gait falls of two pushes that it survives with one."""
 
 _GUESS = -0.1
 """Height of the middle of the hips from the CoM where its search begins: below it, as in any walk [m]."""

@@ -39,7 +39,7 @@ BRAKING, LEAD, SINKING = 10.5, 0.25, 0.18
 
 A foot that is ahead early is farther from its hip than its leg is long, which straightens the knee against its end
 and pulls the body down. Then it waits for the ground while the hip comes nearer, and the knee bends until the foot
-carries. With a braking of 12 walks take 2 % more energy. With 10 or less, knees that stretch as late unload the stance
+carries. With a braking of 12 walks take 3 % more energy. With 10 or less, knees that stretch as late unload the stance
 foot at 1.4 m/s: both feet leave the ground for 2 ms as it comes to a stop. Beyond 20 a foot would go too far and come
 back. One that sinks no faster than others then grazes the ground on its way, and slips by 6 mm at 1.4 m/s with 0.15 m/s
 in place of 4. With 0.2 and more, walks on bent knees take 4 % more energy."""

@@ -214,7 +214,7 @@ NEIGHBOURS = [(speed, share, friction) for speed in ROWS for share in (0.9, 1.0,
 
 @pytest.mark.physics
 def test_arms_take_up_the_yaw_momentum_that_a_ground_of_little_friction_cannot(tmp_path):
-    """At 1.4 m/s the legs' alone asks a foot for 62 N·m about the vertical, and a friction of 0.5 bears about 50."""
+    """At 1.4 m/s legs alone ask a foot for 62 N·m about the vertical, of which a friction of 0.5 bears about 50."""
     sound = {**{name: {"max": most} for name, most in ROWS[1.4].items()}, "foot_slip_max": {"max": 0.005}}
     momentum = {}
     for swing in (0.6, 0.0):
@@ -246,7 +246,7 @@ FORWARD, LEFT, RIGHT = 0.0, 1.5708, -1.5708
     [("double", FORWARD, 0.8), ("single", FORWARD, 1.0), ("double", LEFT, 0.8), ("double", RIGHT, 0.55)],
 )
 def test_straight_legs_catch_a_pushed_body_with_steps_beyond_their_own(phase, direction, impulse, tmp_path):
-    """These are near the largest that three seeds of the sensors survive."""
+    """Pushes forward and to both sides, in double and in single support."""
     push = {"step": 5, "phase": phase, "fraction": 0.5, "duration": 0.1, "impulse": impulse, "direction": direction}
     gone_on = {"fell": False, "steps_taken": "steps_planned", "standing_time_final": {"min": 1.0}}
     keys = {"gait": {"speed": 0.8, "steps": 12}, "criteria": gone_on, "pushes": [push]}

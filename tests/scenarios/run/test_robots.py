@@ -20,6 +20,7 @@ off aside in five seeds, where the reference robot's bound is 1.44 mm for this s
 @pytest.mark.parametrize(
     ("robot", "scenario"),
     [
+        ("talos", "walk-turn"),
         ("talos", "slope"),
         pytest.param("g1", "walk-level", marks=pytest.mark.long),
         ("g1", "walk-backward"),

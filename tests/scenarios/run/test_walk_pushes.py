@@ -18,7 +18,7 @@ LASTS = 2.0
 
 
 def hard(impulses, direction):
-    """Whether it falls after each of some pushes late in its third step, and at how many ticks its QP drops all limits."""
+    """Whether it falls after pushes late in its third step, each with the ticks at which its QP drops all limits."""
     push = {"step": 3, "phase": "single", "fraction": 0.65, "duration": 0.1}
     keys = {"robot": "g1", "sensing.source": "truth"}
     for simulation in pushed(keys, push, [(impulse, direction) for impulse in impulses]):

@@ -106,6 +106,7 @@ def test_no_edge_is_held_of_feet_that_do_not_roll(tmp_path):
     assert not log["/contact"].field("edge").any() and not log["/reference"].field("roll").any()
 
 
+TRUTH = {"sensing.source": "truth"}
 TURN = [{"time": 0.0, "yaw_rate": 0.4759989}, {"time": 3.5}]
 CURVE = [{"time": 0.0, "v_x": 0.2974993, "yaw_rate": 0.2974993}, {"time": 6.0}]
 SIDEWAYS = [{"time": 0.0, "v_y": 0.22}, {"time": 4.0}]
@@ -120,8 +121,8 @@ STOPS = [{"time": 0.0, "v_x": 0.3}, {"time": 2.5}, {"time": 5.0, "v_x": 0.5}, {"
     ("name", "shorter"),
     [
         ("walk-curve", {"gait.velocity": CURVE}), ("stop-and-go", {"gait.velocity": STOPS}),
-        ("slope", {"gait.steps": 6}), ("stairs-up-down", {"terrain.count": 2, "gait.steps": 7}),
-        ("walk-turn", {"gait.velocity": TURN}), ("walk-sideways", {"gait.velocity": SIDEWAYS}),
+        ("slope", {"gait.steps": 6, **TRUTH}), ("stairs-up-down", {"terrain.count": 2, "gait.steps": 7}),
+        ("walk-turn", {"gait.velocity": TURN, **TRUTH}), ("walk-sideways", {"gait.velocity": SIDEWAYS, **TRUTH}),
         ("commanded", {"commands": TOLD, "duration": 8.5}),
     ],
 )  # fmt: skip

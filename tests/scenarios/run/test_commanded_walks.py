@@ -45,7 +45,7 @@ def walk_on_command(feet, seed, duration, out):
 @pytest.mark.physics
 @pytest.mark.parametrize("feet", FEET)
 def test_random_commands_are_walked(feet, tmp_path):
-    result = walk_on_command(feet, 11, 15.0, tmp_path)
+    result = walk_on_command(feet, 11, 20.0, tmp_path)
     assert result.verdict.passed, result.verdict.reasons
     assert result.verdict["steps_taken"] > 10
 

@@ -13,7 +13,7 @@ from surefoot.studies.campaigns.points import cells
 pytestmark = pytest.mark.physics
 
 
-LASTS = 3.0
+LASTS = 2.0
 """Time from a push on in which arms are thrown about and the steps that catch the body are taken [s]."""
 
 

@@ -192,12 +192,12 @@ def agree(found, told):
 
 
 SEEDS, CASES = (0, 1, 2, 4), 40
-"""Of the cases of the last one, `unheld_share` decides one, as it does of few."""
+"""Seeds and cases of each; in one of the last seed `unheld_share` decides, as it does in few."""
 
 
 @pytest.fixture(scope="module")
 def told():
-    """For each seed, cases with what the page makes of them."""
+    """Give cases for each seed, with what the page makes of them."""
     rngs = map(np.random.default_rng, SEEDS)
     return [[(case, solved(case)) for case in (drawn(rng) for _ in range(CASES))] for rng in rngs]
 

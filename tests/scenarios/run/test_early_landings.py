@@ -36,7 +36,7 @@ def walks(fraction, impulses, direction, planner=None):
 
 
 def standing(planner=None):
-    """Whether it stands after each of the pushes and their neighbours, six in all."""
+    """Tell whether it stands after each of the pushes and their neighbours, six in all."""
     return (
         stands(simulation, LASTS)
         for fraction, middle, direction in PUSHES

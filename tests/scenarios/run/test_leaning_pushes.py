@@ -21,7 +21,7 @@ LASTS = 2.0
 
 
 def standing(keys):
-    """Whether it stands after each of the pushes, eight in all."""
+    """Tell whether it stands after each of the pushes, eight in all."""
     march = read_campaign("march-ladder").spec.set
     return (stands(simulation, LASTS) for simulation in pushed({**march, **keys}, march["pushes"][0], PUSHES))
 

@@ -19,7 +19,7 @@ LASTS = 1.2
 
 
 def standing(direction, phase, fraction, impulses, **changed):
-    """Whether it stands after each of some pushes, with keys of recovery that are changed."""
+    """Tell whether it stands after each of some pushes, with keys of recovery that are changed."""
     march = read_campaign("march-ladder").spec.set
     keys = {**march, **{f"planner.recovery.{name}": value for name, value in changed.items()}}
     push = {**march["pushes"][0], "phase": phase, "fraction": fraction}

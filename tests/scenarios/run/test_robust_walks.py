@@ -51,7 +51,7 @@ def until_settled(ticks):
 
 @pytest.fixture(scope="module")
 def usual():
-    """Of walks, by seed, whether they stand in the end and the ticks at which a step is adapted to catch the body."""
+    """Tell of walks, by seed, whether they stand in the end, and the ticks at which a step catches the body."""
     found = {}
     for seed in (38, 55, 68, 76):
         catching = 0

@@ -16,7 +16,7 @@ SEEDS = range(8)
 
 
 def falls(robot):
-    """Whether marches with a push forward in mid-swing fall or blow up, of eight seeds of the sensors."""
+    """Tell whether marches with a push forward in mid-swing fall or blow up, of eight seeds of the sensors."""
     march = read_campaign("march-ladder").spec.set
     push = {**march["pushes"][0], "impulse": 0.9}
     keys = {**march, "robot": robot, "sensing.source": "ekf", "sensing.preset": "good", "pushes": [push]}

@@ -18,7 +18,7 @@ LASTS = 2.0
 
 
 def hard(impulses, direction):
-    """Whether it falls after pushes late in its third step, each with the ticks at which its QP drops all limits."""
+    """Tell whether it falls after pushes late in its third step, and the ticks at which its QP drops all limits."""
     push = {"step": 3, "phase": "single", "fraction": 0.65, "duration": 0.1}
     keys = {"robot": "g1", "sensing.source": "truth"}
     for simulation in pushed(keys, push, [(impulse, direction) for impulse in impulses]):
@@ -40,7 +40,7 @@ PHASES = (("double", 0.5), ("single", 0.2), ("single", 0.5), ("single", 0.8))
 
 
 def around(adaptation, phases):
-    """Whether it stands, from good sensors, after two opposite pushes of 0.4 N·s/kg in each of some phases."""
+    """Tell whether it stands, from good sensors, after two opposite pushes of 0.4 N·s/kg in each of some phases."""
     for n in phases:
         push = dict(zip(("phase", "fraction"), PHASES[n], strict=True), step=5, duration=0.1)
         keys = {"robot": "g1", "seed": n % 3, "planner.step_adaptation": adaptation}
@@ -62,7 +62,7 @@ NEVER, SLOW = 1e-6, 0.034
 
 
 def in_double_support(**recovery):
-    """Whether it stands after each of three pushes to the right as the right foot has landed."""
+    """Tell whether it stands after each of three pushes to the right as the right foot has landed."""
     push = {"step": 5, "phase": "double", "fraction": 0.05, "duration": 0.1}
     keys = {"robot": "g1", "sensing.source": "truth"}
     keys |= {f"planner.recovery.{name}": value for name, value in recovery.items()}

@@ -49,7 +49,7 @@ def test_a_punch_on_a_limp_arm_does_not_lift_it_off_its_stance_foot():
 
 
 def standing(monkeypatch, stride):
-    """Whether it stands 3.5 s after punches backward on a shoulder, eight of 430 to 500 N at most."""
+    """Tell whether it stands 3.5 s after punches backward on a shoulder, eight of 430 to 500 N at most."""
     monkeypatch.setattr(leg_reach, "STRIDE", stride)
     # So it stands, when the second punch comes, where these forces tell both strides apart.
     monkeypatch.setattr(rows, "FASTEST", (0.4, 0.2, 0.8))

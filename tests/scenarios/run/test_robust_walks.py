@@ -34,10 +34,14 @@ def simulation_of(seed, settings, planner=None):
 
 
 def ticks(seed, settings, planner=None):
-    """The ticks of a run of the campaign `robustness`."""
+    """Ticks of a run of the campaign `robustness`, one for each plan, and the last one."""
     with simulation_of(seed, settings, planner) as simulation:
+        rates = simulation.walk.rates
         while not simulation.done:
-            yield simulation.step()
+            for _ in range(rates.control // rates.planner):
+                if not simulation.done:
+                    simulation.advance()
+            yield simulation.look()
 
 
 def until_settled(ticks):
@@ -51,7 +55,7 @@ def until_settled(ticks):
 
 @pytest.fixture(scope="module")
 def usual():
-    """Tell of walks, by seed, whether they stand in the end, and the ticks at which a step catches the body."""
+    """Tell of walks, by seed, whether they stand in the end, and the plans in which a step catches the body."""
     found = {}
     for seed in (38, 55, 68, 76):
         catching = 0
@@ -90,8 +94,8 @@ def test_it_stands_over_its_feet_and_not_over_where_they_once_landed(monkeypatch
 
     def stays(simulation):
         while not simulation.done:
-            tick = simulation.step()
-        return tick.plan.phase.kind is PhaseKind.STAND
+            simulation.advance()
+        return simulation.look().plan.phase.kind is PhaseKind.STAND
 
     with simulation_of(42, GOOD) as simulation:
         phase = simulation.step().plan.phase

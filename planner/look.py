@@ -8,7 +8,7 @@ import numpy as np
 from surefoot.forces import ExternalLoad
 from surefoot.planner.geometry.plane import signed_distance
 from surefoot.planner.measured import Measured
-from surefoot.planner.model.dcm import natural_frequency
+from surefoot.planner.model.dcm import dcm, natural_frequency
 from surefoot.planner.recovery.falling import counted
 from surefoot.planner.recovery.step_problem import StepBounds, StepProblem, landing_place
 from surefoot.planner.references.com_height import HeightPreview, law_height, preview_height
@@ -103,10 +103,10 @@ def look(state: WalkState, measured: Measured) -> View:
     local = model.world.local(measured.body.com, measured.body.com_velocity, bend, support.frame)
     window, memory = references(state, support, local[:, 0], measured.time, measured.body.lasting)
     state, omega = replace(state, memory=memory), float(window.omega[0])
-    dcm, uncertainty = local[:, 0] + local[:, 1] / window.omega[0], measured.dcm_uncertainty(omega)
+    here, uncertainty = dcm(local[:, 0], local[:, 1], omega), measured.dcm_uncertainty(omega)
     step = next_step(state, measured, support)
-    balance = weighed(state, (local[:, 0], dcm), support, window, step, uncertainty)
-    return View(state, measured, support, local, dcm, window, uncertainty, step, balance)
+    balance = weighed(state, (local[:, 0], here), support, window, step, uncertainty)
+    return View(state, measured, support, local, here, window, uncertainty, step, balance)
 
 
 def references(

@@ -3,6 +3,7 @@
 import math
 from dataclasses import dataclass
 
+from surefoot.planner.model.dcm import dcm
 from surefoot.planner.types import CentroidalState, FeetState
 
 
@@ -35,8 +36,8 @@ class Measured:
 
     def dcm(self, omega: float) -> tuple[float, float, float]:
         """DCM in the world frame, of that rate [1/s], and the rate [m, 1/s]."""
-        (x, y, _), (u, v, _) = self.body.com.tolist(), self.body.com_velocity.tolist()
-        return x + u / omega, y + v / omega, omega
+        x, y = dcm(self.body.com[:2], self.body.com_velocity[:2], omega).tolist()
+        return x, y, omega
 
     def dcm_uncertainty(self, omega: float) -> float:
         """Two standard deviations of the DCM, of that rate [1/s, m]."""

@@ -12,6 +12,7 @@ from surefoot.apps.drive.session import PUSH_TIME, PushInput
 from surefoot.engines.windowless import mujoco
 from surefoot.models.pinocchio import pinocchio_model
 from surefoot.planner.geometry.plane import headings, points_seen_from
+from surefoot.planner.model.dcm import dcm
 from surefoot.planner.types import Foot, Footstep, PhaseKind
 from surefoot.scenarios import palette
 from surefoot.scenarios.run.simulation import Tick
@@ -208,7 +209,7 @@ def _dcm(tick: Tick) -> Array:
     """The DCM, which is nowhere to be seen without the plan's pendulum, shape (2,) [m]."""
     if tick.planned is None:
         return np.full(2, np.nan)
-    return np.asarray(tick.com[:2] + tick.com_velocity[:2] / tick.planned[1].omega)
+    return dcm(tick.com[:2], tick.com_velocity[:2], tick.planned[1].omega)
 
 
 def _contacts(tick: Tick) -> tuple[bool, bool]:

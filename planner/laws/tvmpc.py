@@ -165,7 +165,7 @@ def _terminal(
     """Row of ΔU, deviation without them and half size of the viable interval, shapes (1, m), (1, 2), (1, 2)."""
     n = parameters.horizon
     weights = viability_weights(problem.stiffness[n:], problem.omega[n:], parameters.sample_time)
-    end = response.last[0] + response.last[1] / problem.omega[n]
+    end = dcm(response.last[0], response.last[1], problem.omega[n])
     free = problem.state @ end[:3] + end[3] * last
     half = parameters.terminal_margin * (weights @ problem.reference.half_size[n:])
     return end[None, 4:], (free - weights @ point[n:])[None], half[None]

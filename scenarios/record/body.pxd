@@ -28,8 +28,9 @@ cdef class RobotRows:
     cdef double _largest_ratio(self, Py_ssize_t n) noexcept nogil
 
 cdef class BodyRows(RobotRows):
-    cdef double[:, :] _status, _solver, _fallback, _com, _com_velocity, _omega, _dcm, _q, _v
-    cdef double[:, :] _base_position, _base_velocity
+    cdef object _com, _com_velocity, _omega, _dcm
+    cdef double[:, :] _status, _solver, _fallback, _q, _v, _base_position, _base_velocity
 
-    @cython.locals(axis=Py_ssize_t, k=Py_ssize_t)
+    cpdef derive(self, Py_ssize_t rows)
+    @cython.locals(k=Py_ssize_t)
     cdef void _follow(self, Py_ssize_t n) noexcept nogil

@@ -6,6 +6,7 @@ import numpy as np
 from numpy.typing import NDArray
 
 from surefoot.maths import algebra
+from surefoot.planner.model.dcm import dcm
 from surefoot.planner.plan.sample import PlanSample
 from surefoot.scenarios.log import LogWriter
 from surefoot.scenarios.log.layout import RowLayout, Table
@@ -172,12 +173,15 @@ class BodyRows(RobotRows):
         self._base_position = table["/estimate", "base_position"]
         self._base_velocity = table["/estimate", "base_velocity"]
 
+    def derive(self, rows: int) -> None:
+        """See `Derived`."""
+        RobotRows.derive(self, rows)
+        self._dcm[:rows] = dcm(self._com[:rows, :2], self._com_velocity[:rows, :2], self._omega[:rows])
+
     def _follow(self, n: int) -> None:
-        """DCM and base in the state that the controller was given, and what kind of solution it has found."""
+        """The base in the state that the controller was given, and what kind of solution it has found."""
         self._solver[n, 0] = 1.0 if self._status[n, 0] == _SECOND else 0.0
         self._fallback[n, 0] = 1.0 if self._status[n, 0] >= _FALLBACK else 0.0
-        for axis in range(2):
-            self._dcm[n, axis] = self._com[n, axis] + self._com_velocity[n, axis] / self._omega[n, 0]
         for k in range(3):
             self._base_position[n, k] = self._q[n, k]
         for k in range(6):

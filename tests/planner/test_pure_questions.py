@@ -61,17 +61,20 @@ told = []
 """Rotation of each frame in which `Remembering` was told its places."""
 
 
-class Remembering(DcmFeedback):
+class Remembering:
     """Leaves places of the world to be told, and notes where it is told that they are."""
 
     PLACES = np.array([[0.3, -0.1], [1.0, 2.0], [0.0, 0.5]])
+
+    def __init__(self, parameters, com_height):
+        self.law = DcmFeedback(parameters, com_height)
 
     def plan(self, problem):
         here = self.PLACES @ problem.rotation
         if problem.memory is not None:
             np.testing.assert_allclose(problem.memory, here, atol=1e-12)
             told.append(problem.rotation)
-        return replace(super().plan(problem), memory=here)
+        return replace(self.law.plan(problem), memory=here)
 
 
 def test_what_a_law_leaves_to_be_told_is_turned_with_the_frame(stand):

@@ -15,6 +15,7 @@ from google.protobuf.timestamp_pb2 import Timestamp
 from numpy.typing import ArrayLike, NDArray
 
 from surefoot.models.types import RobotDescription
+from surefoot.planner.model.dcm import dcm
 from surefoot.planner.plan.plan import WalkPlan
 from surefoot.planner.plan.sample import PlanSample
 from surefoot.planner.types import SolverStatus
@@ -80,12 +81,10 @@ class WalkView:
         if plan is not self._plan:
             self._shape.update(plan)
             self._plan = plan
-        x, y, _ = centre = com.tolist()
-        vx, vy, _ = com_velocity.tolist()
+        centre, in_the_plane = com.tolist(), dcm(com[:2], com_velocity[:2], s.omega)
         in_flight = zmp[0] != zmp[0]
         ground = self._shape.ground if in_flight else zmp[2]
-        true_dcm = (x + vx / s.omega, y + vy / s.omega, ground)
-        planned = (*s.zmp.tolist(), ground, *true_dcm, *s.dcm.tolist(), ground)
+        planned = (*s.zmp.tolist(), ground, *in_the_plane.tolist(), ground, *s.dcm.tolist(), ground)
         self._points.append(time_ns, (*centre, *s.com.tolist(), *(NOWHERE if in_flight else zmp), *planned))
         self._outlines.append(time_ns, self._shape.values)
 

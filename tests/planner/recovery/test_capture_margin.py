@@ -1,11 +1,12 @@
 """The capture margin of the DCM, held against linear programs that look for CoPs and footsteps."""
 
 import itertools
-from dataclasses import dataclass, replace
+from dataclasses import replace
 
 import numpy as np
 import pytest
 from pendulum_walk import LEGS, walk_pendulum
+from pushed_step import PushedStep
 from scipy.optimize import linprog
 
 from surefoot.forces import Push
@@ -15,7 +16,6 @@ from surefoot.planner.recovery.capture_margin import CaptureMargin
 from surefoot.planner.recovery.falling import falling
 from surefoot.planner.recovery.outlook import Outlook
 from surefoot.planner.recovery.reach import StepReach
-from surefoot.planner.recovery.step_problem import StepProblem
 from surefoot.planner.references.com_height import HeightPreview
 from surefoot.planner.references.window import Window
 from surefoot.planner.references.zmp_reference import ZmpReference
@@ -42,14 +42,6 @@ def window(half=0.9 * HALF):
     return Window(reference, reference, still, height, stiffness, omega, still[:, 0], still > 0.0)
 
 
-@dataclass(frozen=True, slots=True)
-class Pushed(StepProblem):
-    """A step as scheduled, with the body's state."""
-
-    com: np.ndarray
-    dcm: np.ndarray
-
-
 def landing(foot, ahead, left):
     return Footstep(foot, np.array([ahead, left, 0.0]), 0.0)
 
@@ -61,7 +53,7 @@ def situation(dcm=(0.1, 0.03), **keys):
         "swing": np.array([[0.05, 0.2], [1.0, 0.0]]), "double": 0.0, "single": 0.3, "cycle": 0.62, "shortest": 0.0,
         "face": ANYWHERE, "adapted": False, "last": False, "crosses": True,
     }  # fmt: skip
-    return Pushed(**{**given, **keys})
+    return PushedStep(**{**given, **keys})
 
 
 SWINGING = situation()

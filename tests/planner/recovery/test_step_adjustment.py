@@ -1,11 +1,12 @@
 """The place and the time of a step after a push, held against the pendulum's own motion."""
 
 import math
-from dataclasses import dataclass, replace
+from dataclasses import replace
 
 import numpy as np
 import pytest
 from pendulum_walk import LEGS
+from pushed_step import PushedStep
 
 from surefoot.planner.geometry.plane import quintic
 from surefoot.planner.model.dcm import viability_weights
@@ -13,7 +14,6 @@ from surefoot.planner.model.pendulum import com_after
 from surefoot.planner.parameters import PlannerParameters, RecoveryParameters, StepAdaptation
 from surefoot.planner.recovery.reach import StepReach
 from surefoot.planner.recovery.step_adjustment import StepAdjustment
-from surefoot.planner.recovery.step_problem import StepProblem
 from surefoot.planner.references.com_height import HeightPreview
 from surefoot.planner.references.window import Window
 from surefoot.planner.references.zmp_reference import ZmpReference
@@ -28,15 +28,6 @@ NOMINAL = np.array([0.36, 0.2])
 PLACE = Footstep(Foot.LEFT, np.append(NOMINAL, 0.0), 0.0)
 HALF = np.array([0.1, 0.05])
 LIFTING = P.recovery.lifting
-
-
-@dataclass(frozen=True, slots=True)
-class Pushed(StepProblem):
-    """A step as scheduled, with the body's state and what is known of the window."""
-
-    com: np.ndarray
-    dcm: np.ndarray
-    window: Window
 
 
 def situation(error=(0.0, 0.0), single=0.3, half=HALF, swing=((0.1, 0.2), (1.0, 0.0)), **keys):
@@ -57,7 +48,7 @@ def situation(error=(0.0, 0.0), single=0.3, half=HALF, swing=((0.1, 0.2), (1.0, 
         "single": landed, "cycle": 0.62, "shortest": 0.0, "face": ANYWHERE,
         "adapted": False, "last": False, "crosses": True,
     }  # fmt: skip
-    return Pushed(**{**given, **keys})
+    return PushedStep(**{**given, **keys})
 
 
 def adjusted(now, timing=True, legs=LEGS, uncertainty=0.0):

@@ -268,16 +268,17 @@ def test_support_points_are_those_of_the_feet_seen_from_the_stance_foot(stand):
     np.testing.assert_allclose(heights, values[index, 6] + share * (following - values[index, 6]), atol=1e-12)
 
 
-def test_boxes_are_the_largest_of_their_kinds(stand):
+@pytest.mark.parametrize("half", [HALF, HALF[::-1]], ids=["long", "wide"])
+def test_boxes_are_the_largest_of_their_kinds(stand, half):
     """In one foot that of its proportions whose corners touch its edges, between two the one of the greatest area."""
     schedule = laid(stand)
-    values, yaws = support_table(schedule, 1, (True, True), HALF)[0], schedule.yaws - schedule.step(1).place.yaw
+    values, yaws = support_table(schedule, 1, (True, True), half)[0], schedule.yaws - schedule.step(1).place.yaw
     corners, boxes = np.array([[1.0, 1.0], [1.0, -1.0]]), {}
 
     def of(foot):
         box = next(at[4:6] for at, (one, other) in zip(values, schedule.supports, strict=True) if one == other == foot)
-        farthest = np.abs(box * corners @ frame_rotation(yaws[foot])).max(axis=0) / HALF
-        assert farthest.max() == pytest.approx(1.0) and box[0] / box[1] == pytest.approx(HALF[0] / HALF[1])
+        farthest = np.abs(box * corners @ frame_rotation(yaws[foot])).max(axis=0) / half
+        assert farthest.max() == pytest.approx(1.0) and box[0] / box[1] == pytest.approx(half[0] / half[1])
         return box
 
     boxes = {foot: of(foot) for foot in {one for one, other in schedule.supports.tolist() if one == other}}

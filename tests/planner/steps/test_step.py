@@ -127,6 +127,22 @@ def test_the_room_of_a_step_is_counted_from_where_it_now_is_to_land(stand):
     np.testing.assert_allclose(rooms[1], rooms[0] - [0.0, 0.3], atol=1e-12)
 
 
+@pytest.mark.parametrize("turned", [0.0, 0.6, -0.4])
+@pytest.mark.parametrize("yaw", [-2.0, 0.0, 0.7])
+def test_whatever_is_left_of_its_room_lies_in_it_wherever_a_step_goes(stand, yaw, turned):
+    """Ways are in the heading of the stance foot, the room in that of the step; where both are one it is all left."""
+    step, way, room = laid(STAIRS, stand, flat()).step(2), np.array([0.03, -0.05]), np.array([[-0.1, -0.3], [0.4, 0.2]])
+    nominal, stance = replace(step.nominal, yaw=yaw), replace(step.nominal, yaw=yaw - turned)
+    place = nominal.position + np.append(frame_rotation(yaw) @ way, 0.0)
+    left = room_left(replace(step, nominal=nominal, room=room).landing(place, nominal.normal), stance, 0.02)
+    corners = np.array([[left[i, 0], left[j, 1]] for i in (0, 1) for j in (0, 1)])
+    seen = (place[:2] + corners @ frame_rotation(stance.yaw).T - nominal.position[:2]) @ frame_rotation(yaw)
+    assert (seen >= room[0] - 1e-12).all() and (seen <= room[1] + 1e-12).all()
+    assert (left[0] < 0.0).all() and (left[1] > 0.0).all()
+    if turned == 0.0:
+        np.testing.assert_allclose(left, room - way, atol=1e-12)
+
+
 @pytest.mark.parametrize(("direction", "may"), [(Direction.UP, 5 * [True]), (Direction.DOWN, [*(4 * [False]), True])])
 def test_no_foot_crosses_one_that_lets_the_body_down_which_the_last_step_of_a_flight_does_not(stand, direction, may):
     schedule = laid(STAIRS, stand, flight(direction))

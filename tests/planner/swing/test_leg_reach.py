@@ -108,7 +108,7 @@ def test_sides_around_a_place_are_in_reach_from_a_hip(hip):
     np.testing.assert_array_equal(LEGS.around(place, np.array(hip), near, reach), near)
 
 
-@pytest.mark.parametrize("yaw", [0.0, 0.8])
+@pytest.mark.parametrize("yaw", [0.0, 0.8, 1.4, -1.4])
 @pytest.mark.parametrize("foot", list(Foot))
 @pytest.mark.parametrize(("start", "end", "bends"), [(-0.15, 0.1, True), (0.1, -0.15, True), (0.2, 0.2, False)])
 def test_a_swing_goes_around_its_stance_leg_whichever_way_it_walks(foot, yaw, start, end, bends):

@@ -154,11 +154,17 @@ def test_an_estimator_of_ones_own_gives_the_state_and_the_truth_stays_in_the_log
 
 
 def test_a_controller_of_ones_own_is_asked(scenario):
-    class Slack(WholeBodyController):
+    class Slack:
         """Gives no torque."""
 
+        def __init__(self, *given, **named):
+            self.inner = WholeBodyController(*given, **named)
+
+        def __getattr__(self, name):
+            return getattr(self.inner, name)
+
         def update(self, *arguments):
-            report = super().update(*arguments)
+            report = self.inner.update(*arguments)
             report.torque[:] = 0.0
             return report
 

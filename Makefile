@@ -4,6 +4,9 @@ PYTHON ?= $(shell for p in python3.14 python3.13 python3.12 python3.11 python3; 
 VENV := .venv
 BIN := $(VENV)/bin
 
+# Where the shell forbids to keep what Python compiles, each of hundreds of processes would compile every source anew.
+export PYTHONDONTWRITEBYTECODE :=
+
 .PHONY: walk test tests quick map unit interpreted physics check long gate format coverage mutants signs bench results texts docs dist dist-test scenario changelog clean
 
 walk: $(VENV)/.installed
@@ -22,9 +25,10 @@ gate: $(VENV)/.installed-dev
 	$(BIN)/deptry planner wbc sim models scenarios studies apps surefoot
 	$(BIN)/deptry tests benchmarks docs $(wildcard examples) --exclude runs --ignore DEP002,DEP004
 
-# All at once is quicker than one tier after the other: each begins with reading all tests.
+# All at once is quicker than one tier after the other: each begins with reading all tests. In their order, the last ones
+# are short, and no core waits for a long one.
 tests: $(VENV)/.installed-dev
-	$(BIN)/pytest -m "(unit or physics) and not long" -n auto --dist loadscope
+	$(BIN)/pytest -m "(unit or physics) and not long" -n auto --dist loadscope --no-loadscope-reorder
 
 # The tests that a change touches, as many as fit into a minute; make quick BASE=v0.1.0 compares with another commit.
 quick: $(VENV)/.installed-dev

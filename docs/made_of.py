@@ -59,10 +59,6 @@ def _required(name: str, root: Path) -> Path:
     return path
 
 
-def _parsed(path: Path) -> ast.Module:
-    return _parsed_at(path, _stamp(path))
-
-
 def _stamp(path: Path) -> tuple[int, int]:
     """Other where a file was written meanwhile: making results takes hours."""
     found = path.stat()
@@ -70,22 +66,24 @@ def _stamp(path: Path) -> tuple[int, int]:
 
 
 @cache
-def _parsed_at(path: Path, stamp: tuple[int, int]) -> ast.Module:
-    return ast.parse(path.read_text(encoding="utf-8"))
+def _imports_at(path: Path, stamp: tuple[int, int]) -> tuple[tuple[str, str], ...]:
+    """Modules that a source imports itself, each alone or with a name that is taken from it."""
+    found: list[tuple[str, str]] = []
+    for node in _running(ast.parse(path.read_text(encoding="utf-8"))):
+        if isinstance(node, ast.Import):
+            found += [(alias.name, "") for alias in node.names]
+        elif isinstance(node, ast.ImportFrom) and node.module and not node.level:
+            found += [*((node.module, alias.name) for alias in node.names), (node.module, "")]
+        elif isinstance(node, ast.Constant) and isinstance(node.value, str):
+            name = node.value.partition(":")[0]
+            found += [(name, "")] if _DOTTED.fullmatch(name) else []
+    return tuple(dict.fromkeys(found))
 
 
 def _imported(path: Path, root: Path) -> Iterator[Path]:
     """Files that a source imports itself; a name of a face is its home."""
-    for node in _running(_parsed(path)):
-        names: list[str] = []
-        if isinstance(node, ast.Import):
-            names = [alias.name for alias in node.names]
-        elif isinstance(node, ast.ImportFrom) and node.module and not node.level:
-            names = [home for alias in node.names for home in _homes(node.module, alias.name, root)]
-            names.append(node.module)
-        elif isinstance(node, ast.Constant) and isinstance(node.value, str):
-            names = [node.value.partition(":")[0]] if _DOTTED.fullmatch(node.value.partition(":")[0]) else []
-        for name in names:
+    for module, taken in _imports_at(path, _stamp(path)):
+        for name in _homes(module, taken, root) if taken else (module,):
             yield from _with_parents(name, root)
             beside = path.parent / f"{name}.py"  # a script of the same folder
             if "." not in name and beside.is_file():
@@ -120,7 +118,7 @@ def _face(path: Path) -> dict[str, list[str]]:
 @cache
 def _face_at(path: Path, stamp: tuple[int, int]) -> dict[str, list[str]]:
     found: dict[str, list[str]] = {}
-    for node in ast.walk(_parsed(path)):
+    for node in ast.walk(ast.parse(path.read_text(encoding="utf-8"))):
         if isinstance(node, ast.ImportFrom) and node.module:
             for alias in node.names:
                 found.setdefault(alias.asname or alias.name, []).append(node.module)

@@ -1,5 +1,6 @@
 """A robot, robots and a closed loop that need neither engine: the log is filled with motion of known metrics."""
 
+import math
 from collections.abc import Callable, Mapping
 from dataclasses import dataclass, replace
 from pathlib import Path
@@ -27,6 +28,15 @@ CHANNELS = (
 )
 FOOT = 0.075
 Changes = Mapping[tuple[str, int], Callable[[float, Any], Any]]
+
+
+ZEROS, AHEAD = np.zeros(18), np.array([0.001, 0.0, 0.0])
+MEASURED = np.array([0.1, 0.3, 0.1, -0.5]), np.full(4, 0.5), np.full(4, -10.0)
+TORQUE = np.array([30.0, -40.0, 5.0, 0.0])
+COP = 0.4 * FOOT / 2 * np.array([0.5, -1.0])
+CORNERS = np.array([[-1, -1], [1, -1], [1, 1], *5 * [[-1, 1]]])
+ONE_SOLE, TWO_SOLES = (CORNERS * [FOOT / 2, FOOT / 2 + beside] for beside in (0.0, 0.125))
+"""Corners of the support about its middle, the last one repeated [m]."""
 
 
 class FakeRobots:
@@ -82,9 +92,8 @@ class Motion:
 class _Changed:
     """A channel some of whose fields are changed before they are written."""
 
-    def __init__(self, channel: Any, topic: str, changes: Changes) -> None:
-        self._channel = channel
-        self._changes = {index: change for (of, index), change in changes.items() if of == topic}
+    def __init__(self, channel: Any, changes: Mapping[int, Callable[[float, Any], Any]]) -> None:
+        self._channel, self._changes = channel, changes
 
     def append(self, ns: int, *values: Any) -> None:
         changed = list(values)
@@ -99,9 +108,11 @@ class _Loop:
         specs = {make.__name__: make(SIZES) for make in CHANNELS}
         if motion.margins == "absent":
             specs["plan"] = replace(specs["plan"], fields=specs["plan"].fields[:-4])
-        self.out = {
-            name: _Changed(writer.channel(spec), spec.topic, motion.changes or {}) for name, spec in specs.items()
-        }
+        self.out: dict[str, Any] = {}
+        for name, spec in specs.items():
+            changes = {index: of for (topic, index), of in (motion.changes or {}).items() if topic == spec.topic}
+            channel = writer.channel(spec)
+            self.out[name] = _Changed(channel, changes) if changes else channel
 
     def run(self, on_progress: Callable[[Progress], None]) -> None:
         motion = self.motion
@@ -128,34 +139,31 @@ class _Loop:
     def tick(self, time: float, ns: int) -> None:
         single = 0.5 <= time < 1.5
         stance = (0 if time < 1.0 else 1) if single else -1
-        com = self.com(time)
+        moved = self.motion.speed * (min(max(time, 0.5), 1.5) - 0.5)
+        com = np.array([moved, 0.0, 0.3 if time >= self.motion.fall_at else 1.0])
         paused = 1.0 <= time < 1.0 + self.motion.pause
         velocity = np.array([self.motion.speed if single and not paused else 0.0, 0.0, 0.0])
         yaw = self.motion.yaw[0] + self.motion.yaw[1] * time / self.motion.duration
-        facing = (0.0, 0.0, np.sin(0.5 * yaw), np.cos(0.5 * yaw))
-        offset = np.array(self.motion.zmp_offset)
-        soles = [np.array([com[0], y, 0, *facing]) for y in (0.125, -0.125)]
+        facing = (0.0, 0.0, math.sin(0.5 * yaw), math.cos(0.5 * yaw))
+        soles = [np.array([moved, y, 0, *facing]) for y in (0.125, -0.125)]
         loaded = [paused or stance in (-1, 0), paused or stance in (-1, 1)]
-        center = np.array([com[0], {-1: 0.0, 0: 0.125, 1: -0.125}[stance]])
-        half = np.array([FOOT / 2, FOOT / 2 + (0.125 if stance == -1 else 0.0)])
-        box = center + np.array([[-1, -1], [1, -1], [1, 1], [-1, 1]]) * half
-        support = np.concatenate([box, np.repeat(box[-1:], 4, axis=0)])
-        cop = 0.4 * FOOT / 2 * np.array([0.5, -1.0])
+        center = np.array([moved, {-1: 0.0, 0: 0.125, 1: -0.125}[stance]])
+        support = center + (TWO_SOLES if stance == -1 else ONE_SOLE)
         out = self.out
-        zero3, zero6 = np.zeros(3), np.zeros(6)
-        joints = np.array([0.1, 0.3, 0.1, -0.5])
-        out["measurement"].append(ns, joints, np.full(4, 0.5), np.full(4, -10.0), zero3, zero3, zero6, zero6, zero3)
-        out["truth"].append(ns, np.zeros(11), np.zeros(10), com, velocity, zero3, *soles, 0.01, 0, 0)
-        out["estimate"].append(ns, com + np.array([0.001, 0, 0]), velocity, com[:2], zero3, zero6, zero3, zero3, 100.0)
-        zmp = np.array([*(center + offset), 0.0])
-        out["contact"].append(ns, zmp, 490.0 * np.array(loaded), loaded, loaded, loaded, cop, cop, (0, 0))
+        zero3, zero6 = ZEROS[:3], ZEROS[:6]
+        out["measurement"].append(ns, *MEASURED, zero3, zero3, zero6, zero6, zero3)
+        out["truth"].append(ns, ZEROS[:11], ZEROS[:10], com, velocity, zero3, *soles, 0.01, 0, 0)
+        out["estimate"].append(ns, com + AHEAD, velocity, com[:2], zero3, zero6, zero3, zero3, 100.0)
+        off_x, off_y = self.motion.zmp_offset
+        zmp = np.array([center[0] + off_x, center[1] + off_y, 0.0])
+        out["contact"].append(ns, zmp, [490.0 * one for one in loaded], loaded, loaded, loaded, COP, COP, (0, 0))
         out["reference"].append(
             ns,
             *(com, velocity, zero3, center, com[:2], 3.13, center, zero3, zero3),
-            *(2 if single else 0, stance, 0, 0.0, 0.5, support, 4, np.zeros(2)),
+            *(2 if single else 0, stance, 0, 0.0, 0.5, support, 4, ZEROS[:2]),
         )
-        out["wbc"].append(ns, 0, 0, 5, 0, 1e-9, 1e-9, np.zeros(10), zero6, zero6, np.zeros(18))
-        out["torque"].append(ns, np.array([30.0, -40.0, 5.0, 0.0]), 0.4)
+        out["wbc"].append(ns, 0, 0, 5, 0, 1e-9, 1e-9, ZEROS[:10], zero6, zero6, ZEROS)
+        out["torque"].append(ns, TORQUE, 0.4)
         out["timing"].append(ns, 10, 80, 60, 200 if ns % 20_000_000 == 0 else 0, 30, 10, 500, 2100 if ns == 0 else 300)
 
     def plan(self, time: float, ns: int) -> None:

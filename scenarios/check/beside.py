@@ -8,10 +8,9 @@ from contextlib import suppress
 from dataclasses import dataclass, replace
 from io import BytesIO
 from pathlib import Path
-from typing import Annotated
+from typing import TYPE_CHECKING, Annotated
 
 import numpy as np
-from matplotlib.image import imsave
 from pydantic import StringConstraints
 
 from surefoot.scenarios.check.signs import Parting
@@ -20,11 +19,11 @@ from surefoot.scenarios.log import Log
 from surefoot.scenarios.output import write_whole
 from surefoot.scenarios.show.compare import distinct_texts
 from surefoot.scenarios.show.differences import ChannelDifference, compare_channels
-from surefoot.scenarios.show.replay.content import Array, Replay, ReplayWindow
-from surefoot.scenarios.show.replay.extract import extract
-from surefoot.scenarios.show.replay.video import CAMERA, QUALITY, WIDER, marks_of
 from surefoot.sim.gl import RenderingUnavailableError
-from surefoot.sim.render import Camera, Image, render_frames
+
+if TYPE_CHECKING:
+    from surefoot.scenarios.show.replay.content import Array, Replay
+    from surefoot.sim.render import Camera, Image
 
 APART = 1e-3
 """Values of a channel part that differ by more than this times the greater one, or than this where both are below 1.
@@ -68,7 +67,7 @@ class Beside:
     note: str = ""
 
 
-DrawRuns = Callable[[Log, Log, float], list[Image]]
+DrawRuns = Callable[[Log, Log, float], "list[Image]"]
 """From two logs and a time [s] to a picture of each."""
 
 
@@ -144,13 +143,17 @@ def _farthest(before: Log, now: Log) -> float:
     return float(both[0].time[np.argmax(np.nan_to_num(apart))]) if rows else 0.0
 
 
-def draw(before: Log, now: Log, time: float) -> list[Image]:
+def draw(before: Log, now: Log, time: float) -> "list[Image]":
     """Pictures of two runs at a time [s] by one camera, which sees both robots.
 
     Raises:
         LogError: a log holds no robot, or nothing at that time.
         RenderingUnavailableError: the machine has no off-screen OpenGL.
     """
+    from surefoot.scenarios.show.replay.content import ReplayWindow
+    from surefoot.scenarios.show.replay.extract import extract
+    from surefoot.scenarios.show.replay.video import CAMERA, WIDER
+
     window = ReplayWindow(max(time - 1.0 / _FRAMES, 0.0), time, frame_rate=_FRAMES)
     replays = [extract(log, window) for log in (before, now)]
     places = [replay.followed()[-1] for replay in replays]
@@ -159,13 +162,18 @@ def draw(before: Log, now: Log, time: float) -> list[Image]:
     return [_picture(replay, camera, (places[0] + places[1]) / 2) for replay in replays]
 
 
-def _picture(replay: Replay, camera: Camera, look_at: Array) -> Image:
+def _picture(replay: "Replay", camera: "Camera", look_at: "Array") -> "Image":
+    from surefoot.scenarios.show.replay.video import QUALITY, marks_of
+    from surefoot.sim.render import render_frames
+
     marks = [marks_of(replay, len(replay) - 1)]
     (picture,) = render_frames(replay.mjcf, replay.configuration[-1:], SIZE, camera, QUALITY, marks, [look_at])
     return picture
 
 
-def _png(picture: Image) -> bytes:
+def _png(picture: "Image") -> bytes:
+    from matplotlib.image import imsave
+
     drawn = BytesIO()
     imsave(drawn, picture, format="png")
     return drawn.getvalue()

@@ -8,8 +8,6 @@ from collections.abc import Sequence
 from statistics import NormalDist, fmean, variance
 from typing import NamedTuple
 
-from scipy.special import stdtrit
-
 
 class SuccessRate(NamedTuple):
     """A share with its interval."""
@@ -98,6 +96,8 @@ def _around(value: float, half: float) -> Difference:
 
 def _student(freedom: float, error: float) -> float:
     """Distance from zero that Student's t exceeds, on either side, with the probability of the error."""
+    from scipy.special import stdtrit
+
     return -float(stdtrit(freedom, 0.5 * error))
 
 

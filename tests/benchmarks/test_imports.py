@@ -44,6 +44,12 @@ def test_a_command_imports_no_more_than_it_uses(command):
     assert NEVER[name].isdisjoint(modules)
 
 
+def test_a_check_imports_what_draws_only_where_runs_part():
+    found = imported(("check", "stand", "--set", "duration=0.02", "--jobs", "1"))
+    assert "surefoot.scenarios.check.history" in found
+    assert {"matplotlib", "scipy.special", "scipy.spatial", "surefoot.scenarios.show.replay.extract"}.isdisjoint(found)
+
+
 def test_a_command_imports_no_more_modules_than_before(command):
     name, modules = command
     own = [module for module in modules if module.partition(".")[0] == "surefoot"]

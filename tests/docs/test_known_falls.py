@@ -18,6 +18,13 @@ def known():
     return module
 
 
+@pytest.fixture(scope="module")
+def falls(known):
+    """Keys of the falls of each campaign, by case."""
+    paths = (str(FOLDER / "campaigns" / f"{campaign}.yaml") for campaign in known.CAMPAIGNS)
+    return [read_campaign(path).spec.grid["fall"] for path in paths]
+
+
 @pytest.mark.physics
 @pytest.mark.long
 @pytest.mark.parametrize(
@@ -30,24 +37,18 @@ def test_the_first_line_is_right(known, campaign, least, tmp_path):
 
 
 @pytest.mark.unit
-def test_falls_are_of_six_causes_and_three_robots(known):
+def test_falls_are_of_six_causes_and_three_robots(falls):
     kinds = {"push", "friction", "sensors", "gains", "mass", "late_commands"}
-    for campaign, count in zip(known.CAMPAIGNS, (20, 20, 12), strict=True):
-        spec = read_campaign(str(FOLDER / "campaigns" / f"{campaign}.yaml")).spec
-        cases = spec.grid["fall"]
+    for cases, count in zip(falls, (20, 20, 12), strict=True):
         assert len(cases) == count
         assert {case.partition(",")[0].replace(" ", "_") for case in cases} >= kinds - {"gains"}
         assert {keys.get("robot", "humanoid100") for keys in cases.values()} == {"humanoid100", "g1", "talos"}
 
 
 @pytest.mark.unit
-def test_the_kept_result_is_of_these_falls(known):
+def test_the_kept_result_is_of_these_falls(known, falls):
     lines = known.KEPT.read_text(encoding="utf-8").splitlines()[2:]
-    cases = [
-        case
-        for campaign in known.CAMPAIGNS
-        for case in read_campaign(str(FOLDER / "campaigns" / f"{campaign}.yaml")).spec.grid["fall"]
-    ]
+    cases = [case for grid in falls for case in grid]
     kept = known.rows()
     assert len(lines) == 1 + len(kept)
     assert [row["case"] for row in kept] == cases

@@ -191,26 +191,28 @@ def agree(found, told):
     return same and found.cost == pytest.approx(cost, rel=0.02, abs=1e-3)
 
 
-@pytest.mark.parametrize("seed", range(4))
-def test_the_program_of_the_page_is_that_of_the_code(seed):
-    rng, solutions, beyond = np.random.default_rng(seed), 0, 0
-    for _ in range(40):
-        case = drawn(rng)
+SEEDS, CASES = (0, 1, 2, 4), 40
+"""Seeds and cases of each; in one of the last seed `unheld_share` decides, as it does in few."""
+
+
+@pytest.fixture(scope="module")
+def told():
+    """Give cases for each seed, with what the page makes of them."""
+    rngs = map(np.random.default_rng, SEEDS)
+    return [[(case, solved(case)) for case in (drawn(rng) for _ in range(CASES))] for rng in rngs]
+
+
+@pytest.mark.parametrize("seed", SEEDS)
+def test_the_program_of_the_page_is_that_of_the_code(seed, told):
+    solutions, beyond = 0, 0
+    for case, page in told[SEEDS.index(seed)]:
         found = code(case)
-        assert agree(found, solved(case))
+        assert agree(found, page)
         if found is not None:
             beside = case.step.place.foot.side * found.box[:, 1]
             solutions, beyond = solutions + 1, beyond + bool(beside.min() < 0.1)
     assert solutions > 20
     assert beyond > 1
-
-
-@pytest.fixture(scope="module")
-def told():
-    """Cases with what the page makes of them."""
-    rng = np.random.default_rng(2)
-    cases = [drawn(rng) for _ in range(130)]
-    return [(case, solved(case)) for case in cases]
 
 
 @pytest.mark.parametrize(
@@ -220,4 +222,4 @@ def told():
 )  # fmt: skip
 def test_another_number_of_the_code_is_noticed(name, told):
     other = replace(N, **{name: 3.0 * getattr(N, name)})
-    assert not all(agree(code(case, other), page) for case, page in told)
+    assert not all(agree(code(case, other), page) for one in told for case, page in one)

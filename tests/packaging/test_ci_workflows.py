@@ -12,7 +12,9 @@ from surefoot.scenarios.errors import ScenarioError
 
 PENDULUM = """
 fidelity: pendulum
-gait: {steps: 2, step_length: 0.2, single_support: 0.5, double_support: 0.1}
+gait: {steps: 2, step_length: 0.2, single_support: 0.5, double_support: 0.1, initial_stand: 0.2}
+duration: 2.2
+rates: {control: 100}
 criteria: {fell: false}
 requirements: [REQ-1]
 """

@@ -8,7 +8,7 @@ import pytest
 
 pytestmark = pytest.mark.physics
 
-WALK = "fidelity: pendulum\ngait: {steps: 2, step_length: 0.2}\ncriteria: {fell: false}\n"
+WALK = "fidelity: pendulum\ngait: {steps: 2, step_length: 0.2}\nrates: {control: 100}\ncriteria: {fell: false}\n"
 
 
 @pytest.fixture

@@ -18,13 +18,20 @@ from surefoot.streams import Stream, generator
 if TYPE_CHECKING:
     from surefoot.models.types import RobotDescription
 
+    Describe = Callable[[str, RobotSettings], RobotDescription]
+
 
 class Robots:
     """Robots that scenarios may name, each looked at once: a robot file that changes meanwhile takes another object."""
 
     @cached_property
+    def description(self) -> "Describe":
+        """Gives a robot with its options, see `describe`."""
+        return lru_cache(maxsize=None)(describe)
+
+    @cached_property
     def _facts(self) -> Callable[[str, RobotSettings], RobotFacts]:
-        return lru_cache(maxsize=None)(_registered)
+        return lru_cache(maxsize=None)(partial(_registered, self.description))
 
     def names(self) -> tuple[str, ...]:
         """Names of all robots."""
@@ -40,7 +47,7 @@ class Robots:
 
     @cached_property
     def _shares(self) -> Callable[[str, RobotSettings], float]:
-        return lru_cache(maxsize=None)(_one_foot_share)
+        return lru_cache(maxsize=None)(partial(_one_foot_share, self.description))
 
     @cached_property
     def heights(self) -> dict[tuple[str, str], float]:
@@ -48,14 +55,14 @@ class Robots:
         return {}
 
 
-def _registered(name: str, options: RobotSettings) -> RobotFacts:
-    return facts_of(describe(name, options), options.payload_mass)
+def _registered(description: "Describe", name: str, options: RobotSettings) -> RobotFacts:
+    return facts_of(description(name, options), options.payload_mass)
 
 
-def _one_foot_share(name: str, options: RobotSettings) -> float:
+def _one_foot_share(description: "Describe", name: str, options: RobotSettings) -> float:
     from surefoot.scenarios.setup.robot.body import body_of, on_one_foot
 
-    return on_one_foot(body_of(describe(name, options))).share
+    return on_one_foot(body_of(description(name, options))).share
 
 
 def is_known(name: object, robots: Robots) -> bool:

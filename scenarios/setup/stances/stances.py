@@ -130,11 +130,11 @@ def bent_once(before: Scenario, after: Scenario, robots: Robots) -> float:
     """The height of `bent_alike`, sought once for each pair of walks: the points of a campaign ask for the same two."""
     key = before.model_dump_json(exclude=_NO_STANCE), after.model_dump_json(exclude=_NO_STANCE)
     if key not in robots.heights:
-        robots.heights[key] = bent_alike(before, after)
+        robots.heights[key] = bent_alike(before, after, robots)
     return robots.heights[key]
 
 
-def bent_alike(before: Scenario, after: Scenario) -> float:
+def bent_alike(before: Scenario, after: Scenario, robots: Robots) -> float:
     """CoM height with which the straightest knee is bent as that of another robot on its walk [m].
 
     Equal legs alone do not say it. The hips' place over the feet depends on the CoM beside the hips, on the mass of the
@@ -143,6 +143,7 @@ def bent_alike(before: Scenario, after: Scenario) -> float:
     Args:
         before: the walk of the other one.
         after: the same walk of the one in question, at about that height.
+        robots: that they name.
 
     Returns:
         The height; as it is where no stance is known beforehand, or none near it makes them alike.
@@ -152,7 +153,7 @@ def bent_alike(before: Scenario, after: Scenario) -> float:
     """
     from scipy.optimize import brentq
 
-    of, walk = resolve(before), resolve(after)
+    of, walk = (resolve(one, robots.description(one.robot, one.robot_options)) for one in (before, after))
     body, leg, height = body_of(walk.robot), walk.robot.leg_length, walk.gait.com_height
 
     def bend(tried: float) -> float:

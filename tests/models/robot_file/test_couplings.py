@@ -337,6 +337,8 @@ def test_it_walks_from_sensors_and_its_log_tells_that_the_coupling_holds(tmp_pat
     assert 0.0 < result.verdict["coupling_error"] < 5e-5
     log = surefoot.read(result.log)
     assert log["/coupling"].field("apart").shape == (len(log["/truth"]), 2)
+    if kind == "mjcf":
+        return  # how its log is run again does not hang on what the robot was read from
     again = run_scenario(surefoot.load(str(result.log)), tmp_path / "again")
     then = surefoot.read(again.log)
     for topic in ("/coupling", "/truth", "/torque"):

@@ -27,7 +27,9 @@ pytestmark = pytest.mark.unit
 WALK = """
 name: stroll
 fidelity: pendulum
-gait: {steps: 2, step_length: 0.2, single_support: 0.5, double_support: 0.1}
+gait: {steps: 2, step_length: 0.2, single_support: 0.5, double_support: 0.1, initial_stand: 0.2}
+duration: 2.2
+rates: {control: 100}
 criteria: {fell: false, zmp_error_rms: {max: 0.05}, speed_mean: {min: 0.01}}
 """
 

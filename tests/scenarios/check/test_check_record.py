@@ -16,18 +16,30 @@ pytestmark = pytest.mark.unit
 WALK = """
 name: stroll
 fidelity: pendulum
-gait: {steps: 2, step_length: 0.2, single_support: 0.5, double_support: 0.1}
+gait: {steps: 2, step_length: 0.2, single_support: 0.5, double_support: 0.1, initial_stand: 0.2}
+duration: 2.2
+rates: {control: 100}
 criteria: {fell: false, speed_mean: {min: 0.01}}
 """
 
 
+@pytest.fixture(scope="module")
+def first(tmp_path_factory):
+    """Text of the baseline of a scenario."""
+    with pytest.MonkeyPatch.context() as patch:
+        patch.chdir(tmp_path_factory.mktemp("first"))
+        Path("stroll.yaml").write_text(WALK)
+        assert checked("stroll.yaml", "--update").exit_code == 0
+        return Path("baselines/stroll.baseline.yaml").read_text()
+
+
 @pytest.fixture
-def here(tmp_path, monkeypatch):
+def here(first, tmp_path, monkeypatch):
     """A repository with a scenario and its baseline, in which commands are given."""
     monkeypatch.chdir(tmp_path)
-    Path("walks").mkdir()
+    Path("walks/baselines").mkdir(parents=True)
     Path("walks/stroll.yaml").write_text(WALK)
-    assert checked("walks", "--update").exit_code == 0
+    Path("walks/baselines/stroll.baseline.yaml").write_text(first)
     return Path("walks/baselines/stroll.baseline.yaml")
 
 

@@ -121,7 +121,7 @@ def test_requirements_are_told_in_junit_and_in_a_table_and_what_is_left_out_is_n
     assert "1 passed, 1 deselected" in done.stdout
     assert "REQ-7  not run: other.scenario (not run), good.scenario (without baseline)" in done.stdout
     assert "REQ-8  pass: good.scenario (without baseline)" in done.stdout
-    done = pytest_in(tmp_path, "-k", "good", "-p", "xdist", "-n", "2")
+    done = pytest_in(tmp_path, "-k", "good", "-p", "xdist", "-n", "1")
     assert "REQ-7  not run: other.scenario (not run), good.scenario (without baseline)" in done.stdout
 
 

@@ -32,6 +32,7 @@ name: stroll
 fidelity: pendulum
 gait: {steps: 2, step_length: 0.2, single_support: 0.4, double_support: 0.1}
 duration: 3.4
+rates: {control: 250}
 sensing: {com_noise: 0.003}
 criteria: {fell: false, zmp_error_rms: {max: 0.05}, speed_mean: {min: 0.01}}
 """
@@ -41,6 +42,7 @@ name: pushed
 fidelity: pendulum
 gait: {steps: 2, step_length: 0.2, single_support: 0.5, double_support: 0.1, initial_stand: 0.5}
 duration: 2.4
+rates: {control: 100}
 sensing: {com_noise: 0.003}
 planner: {step_adaptation: none}
 pushes: [{time: 1.2, duration: 0.1, impulse: 0.05, direction: 1.5}]

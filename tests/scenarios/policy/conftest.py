@@ -8,6 +8,9 @@ from pathlib import Path
 import pytest
 import yaml
 from needs import POLICY
+from typer.testing import CliRunner
+
+from surefoot.scenarios.cli.program import app
 
 STANDS = {
     "name": "held",
@@ -49,7 +52,19 @@ def scenario(tmp_path):
 
 
 @pytest.fixture
-def command(tmp_path):
+def command(tmp_path, monkeypatch):
+    """Runs a command in this process; its exit code and what it says."""
+    monkeypatch.chdir(tmp_path)
+
+    def run(*words: str) -> tuple[int, str]:
+        done = CliRunner().invoke(app, words)
+        return done.exit_code, done.output
+
+    return run
+
+
+@pytest.fixture
+def spawned(tmp_path):
     """Runs a command in a process of its own; its exit code and what it says."""
 
     def run(*words: str) -> tuple[int, str]:

@@ -52,7 +52,9 @@ class Bare:
 
 def test_it_is_one_physics_step_before_the_message(tmp_path):
     """Physics at 1000 Hz, control at 500 Hz; by how much the message's own state would be off the page says."""
-    log = read(run_scenario(load("walk-brisk"), tmp_path).log)
+    result = run_scenario(load("walk-brisk"), tmp_path)
+    assert result.verdict.reasons == ()
+    log = read(result.log)
     bare, zmp = Bare(log), log["/contact"].field("zmp")[:, :2]
     off = {
         steps: np.array([bare.zmp_after(tick, steps) - zmp[tick] for tick in range(1, len(zmp))]) for steps in (1, 0)

@@ -103,7 +103,7 @@ TIERS = [pytest.param(1, marks=pytest.mark.physics), *(pytest.param(n, marks=pyt
 @pytest.mark.parametrize("seed", TIERS)
 def test_durations_change_at_any_moment(seed, tmp_path):
     keys = {"gait.single_support": 0.637, "gait.double_support": 0.171, "criteria": SOUND, "seed": seed}
-    told = {"duration": 20.0, "commands": retimed(seed, 20.0)}
+    told = {"duration": 17.0, "commands": retimed(seed, 17.0)}
     result = surefoot.run(surefoot.load("walk-level", {**keys, **told}), out=tmp_path)
     assert result.verdict.passed, result.verdict.reasons
     assert len(surefoot.read(result.log)["/command"]) > 10

@@ -69,21 +69,25 @@ def test_arms_go_overhead_in_a_second_and_it_walks_on(robot):
     assert controller.planning.plan.phase.step == walk.gait.steps
 
 
+TURN = {"gait.velocity": [{"time": 0.0, "yaw_rate": 0.4759989}, {"time": 5.0}]}
+WALKS = [pytest.param("walk-level", {}, marks=pytest.mark.long), ("walk-turn", TURN)]
+
+
 @pytest.mark.physics
-@pytest.mark.parametrize("name", [pytest.param("walk-level", marks=pytest.mark.long), "walk-turn"])
+@pytest.mark.parametrize(("name", "keys"), WALKS)
 @pytest.mark.parametrize("robot", [pytest.param("humanoid100", marks=pytest.mark.long), "g1"])
-def test_five_kilograms_in_a_hand_that_are_told(robot, name):
+def test_five_kilograms_in_a_hand_that_are_told(robot, name, keys):
     overrides, _, hand = ROBOTS[robot]
-    keys = {**overrides, "robot_options.payload_mass": 5.0, "robot_options.payload_body": hand}
+    keys = {**overrides, **keys, "robot_options.payload_mass": 5.0, "robot_options.payload_body": hand}
     assert end_of(name, keys) == "completed"
 
 
 @pytest.mark.physics
-@pytest.mark.parametrize("name", [pytest.param("walk-level", marks=pytest.mark.long), "walk-turn"])
+@pytest.mark.parametrize(("name", "keys"), WALKS)
 @pytest.mark.parametrize("robot", ["humanoid100", pytest.param("g1", marks=pytest.mark.long)])
-def test_five_kilograms_in_a_hand_that_nobody_told_of(robot, name):
+def test_five_kilograms_in_a_hand_that_nobody_told_of(robot, name, keys):
     overrides, _, hand = ROBOTS[robot]
-    assert end_of(name, {**overrides, "errors.payload": {"mass": 5.0, "body": hand}}) == "completed"
+    assert end_of(name, {**overrides, **keys, "errors.payload": {"mass": 5.0, "body": hand}}) == "completed"
 
 
 @pytest.mark.unit

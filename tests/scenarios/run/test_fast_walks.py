@@ -59,7 +59,7 @@ def test_feet_that_land_on_their_heels_save_knees_and_work(tmp_path, from_sensor
         "criteria={fell: false, steps_taken: steps_planned, wbc_fallbacks: {max: 0}, foot_slip_max: {max: 0.005}}"
     )
     flat, rolled = (
-        run_scenario(load_scenario("walk-level", ("gait.steps=12", *gait, *more, criteria)), tmp_path / more[0])
+        run_scenario(load_scenario("walk-level", ("gait.steps=9", *gait, *more, criteria)), tmp_path / more[0])
         for more in (("gait.com_height=1.0",), ("gait.com_height=1.01", "gait.heel_strike=0.2"))
     )
     assert flat.verdict.reasons == rolled.verdict.reasons == ()

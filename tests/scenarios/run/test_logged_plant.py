@@ -5,8 +5,10 @@ import sys
 
 import numpy as np
 import pytest
+from typer.testing import CliRunner
 
 import surefoot
+from surefoot.scenarios.cli.program import app
 from surefoot.scenarios.errors import LogError, ScenarioError, SetupError
 
 pytestmark = pytest.mark.physics
@@ -93,7 +95,7 @@ def test_its_log_runs_again_to_the_bit(logs, tmp_path, same_content):
     assert same_content(again.path, surefoot.run(str(again.path), out=tmp_path).log) == []
 
 
-def test_it_goes_through_check_sweep_and_pytest_wherever_they_are_started(logs, tmp_path):
+def test_it_goes_through_check_sweep_and_pytest_wherever_they_are_started(logs, tmp_path, monkeypatch):
     log, _ = logs["humanoid100"]
     folder = tmp_path / "tests"
     folder.mkdir()
@@ -105,18 +107,19 @@ def test_it_goes_through_check_sweep_and_pytest_wherever_they_are_started(logs, 
     (tmp_path / "two.yaml").write_text(f"scenario: {file}\ngrid: {{terrain.friction: [0.8, 0.7]}}\n")
 
     def given(*words):
-        asked = [sys.executable, "-m", *words]
-        done = subprocess.run(asked, cwd=tmp_path, capture_output=True, text=True, check=False)
-        return done.returncode, done.stdout + done.stderr
+        done = CliRunner().invoke(app, words)
+        return done.exit_code, done.output
 
-    assert given("surefoot", "check", "tests/held.scenario.yaml", "--update")[0] == 0
-    assert given("surefoot", "check", "tests/held.scenario.yaml") == (0, "held.scenario: same\n1 scenario: 1 same\n")
-    code, said = given("surefoot", "sweep", "two.yaml", "--jobs", "1", "--out", "swept")
+    monkeypatch.chdir(tmp_path)
+    assert given("check", "tests/held.scenario.yaml", "--update")[0] == 0
+    assert given("check", "tests/held.scenario.yaml") == (0, "held.scenario: same\n1 scenario: 1 same\n")
+    code, said = given("sweep", "two.yaml", "--jobs", "1", "--out", "swept")
     assert code == 0, said
     assert "2" in said
-    code, said = given("pytest", "-q", "-p", "no:cacheprovider", "tests")
-    assert code == 0, said
-    assert "1 passed" in said
+    asked = [sys.executable, "-m", "pytest", "-q", "-p", "no:cacheprovider", "tests"]
+    done = subprocess.run(asked, capture_output=True, text=True, check=False)
+    assert done.returncode == 0, done.stdout + done.stderr
+    assert "1 passed" in done.stdout
 
 
 @pytest.mark.parametrize(

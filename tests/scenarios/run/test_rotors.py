@@ -3,6 +3,7 @@
 from pathlib import Path
 
 import pytest
+from enough import at_least
 
 import surefoot
 from surefoot.models import registry
@@ -15,25 +16,23 @@ SEEDS = range(8)
 
 
 def falls(robot):
-    """Number of marches with a push forward in mid-swing that fall or blow up, of eight seeds of the sensors."""
+    """Tell whether marches with a push forward in mid-swing fall or blow up, of eight seeds of the sensors."""
     march = read_campaign("march-ladder").spec.set
     push = {**march["pushes"][0], "impulse": 0.9}
     keys = {**march, "robot": robot, "sensing.source": "ekf", "sensing.preset": "good", "pushes": [push]}
-    fallen = 0
     for seed in SEEDS:
         with surefoot.Simulation(surefoot.load("walk-level", {**keys, "seed": seed})) as simulation:
             try:
                 while not (simulation.done or simulation.fell):
-                    simulation.step()
+                    simulation.advance()
             except RunFault:
-                fallen += 1
+                yield True
             else:
-                fallen += simulation.fell
-    return fallen
+                yield simulation.fell
 
 
 def test_feet_that_touch_with_an_edge_do_not_flip_over():
-    assert falls("g1") == 0
+    assert not any(falls("g1"))
 
 
 def test_without_rotors_they_do(tmp_path):
@@ -41,4 +40,4 @@ def test_without_rotors_they_do(tmp_path):
     text = (Path(registry.__file__).parent / "robots" / "g1.yaml").read_text(encoding="utf-8")
     bare = tmp_path / "bare.yaml"
     bare.write_text(text.split("# Rotors")[0].replace("name: g1", "name: bare"), encoding="utf-8")
-    assert falls(str(bare)) >= 2
+    assert at_least(2, falls(str(bare)))

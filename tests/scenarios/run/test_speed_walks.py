@@ -33,9 +33,28 @@ def walked(tmp_path, speed, steps=16, criteria=None, **overrides):
     return run_scenario(load("walk-level", keys), tmp_path).verdict
 
 
+ALIKE = {
+    "human_share": {"min": [0.65, 0.4, 0.6]},
+    "human_correlation": {"min": [0.82, 0.7, -1.0]},
+    "heel_strike_pitch": {"min": 0.19},
+    "toe_off_pitch": {"min": 0.26},
+}
+"""Bounds within which joints move as people's do."""
+
+
+@pytest.fixture(scope="module")
+def straight(tmp_path_factory):
+    """A walk at 0.8 m/s, with what else is asked of it."""
+    return walked(tmp_path_factory.mktemp("straight"), 0.8, criteria=ALIKE)
+
+
 @pytest.mark.physics
-def test_a_walk_of_one_number_has_straight_knees_and_costs_less_than_a_bent_one(tmp_path):
-    straight = walked(tmp_path / "straight", 0.8)
+def test_hips_knees_and_ankles_move_as_peoples(straight):
+    assert straight.reasons == ()
+
+
+@pytest.mark.physics
+def test_a_walk_of_one_number_has_straight_knees_and_costs_less_than_a_bent_one(straight, tmp_path):
     assert straight.reasons == ()
     length, single, double = 0.461, 0.438, 0.138
     bent = {"steps": 16, "step_length": length, "single_support": single, "double_support": double}
@@ -53,10 +72,10 @@ def test_a_walk_of_one_number_has_straight_knees_and_costs_less_than_a_bent_one(
 
 @pytest.mark.physics
 @pytest.mark.parametrize(("speed", "straighter", "saved"), [(0.8, 0.005, 0.05), (1.06, 0.025, -0.01)])
-def test_the_knee_task_straightens_knees_and_saves_work_or_costs_none(tmp_path, speed, straighter, saved):
-    task, none = (
-        walked(tmp_path / str(weight), speed, 12, wbc={"knees": {"weight": weight}}).metrics for weight in (0.008, 0.0)
-    )
+def test_the_knee_task_straightens_knees_and_saves_work_or_costs_none(straight, tmp_path, speed, straighter, saved):
+    steps = 16 if speed == 0.8 else 12
+    task = (straight if speed == 0.8 else walked(tmp_path / "task", speed, steps)).metrics
+    none = walked(tmp_path / "none", speed, steps, wbc={"knees": {"weight": 0.0}}).metrics
     assert task["knee_stance_mean"] < none["knee_stance_mean"] - straighter
     assert task["cost_of_transport"] < (1.0 - saved) * none["cost_of_transport"]
 
@@ -66,18 +85,6 @@ def test_another_robot_walks_by_its_speed(tmp_path):
     verdict = walked(tmp_path, 0.8, 14, robot="g1")
     assert verdict.reasons == ()
     assert verdict.metrics["knee_stance_mean"] < 0.45
-
-
-@pytest.mark.physics
-def test_hips_knees_and_ankles_move_as_peoples(tmp_path):
-    alike = {
-        "human_share": {"min": [0.65, 0.4, 0.6]},
-        "human_correlation": {"min": [0.82, 0.7, -1.0]},
-        "heel_strike_pitch": {"min": 0.19},
-        "toe_off_pitch": {"min": 0.26},
-    }
-    verdict = walked(tmp_path, 0.8, 24, alike)
-    assert verdict.reasons == ()
 
 
 def pelvis_of(log):
@@ -156,33 +163,33 @@ def test_a_process_of_its_own_walks_it_alike(tmp_path):
 def test_it_is_held_to_its_baseline_in_two_processes(tmp_path):
     files = [tmp_path / f"{robot}.yaml" for robot in ("humanoid100", "g1")]
 
-    def checked(**gait):
+    def checked(jobs, **gait):
         for file in files:
             file.write_text(yaml.safe_dump(begin(file.stem, **gait)))
-        return check(cases(list(map(str, files))), tmp_path / "runs", jobs=2)
+        return check(cases(list(map(str, files))), tmp_path / "runs", jobs=jobs)
 
-    first = checked()
+    first = checked(2)
     assert [updated(one).status for one in first] == ["written"] * 2
-    assert [one.status for one in checked()] == ["same"] * 2
-    assert "same" not in [one.status for one in checked(pelvis_yaw=0.0)]
+    assert [one.status for one in checked(1)] == ["same"] * 2
+    assert "same" not in [one.status for one in checked(1, pelvis_yaw=0.0)]
 
 
 @pytest.mark.physics
 def test_a_campaign_over_its_list_is_the_same_in_two_processes(same_content, tmp_path):
     (tmp_path / "walk.yaml").write_text(yaml.safe_dump(begin()))
     base = Base("walk.yaml", written(str(tmp_path / "walk.yaml")))
-    points = [Single(Point(base, {"gait.pelvis_list": list_}, {}, f"list-{list_}")) for list_ in (0.0, 0.02, 0.05)]
+    points = [Single(Point(base, {"gait.pelvis_list": list_}, {}, f"list-{list_}")) for list_ in (0.0, 0.05)]
 
     def swept(jobs):
         folder = tmp_path / str(jobs)
         with Journal(folder) as journal:
             run_cells(iter(points), journal, local_workers(folder, jobs, keep_all=True))
             records = [outcome_of(point, journal).runs for point in points]
-        assert [record.status for ((_, record),) in records] == ["pass"] * 3
+        assert [record.status for ((_, record),) in records] == ["pass"] * 2
         return sorted(folder.rglob("log.mcap"))
 
     alone, beside = swept(1), swept(2)
-    assert [same_content(one, other) for one, other in zip(alone, beside, strict=True)] == [[]] * 3
+    assert [same_content(one, other) for one, other in zip(alone, beside, strict=True)] == [[]] * 2
     assert all(same_content(one, other) for one, other in pairwise(alone))
 
 
@@ -218,7 +225,7 @@ def test_arms_take_up_the_yaw_momentum_that_a_ground_of_little_friction_cannot(t
     sound = {**{name: {"max": most} for name, most in ROWS[1.4].items()}, "foot_slip_max": {"max": 0.005}}
     momentum = {}
     for swing in (0.6, 0.0):
-        keys = {"gait": {"speed": 1.4, "steps": 14}, "terrain.friction": 0.5, "wbc.arm_swing": swing}
+        keys = {"gait": {"speed": 1.4, "steps": 11}, "terrain.friction": 0.5, "wbc.arm_swing": swing}
         result = run_scenario(load("walk", {**keys, "criteria": {**SOUND, **sound}}), tmp_path / str(swing))
         momentum[swing] = np.percentile(np.abs(read(result.log)["/truth"].field("angular_momentum")[:, 2]), 99)
         assert result.verdict.reasons == () or not swing
@@ -249,7 +256,7 @@ def test_straight_legs_catch_a_pushed_body_with_steps_beyond_their_own(phase, di
     """Pushes forward and to both sides, in double and in single support."""
     push = {"step": 5, "phase": phase, "fraction": 0.5, "duration": 0.1, "impulse": impulse, "direction": direction}
     gone_on = {"fell": False, "steps_taken": "steps_planned", "standing_time_final": {"min": 1.0}}
-    keys = {"gait": {"speed": 0.8, "steps": 12}, "criteria": gone_on, "pushes": [push]}
+    keys = {"gait": {"speed": 0.8, "steps": 9}, "criteria": gone_on, "pushes": [push]}
     assert run_scenario(load("walk", keys), tmp_path).verdict.reasons == ()
 
 

@@ -13,7 +13,7 @@ pytestmark = pytest.mark.physics
 def test_a_sole_keeps_its_contact_until_it_is_lifted(tmp_path, name, robot, share, from_sensors):
     if from_sensors and robot == "alexander":
         share = 0.5  # 0.52 in one tick of three seeds, 20 ms before a foot leaves the ground
-    run(load(name, {"robot": robot}), out=tmp_path)
+    run(load(name, {"robot": robot, "gait.steps": 8}), out=tmp_path)
     log = read(next(tmp_path.rglob("log.mcap")))
     contact, planned = log["/contact"].columns(), log["/wbc"].columns()
     least = np.inf

@@ -35,19 +35,19 @@ def test_the_height_that_is_found_does_not_hang_on_the_one_begun_with() -> None:
         begun = walk.model_copy(
             update={"gait": walk.gait.model_copy(update={"com_height": walk.gait.com_height + off})}
         )
-        assert bent_alike(of, begun) == pytest.approx(walk.gait.com_height, abs=1.5e-4)
+        assert bent_alike(of, begun, Robots()) == pytest.approx(walk.gait.com_height, abs=1.5e-4)
 
 
 def test_where_no_height_near_makes_them_alike_it_stays() -> None:
     of = load("walk-level", {"gait.com_height": 0.7})
     walk = load("walk-level", {"robot": "talos"})
-    assert bent_alike(of, walk) == walk.gait.com_height
+    assert bent_alike(of, walk, Robots()) == walk.gait.com_height
 
 
 def test_a_walk_whose_steps_are_not_known_beforehand_keeps_its_height() -> None:
     of, walk = load("commanded"), load("commanded", {"robot": "talos"})
     assert least_bend(resolve(of), body_of(resolve(of).robot)) is None
-    assert bent_alike(of, walk) == walk.gait.com_height
+    assert bent_alike(of, walk, Robots()) == walk.gait.com_height
 
 
 def test_what_befalls_a_walk_and_how_it_recovers_move_no_stance() -> None:

@@ -180,6 +180,11 @@ def durations(gait: GaitParameters, sample_time: float) -> tuple[float, float]:
     return in_samples(gait.single_support, sample_time), in_samples(gait.double_support, sample_time)
 
 
+def climb_of(start: Footstep, place: Footstep) -> float:
+    """Height by which a foot lands above the foothold that it leaves [m]."""
+    return round(float(place.position[2]) - float(start.position[2]), _MEASURED)
+
+
 def lift_off_after(before: Step, stop: Stop | None) -> float:
     """Time at which a foot leaves the ground after a step and a stop, on the clock [samples]."""
     return before.end if stop is None else before.end + stop.stand + stop.shift
@@ -236,7 +241,7 @@ def make_step(
     position, normal = np.append(xy, terrain.heights(xy[None])), terrain.normals(xy[None])[0]
     place = Footstep(foot, position, path.yaw, normal)
     to, off, other = (float(one.position[2]) for one in (place, start, stance))
-    climb, lift = round(to - off, _MEASURED), round(min(to, other) - min(other, off), _MEASURED)
+    climb, lift = climb_of(start, place), round(min(to, other) - min(other, off), _MEASURED)
     half_length, edged = float(ground.half_size[0]), terrain.footholds.edged(climb)
     leaves = gait.heel_off != 0.0 and rolling.strides(start, stance, half_length)
     pitch = 0.0

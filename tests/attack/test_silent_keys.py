@@ -35,6 +35,8 @@ WITHOUT_OCCASION = {
     "wbc.gains.swing": "acts on a foot that swings",
     "wbc.contact.softening": "acts on a foot that has landed",
     "wbc.contact.sinking": "acts on a foot that has landed",
+    "wbc.contact.striking": "acts on a foot that lands on its heel",
+    "wbc.contact.striking_damping": "acts on a foot that lands on its heel",
     "requirements": "named in reports of checks",
     **dict.fromkeys((key for key in keys() if key.endswith("_catching")), "acts while a step catches the body"),
     **dict.fromkeys(
@@ -101,6 +103,7 @@ def experiments(tmp_path_factory):
         ("walk-level", "gait.step_length", 0.21, "felt"),
         ("walk-level", "gait.heel_off", 0.2, "felt"),
         ("walk-level", "gait.heel_strike", 0.2, "felt"),
+        ("stairs", "gait.heel_strike", 0.2, "noted"),
         ("walk-level", "gait.pelvis_yaw", 0.05, "noted"),
         ("walk-level", "gait.pelvis_list", 0.03, "noted"),
         ("speed", "gait.pelvis_yaw", 0.05, "noted"),

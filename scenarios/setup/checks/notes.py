@@ -3,6 +3,8 @@
 from collections.abc import Iterator
 
 from surefoot.parts.plugins import PluginError
+from surefoot.planner.steps.step import climb_of
+from surefoot.planner.swing.rolling import landing_pitch, strides
 from surefoot.scenarios.file.group import Unfelt
 from surefoot.scenarios.file.registries import DEFAULTS
 from surefoot.scenarios.file.schema import PendulumSettings, Scenario, TerrainSettings
@@ -146,6 +148,7 @@ def _without_occasion(walk: Walk, given: Given) -> Iterator[str]:
         profile = keys.planner.profile
         yield f"planner.knee straight has no effect with planner.profile {profile}, which has its own height"
     yield from _without_weight(walk)
+    yield from _flat_feet(walk, given)
     if load is not None and load.mass == 0.0:
         yield "errors.payload has no effect without a mass"
     if walk.walker.has_body and keys.sensing.preset is not None and keys.sensing.source == DEFAULTS["sensing"]:
@@ -158,6 +161,28 @@ def _without_weight(walk: Walk) -> Iterator[str]:
     numbers = {} if knees is None else knees.model_dump(exclude_none=True)
     if walk.walker.has_body and not walk.controller.knees.weight:
         yield from (f"wbc.knees.{name} has no effect without wbc.knees.weight" for name in numbers if name != "weight")
+
+
+def _flat_feet(walk: Walk, given: Given) -> Iterator[str]:
+    """Note rolls of the feet for which no footstep is long enough, or which edges of the ground keep flat."""
+    gait = walk.gait
+    asked = [name for name in ("heel_off", "heel_strike") if getattr(gait, name) and any(given.of("gait", (name,)))]
+    if not asked or walk.takes_commands:
+        return
+    steps, footholds, half_length = walk.ground.footsteps, walk.ground.terrain.footholds, 0.5 * walk.facts.foot_length
+    ways = tuple(zip(steps, steps[1:], steps[2:], strict=False))
+    rolls = {
+        "heel_off": any(strides(start, stance, half_length) for start, stance, _ in ways),
+        "heel_strike": any(
+            landing_pitch(stance, place, half_length, gait.step_length, gait.heel_strike) > 0.0
+            and not footholds.edged(climb_of(start, place))
+            for start, stance, place in ways
+        ),
+    }
+    where = {"heel_off": "far enough", "heel_strike": "far enough, and level,"}
+    for name in asked:
+        if ways and not rolls[name]:
+            yield f"gait.{name} has no effect, since no footstep is {where[name]} ahead of the other foot"
 
 
 def _unshaped(walk: Walk, given: Given) -> Iterator[str]:

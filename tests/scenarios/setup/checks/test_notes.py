@@ -177,7 +177,7 @@ def test_a_key_that_is_given_the_value_that_it_has_anyway_is_not_told():
     ],
 )
 def test_feet_that_stay_flat_are_told_of_keys_that_would_roll_them(settings, flat):
-    """Of short steps, of steps backward, and of feet that land on treads alone; not where some step is level."""
+    """Short steps, steps backward, and steps that all end on treads keep feet flat; one level step does not."""
     rolls = {"gait.heel_off": 0.2, "gait.heel_strike": 0.2, "gait.step_length": 0.3}
     said = notes(resolve(load("walk-level", {**rolls, **settings})))
     told = [note.split()[0].removeprefix("gait.") for note in said if "ahead of the other foot" in note]

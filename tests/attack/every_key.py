@@ -7,9 +7,10 @@ from typing import Any, get_args, get_origin
 import yaml
 from pydantic import BaseModel
 
+from surefoot.planner.laws.names import PROFILES
 from surefoot.planner.parameters import RecoveryParameters
 from surefoot.scenarios.file.group import Group, controller_parameters
-from surefoot.scenarios.file.schema import PlannerSettings, Scenario, own_keys
+from surefoot.scenarios.file.schema import PlannerSettings, Scenario, own_keys, own_models
 from surefoot.scenarios.file.sensing import SENSOR_KEYS
 
 NOT_YET = {
@@ -162,6 +163,13 @@ def given(value: Any, place: str = "") -> Iterator[str]:
         yield place.rstrip(".")
 
 
+def _of_laws() -> Iterator[tuple[str, dict[str, Any]]]:
+    """Profiles whose law has numbers of its own, each with all of these, a little more than what they are."""
+    for kind, model in own_models(PlannerSettings):
+        names = model.model_fields.keys() - PlannerSettings.model_fields.keys()
+        yield kind, {"profile": kind, **{name: 1.001 * getattr(PROFILES[kind].parameters, name) for name in names}}
+
+
 WBC = _of_controller(controller_parameters(None), next(_groups(Scenario.model_fields["wbc"].annotation)))
 RECOVERY = _of_controller(RecoveryParameters(), next(_groups(PlannerSettings.model_fields["recovery"].annotation)))
 
@@ -176,5 +184,6 @@ SCENARIOS: dict[str, dict[str, Any]] = {
         "planner": {"recovery": RECOVERY, "without": ["goes_again"]},
     },
     **{f"wbc-{name}": {"duration": 0.06, "wbc": {name: value}} for name, value in WBC.items()},
+    **{f"law-{name}": {"duration": 0.06, "planner": keys} for name, keys in _of_laws()},
 }
 """Keys by name, as plain values."""

@@ -9,7 +9,9 @@ from every_key import SENSORS
 from pydantic import BaseModel
 
 import surefoot
+from surefoot.planner.laws.names import PROFILES
 from surefoot.scenarios.errors import ScenarioError, SetupError
+from surefoot.scenarios.file.registries import DEFAULTS
 from surefoot.scenarios.file.schema import Scenario, own_models
 from surefoot.scenarios.log import Log, read
 from surefoot.scenarios.setup.load import read_scenario
@@ -51,7 +53,8 @@ BASES = {
     "loaded": POINT.replace("0.11}", "0.11, payload_mass: 2.0}") + STEPS + LOADED,
     **{
         profile: POINT + (EARLY if profile == "preview" else STEPS) + f"planner: {{profile: {profile}}}\n"
-        for profile in ("paper", "repaired", "lti", "preview", "dcm")
+        for profile in PROFILES
+        if profile != DEFAULTS["planner"]
     },
 }
 """Scenarios of a few seconds on the pendulum, so that every part of the schema acts in one of them.
@@ -262,7 +265,7 @@ def values_of(key: str, present: Any) -> tuple[Any, ...]:
 
 
 def usual_values() -> dict[str, Any]:
-    """The values of the keys wbc.* and planner.recovery.* that null stands for."""
+    """The values of the keys wbc.* and planner.* that null stands for; a number of laws has that of the first."""
     from surefoot.planner.parameters import RecoveryParameters
     from surefoot.wbc.parameters import WbcParameters
 
@@ -278,6 +281,9 @@ def usual_values() -> dict[str, Any]:
 
     walk(WbcParameters(), "wbc")
     walk(RecoveryParameters(), "planner", "recovery")
+    for profile in PROFILES.values():
+        for name in profile.numbers:
+            found.setdefault(f"planner.{name}", getattr(profile.parameters, name))
     return found
 
 

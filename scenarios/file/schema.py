@@ -150,6 +150,11 @@ _KINDS: Mapping[type[BaseModel], tuple[str, Registry[Any]]] = {
 """Groups whose kinds have keys of their own: the key that names the kind, and the kinds."""
 
 
+def kind_key(model: type[BaseModel]) -> str:
+    """The key of a group that names its kind; empty where there are no kinds of it."""
+    return _KINDS.get(model, ("", None))[0]
+
+
 def model_of(model: type[BaseModel], values: Any) -> type[BaseModel]:
     """The model of a group with plain values, also wrong ones: where there are kinds of it, that of the kind."""
     name, registry = _KINDS.get(model, ("", None))

@@ -11,7 +11,7 @@ from pydantic import BaseModel
 import surefoot
 from surefoot.planner.laws.names import PROFILES
 from surefoot.scenarios.errors import ScenarioError, SetupError
-from surefoot.scenarios.file.registries import DEFAULTS
+from surefoot.scenarios.file.registries import DEFAULTS, INSTRUMENTS
 from surefoot.scenarios.file.schema import Scenario, own_models
 from surefoot.scenarios.log import Log, read
 from surefoot.scenarios.setup.load import read_scenario
@@ -76,10 +76,13 @@ BODIES = {
     "body-ground": BODY
     + f"gait: {{steps: 2, step_length: 0.2, {PACE}}}\nduration: 2.0\n"
     + "errors: {ground: [{x: 0.35, length: 0.3, height: 0.005}]}\n",
-    "body-instrument": BODY
-    + STAND
-    + "duration: 0.5\n"
-    + "instruments: [{name: altimeter, noise: 0.001, period: 0.02, faults: [{kind: jump, time: 0.3, size: 0.1}]}]\n",
+    **{
+        f"body-{name}": BODY
+        + STAND
+        + "duration: 0.5\n"
+        + f"instruments: [{{name: {name}, period: 0.02, faults: [{{kind: jump, time: 0.3, size: 0.1}}]}}]\n"
+        for name in INSTRUMENTS
+    },
     "body-sensed": BODY + STAND + "duration: 0.5\nsensing: {source: ekf}\n",
     "body-fault": BODY + STAND + "duration: 0.5\nfaults: [{kind: qp_failure, time: 0.2, duration: 0.01}]\n",
 }
@@ -157,7 +160,7 @@ VALUES: dict[str, tuple[Any, ...]] = {
     "errors.payload.mass": (2.0,),
     "errors.payload.body": ("pelvis",),
     "instruments": ([{"name": "altimeter"}], [{"name": "altimeter", "period": 0.001}]),
-    "instruments.0.name": ("altimeter",),
+    "instruments.0.name": tuple(INSTRUMENTS),
     "instruments.0.label": ("other",),
     "instruments.0.period": (0.05, 1e-9),
     "instruments.0.noise": (0.01, 1e-300),

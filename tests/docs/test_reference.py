@@ -10,7 +10,7 @@ import yaml
 from pydantic import BaseModel
 
 from surefoot.scenarios.errors import ScenarioError
-from surefoot.scenarios.file.schema import Scenario, TerrainSettings, own_keys
+from surefoot.scenarios.file.schema import PlannerSettings, Scenario, TerrainSettings, own_keys
 from surefoot.scenarios.log import ChannelSpec, FieldSpec, LogWriter, read
 from surefoot.scenarios.setup.load import read_scenario
 from surefoot.scenarios.setup.robot.robots import Robots
@@ -90,7 +90,8 @@ def test_a_killed_run_loses_no_more_than_the_pages_say(reference, tmp_path):
 def test_every_key_of_the_table_is_one_and_takes_its_default(reference):
     rows = re.findall(r"(?m)^\| `([\w.]+)` \| `(.*?)` \|", reference.keys_table())
     keys: dict = {}
-    of_a_kind = {f"terrain.{name}" for name, _ in own_keys(TerrainSettings)}
+    kinds = {"terrain": TerrainSettings, "planner": PlannerSettings}
+    of_a_kind = {f"{group}.{name}" for group, model in kinds.items() for name, _ in own_keys(model)}
     for name, default in (row for row in rows if row[0] not in of_a_kind):
         *groups, last = name.split(".")
         group = keys

@@ -110,3 +110,18 @@ def test_a_scenario_with_it_goes_to_another_process_and_comes_back_from_a_log(tm
 def test_profiles_without_numbers_of_their_own_have_the_group_of_all():
     assert type(surefoot.load("walk-level", {"planner.profile": "lti"}).planner) is PlannerSettings
     assert type(Scenario().planner) is PlannerSettings
+
+
+@pytest.mark.parametrize(
+    ("keys", "at"),
+    [
+        ({"planner.profile": "clam", "planner.calm": 1.0}, "planner.profile"),
+        ({"terrain.kind": "dunes", "terrain.sand": 1.0}, "terrain.kind"),
+        ({"instruments": [{"name": "altimiter", "noise": 0.1}]}, "instruments"),
+    ],
+)
+def test_keys_of_a_kind_that_nobody_knows_are_left_to_it(keys, at):
+    with pytest.raises(surefoot.ScenarioError) as refused:
+        surefoot.load("walk-level", keys)
+    (problem,) = refused.value.problems
+    assert problem.startswith(f"--set {at}")

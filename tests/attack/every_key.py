@@ -175,9 +175,11 @@ def _of_instruments() -> Iterator[tuple[str, dict[str, Any]]]:
     for kind, model in own_models(InstrumentSettings):
         own = {name: field.default for name, field in model.model_fields.items()}
         given = {name: value for name, value in own.items() if name not in InstrumentSettings.model_fields}
-        yield kind, {"name": kind} | {
-            name: value + 0.001 if isinstance(value, float) else value for name, value in given.items()
-        }
+        yield (
+            kind,
+            {"name": kind}
+            | {name: value + 0.001 if isinstance(value, float) else value for name, value in given.items()},
+        )
 
 
 WBC = _of_controller(controller_parameters(None), next(_groups(Scenario.model_fields["wbc"].annotation)))

@@ -174,6 +174,15 @@ def rules_table() -> str:
     return table(("rule", "what it does"), ([f"`{rule_name(rule)}`", first_line(rule)] for rule in RULES))
 
 
+RULES_CAMPAIGN = FOLDER / "campaigns" / "rules.yaml"
+
+
+def with_rules(text: str) -> str:
+    """The campaign that leaves out one rule at a time, with a line for each of them."""
+    lines = [f"    rule {rule_name(rule)}: {{planner.without: [{rule_name(rule)}]}}\n" for rule in RULES]
+    return re.sub(r"(?m)(^    rule \w+: .*\n)+", "".join(lines), text)
+
+
 def first_line(thing: object) -> str:
     """First line of a docstring."""
     return (inspect.getdoc(thing) or "").splitlines()[0]
@@ -334,6 +343,7 @@ def main() -> None:
         path.write_text(updated(path.read_text(encoding="utf-8"), name, make()), encoding="utf-8")
     for path in pages():
         path.write_text(with_values(path.read_text(encoding="utf-8")), encoding="utf-8")
+    RULES_CAMPAIGN.write_text(with_rules(RULES_CAMPAIGN.read_text(encoding="utf-8")), encoding="utf-8")
 
 
 def _key_rows(prefix: str, group: type[BaseModel]) -> list[list[str]]:

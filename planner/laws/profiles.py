@@ -2,6 +2,7 @@
 
 from collections.abc import Callable
 from dataclasses import dataclass, replace
+from typing import Any
 
 from surefoot.planner.laws.dcm_feedback import DcmFeedback
 from surefoot.planner.laws.footstep_tvmpc import ConstantHeightTvmpc, FootstepTvmpc
@@ -25,8 +26,8 @@ class Profile:
     Attributes:
         name: its name.
         doc: what it is, in one line without a full stop.
-        parameters: its parameters; a user may change some of them.
-        law: makes its law of motion, from the parameters and the CoM height over the ground at rest [m].
+        parameters: its parameters, of a class of their own where the law has numbers that no other has.
+        law: makes its law of motion, from these parameters and the CoM height over the ground at rest [m].
         moves: whether it optimises moves of the jerk, whose number may be chosen.
         height: vertical CoM motion that belongs to it; None for what the user chooses.
         catches: whether its law moves footsteps as it needs to, so that place and time of a step may be adapted to all
@@ -34,13 +35,13 @@ class Profile:
         planner: makes a planner that takes the place of `planner.planner.WalkingPlanner`, from the same arguments; None
             for that one.
         rules: what is made of the steps to come, in their order (see `planner.rules`).
-        numbers: bounds and weights among its parameters that its law reads, and a scenario may therefore change.
+        numbers: bounds and weights among its parameters that its law reads: keys of a scenario's group ``planner``.
     """
 
     name: str
     doc: str
     parameters: PlannerParameters
-    law: Callable[[PlannerParameters, float], MotionPlanner]
+    law: Callable[[Any, float], MotionPlanner]
     moves: bool
     height: HeightProfile | None = None
     catches: bool = False

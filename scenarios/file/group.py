@@ -82,14 +82,19 @@ def _group(
     only: Container[str] = (),
 ) -> type[Group]:
     """A group with a key for each number of a dataclass, or for those named; null is the value that it has."""
+    keys = keys_of(parameters, only)
+    made: type[Group] = create_model(name, __base__=Group, __doc__=doc, __module__=__name__, **keys, **more)
+    globals()[name] = made  # where pickle looks for it
+    return made
+
+
+def keys_of(parameters: Any, only: Container[str] = ()) -> dict[str, Any]:
+    """The keys of a group by name: one for each number of a dataclass, or for those named."""
     values = {entry: getattr(parameters, entry.name) for entry in fields(parameters)}
     chosen = {entry: value for entry, value in values.items() if not isinstance(value, Similarity)}
     if only:
         chosen = {entry: value for entry, value in values.items() if entry.name in only}
-    keys = {entry.name: _key(entry, value, "the profile's own" if only else None) for entry, value in chosen.items()}
-    made: type[Group] = create_model(name, __base__=Group, __doc__=doc, __module__=__name__, **keys, **more)
-    globals()[name] = made  # where pickle looks for it
-    return made
+    return {entry.name: _key(entry, value, "the profile's own" if only else None) for entry, value in chosen.items()}
 
 
 def _key(entry: "DataclassField[Any]", value: Any, null: str | None) -> Any:
@@ -180,12 +185,6 @@ if TYPE_CHECKING:
 
     class LawSettings(Group):
         """Numbers of the law of motion."""
-
-        jerk_limit: float | None
-        jerk_rate_limit: float | None
-        jerk_weight: float | None
-        terminal_weight: float | None
-        step_weight: float | None
 
 else:
     LawSettings = _group("LawSettings", PlannerParameters(), "Numbers of the law of motion.", only=LAW_NUMBERS)

@@ -7,12 +7,14 @@ relates several keys (rates that divide, steps within reach) is checked in ``che
 from collections.abc import Callable, Iterator, Mapping
 from contextlib import suppress
 from copy import copy
+from functools import cache
 from typing import Annotated, Any, Literal
 
-from pydantic import BaseModel, BeforeValidator, Field, SerializeAsAny
+from pydantic import BaseModel, BeforeValidator, Field, SerializeAsAny, create_model
 from pydantic.fields import FieldInfo
 
 from surefoot.parts.plugins import PluginError, Registry
+from surefoot.planner.laws.names import PROFILES
 from surefoot.scenarios.file.control import ControlSettings, PlantSettings, SeatSettings
 from surefoot.scenarios.file.criteria import Bound, standing_walk
 from surefoot.scenarios.file.gait import CommandSettings, Gait
@@ -26,6 +28,7 @@ from surefoot.scenarios.file.group import (
     Unfelt,
     as_tuple,
     key,
+    keys_of,
 )
 from surefoot.scenarios.file.names import OneOf, usable
 from surefoot.scenarios.file.registries import DEFAULTS, INSTRUMENTS, TERRAIN_KINDS
@@ -108,23 +111,84 @@ class InstrumentSettings(Group):
     faults: Many[InstrumentFault] = key((), "faults of its readings, in time")
 
 
+class PlannerSettings(LawSettings):
+    """The walking planner."""
+
+    profile: Annotated[str, OneOf("planner", "profile")] = key(DEFAULTS["planner"], "formulation of the planner")
+    horizon: Annotated[int, Field(ge=2, le=1000), WHOLE] | None = key(
+        None, "samples of the horizon, N_p, null: the profile's own [-]"
+    )
+    control_horizon: Annotated[int, Field(ge=1, le=1000), WHOLE] | None = key(
+        None, "moves of the jerk, one per sample, N_c, null: the profile's own blocks [-]"
+    )
+    sample_time: Annotated[float, Field(ge=1e-5, le=1), SECOND] = key(
+        0.02, "sample time of the horizon, and of replanning"
+    )
+    step_adaptation: Literal["none", "location", "timing", "crossing"] = key(
+        "crossing", "what of the next footsteps a push may change: where, when, beyond the stance foot"
+    )
+    knee: Literal["stretched", "bent", "straight"] = key(
+        "stretched",
+        "CoM height: the paper's rises, or constant and 0.08 m lower, or one wave of gait.apex_single for each step, "
+        "as straight legs carry it",
+    )
+    rise: Literal["single", "double"] | None = key(
+        None, "support phase in which the CoM climbs, null: double on a pendulum, single for legs"
+    )
+    filter: Literal["none", "kalman", "zmp_only"] | None = key(
+        None, "filter of the planner's state, null: kalman when ZMP or CoM are noisy, else none"
+    )
+    recovery: RecoverySettings | None = key(None, "numbers of its recovery from pushes, null: as they are")
+    without: Many[str] = key((), "rules of its recovery that are left out, by their names")
+
+
 _KINDS: Mapping[type[BaseModel], tuple[str, Registry[Any]]] = {
     TerrainSettings: ("kind", TERRAIN_KINDS),
     InstrumentSettings: ("name", INSTRUMENTS),
+    PlannerSettings: ("profile", PROFILES),
 }
 """Groups whose kinds have keys of their own: the key that names the kind, and the kinds."""
+
+
+def kind_key(model: type[BaseModel]) -> str:
+    """The key of a group that names its kind; empty where there are no kinds of it."""
+    return _KINDS.get(model, ("", None))[0]
 
 
 def model_of(model: type[BaseModel], values: Any) -> type[BaseModel]:
     """The model of a group with plain values, also wrong ones: where there are kinds of it, that of the kind."""
     name, registry = _KINDS.get(model, ("", None))
     kind = values.get(name) if registry is not None and isinstance(values, dict) else None
-    if registry is None or not isinstance(kind, str) or (model, kind) == (TerrainSettings, DEFAULTS["terrain"]):
+    if registry is None or not isinstance(kind, str) or kind == model.model_fields[name].default:
         return model
     with suppress(LookupError, PluginError):
-        own = registry[kind].settings
+        part = registry[kind]
+        own = _of_profile(part) if model is PlannerSettings else part.settings
         return own if isinstance(own, type) and issubclass(own, model) else model
     return model
+
+
+def _of_profile(profile: Any) -> type[BaseModel]:
+    """The group `planner` with the numbers that this profile's law alone reads."""
+    own = {name for name in profile.numbers if name not in PlannerSettings.model_fields}
+    return _with_numbers(profile.parameters.__class__, frozenset(own)) if own else PlannerSettings
+
+
+@cache
+def _with_numbers(parameters: Callable[[], Any], names: frozenset[str]) -> type[PlannerSettings]:
+    keys = keys_of(parameters(), names)
+    return create_model("PlannerSettings", __base__=_OfLaw, __module__=__name__, **keys)
+
+
+class _OfLaw(PlannerSettings):
+    """The walking planner, with numbers of one law; another process makes the class anew from the profile's name."""
+
+    def __reduce__(self) -> tuple[Callable[[Any], Any], tuple[dict[str, Any]]]:
+        return _planner_settings, (self.model_dump(exclude_unset=True),)
+
+
+def _planner_settings(values: dict[str, Any]) -> BaseModel:
+    return model_of(PlannerSettings, values).model_validate(values)
 
 
 def own_models(model: type[BaseModel]) -> Iterator[tuple[str, type[BaseModel]]]:
@@ -157,37 +221,6 @@ def _by_its_kind(model: type[BaseModel]) -> Callable[[Any], Any]:
         return values if own is model else own.model_validate(values)
 
     return validated
-
-
-class PlannerSettings(LawSettings):
-    """The walking planner."""
-
-    profile: Annotated[str, OneOf("planner", "profile")] = key(DEFAULTS["planner"], "formulation of the planner")
-    horizon: Annotated[int, Field(ge=2, le=1000), WHOLE] | None = key(
-        None, "samples of the horizon, N_p, null: the profile's own [-]"
-    )
-    control_horizon: Annotated[int, Field(ge=1, le=1000), WHOLE] | None = key(
-        None, "moves of the jerk, one per sample, N_c, null: the profile's own blocks [-]"
-    )
-    sample_time: Annotated[float, Field(ge=1e-5, le=1), SECOND] = key(
-        0.02, "sample time of the horizon, and of replanning"
-    )
-    step_adaptation: Literal["none", "location", "timing", "crossing"] = key(
-        "crossing", "what of the next footsteps a push may change: where, when, beyond the stance foot"
-    )
-    knee: Literal["stretched", "bent", "straight"] = key(
-        "stretched",
-        "CoM height: the paper's rises, or constant and 0.08 m lower, or one wave of gait.apex_single for each step, "
-        "as straight legs carry it",
-    )
-    rise: Literal["single", "double"] | None = key(
-        None, "support phase in which the CoM climbs, null: double on a pendulum, single for legs"
-    )
-    filter: Literal["none", "kalman", "zmp_only"] | None = key(
-        None, "filter of the planner's state, null: kalman when ZMP or CoM are noisy, else none"
-    )
-    recovery: RecoverySettings | None = key(None, "numbers of its recovery from pushes, null: as they are")
-    without: Many[str] = key((), "rules of its recovery that are left out, by their names")
 
 
 class Start(Group):
@@ -321,7 +354,9 @@ class Scenario(Group):
         TerrainSettings.model_construct(), "the ground"
     )
     gait: Gait = key(Gait.model_construct(), "the walk")
-    planner: PlannerSettings = key(PlannerSettings.model_construct(), "the planner")
+    planner: Annotated[SerializeAsAny[PlannerSettings], BeforeValidator(_by_its_kind(PlannerSettings))] = key(
+        PlannerSettings.model_construct(), "the planner"
+    )
     sensing: Sensing = key(Sensing.model_construct(), "the sensors")
     instruments: Annotated[
         Many[Annotated[SerializeAsAny[InstrumentSettings], BeforeValidator(_by_its_kind(InstrumentSettings))]],

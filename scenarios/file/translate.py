@@ -12,7 +12,7 @@ from pydantic_core import ErrorDetails
 from surefoot.scenarios.errors import Key, Problem, dotted, nearest
 from surefoot.scenarios.file.criteria import Bound
 from surefoot.scenarios.file.group import groups_in
-from surefoot.scenarios.file.schema import Scenario, model_of
+from surefoot.scenarios.file.schema import Scenario, kind_key, model_of
 from surefoot.scenarios.file.units import meant, unit_of
 
 _EXPECTED = {
@@ -38,9 +38,17 @@ _BOUNDS = {"greater_than": ("gt", "more than"), "greater_than_equal": ("ge", "at
 
 
 def problems_of(error: ValidationError, data: Any, root: type[BaseModel] = Scenario) -> list[Problem]:
-    """Translate each validation error once, at the deepest path that exists in the data."""
+    """Translate each validation error once, at the deepest path that exists in the data.
+
+    Where the name of a kind is at fault, keys that nobody knows are left out: the kind may have them.
+    """
     found: dict[Key, Problem] = {}
-    for detail in error.errors(include_url=False):
+    details = error.errors(include_url=False)
+    misnamed = {detail["loc"] for detail in details if detail["type"] == "literal_error"}
+    for detail in details:
+        group = detail["loc"][:-1]
+        if detail["type"] == "extra_forbidden" and (*group, kind_key(_group(root, group, data))) in misnamed:
+            continue
         problem = _problem(detail, data, root)
         found.setdefault(problem.key, problem)
     return list(found.values())
@@ -49,7 +57,7 @@ def problems_of(error: ValidationError, data: Any, root: type[BaseModel] = Scena
 def without(data: Any, problems: list[Problem]) -> Any:
     """The data without what is at fault, so that the rest can still be checked; a list goes as a whole.
 
-    It is a copy, but for data without a fault.
+    The name of a kind takes with it the keys that only some kinds have. It is a copy, but for data without a fault.
     """
     rest = copy.deepcopy(data) if problems else data
     for problem in problems:
@@ -60,6 +68,9 @@ def without(data: Any, problems: list[Problem]) -> Any:
             group = group.get(part) if isinstance(group, dict) else None
         if path and isinstance(group, dict):
             group.pop(path[-1], None)
+            model = _group(Scenario, tuple(path[:-1]), rest)
+            for name in group.keys() - model.model_fields.keys() if path[-1] == kind_key(model) else ():
+                del group[name]
     return rest
 
 

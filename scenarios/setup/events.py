@@ -29,6 +29,7 @@ from surefoot.scenarios.setup.groups.gait import (
     uncommanded,
     velocities_of,
 )
+from surefoot.scenarios.setup.terrain import KINDS
 from surefoot.scenarios.setup.walk import Walk
 from surefoot.scenarios.setup.windows import LEAST, FaultWindow
 from surefoot.sim.pushes import physics_window
@@ -196,13 +197,12 @@ def _without_net(pushes: Sequence[tuple[int, float, float, Array]]) -> Iterator[
 
 _SIZES = (
     ("robot_options", ("payload_mass",)),
-    ("terrain", ("riser", "height_noise", "angle")),
     ("gait", ("apex_single", "apex_double", "heel_off", "heel_strike", "pelvis_yaw", "pelvis_list")),
     ("sensing", ("zmp_noise", "com_noise", *SENSOR_SIZES)),
     ("start", ("position_noise", "angle_noise")),
     ("errors", ("com_height", "link_mass_noise", "friction", "ground_noise", "ground_pitch", "ground_roll")),
 )
-"""Keys of a size that is either 0 or meant to act; a place or a direction may be any number."""
+"""Keys of a size, beside those of the ground, that is 0 or meant to act; a place or a direction may be any number."""
 
 
 def slight(walk: Walk) -> Iterator[Problem]:
@@ -211,6 +211,7 @@ def slight(walk: Walk) -> Iterator[Problem]:
     sizes: list[tuple[Key, float]] = [
         ((group, name), getattr(getattr(keys, group), name) or 0.0) for group, names in _SIZES for name in names
     ]
+    sizes += [(("terrain", name), getattr(keys.terrain, name)) for name in KINDS[keys.terrain.kind].uneven]
     sizes += [(("errors", "torso_com"), math.hypot(*(errors.torso_com or (0.0,))))]
     sizes += [(("errors", "payload", "mass"), errors.payload.mass)] if errors.payload is not None else []
     sizes += [(("errors", "ground", index, "height"), box.height) for index, box in enumerate(errors.ground or ())]

@@ -35,7 +35,6 @@ Proposal = dict[str, Any]
 """Values by dotted key."""
 
 _STRIDE = ("step_length", "lateral_step", "turn")
-_GROUND = ("riser", "angle", "height_noise")
 _STEPS = ("gait", "step_length")
 _TRIES = 8
 _LESS = 0.8
@@ -209,7 +208,7 @@ class _Calm:
 
 def _ground(keys: Scenario) -> tuple[str, ...]:
     """Keys that make the ground of a scenario uneven."""
-    return tuple(name for name in _GROUND if name in KINDS[keys.terrain.kind].keys)
+    return KINDS[keys.terrain.kind].uneven
 
 
 def _shorter(keys: Scenario, share: float) -> Proposal:

@@ -7,9 +7,10 @@ from typing import Any, get_args, get_origin
 import yaml
 from pydantic import BaseModel
 
+from surefoot.planner.laws.names import PROFILES
 from surefoot.planner.parameters import RecoveryParameters
 from surefoot.scenarios.file.group import Group, controller_parameters
-from surefoot.scenarios.file.schema import PlannerSettings, Scenario, own_keys
+from surefoot.scenarios.file.schema import InstrumentSettings, PlannerSettings, Scenario, own_keys, own_models
 from surefoot.scenarios.file.sensing import SENSOR_KEYS
 
 NOT_YET = {
@@ -83,7 +84,7 @@ TEXTS = {
                  ground: [{x: 0.6, y: 0.05, length: 0.2, width: 1, height: 0.01, friction: 0.5}]}
         motors: {damping: 0.5, friction_loss: 0.2, delay: 0.002, noise: 0.1, torque_speed: 0.6}
         plant: {name: mujoco}
-        instruments: [{name: altimeter, label: high, period: 0.004, noise: 0.01, bias: 0.01,
+        instruments: [{name: altimeter, label: high, period: 0.004,
                        faults: [{kind: jump, time: 0.02, duration: 0.02, size: 0.1}]}]
         control: {output: position, output_rate: 100, stiffness: 1.2, damping: 0.012, feed_forward: false,
                   give_way: false}
@@ -162,6 +163,25 @@ def given(value: Any, place: str = "") -> Iterator[str]:
         yield place.rstrip(".")
 
 
+def _of_laws() -> Iterator[tuple[str, dict[str, Any]]]:
+    """Profiles whose law has numbers of its own, each with all of these, a little more than what they are."""
+    for kind, model in own_models(PlannerSettings):
+        names = model.model_fields.keys() - PlannerSettings.model_fields.keys()
+        yield kind, {"profile": kind, **{name: 1.001 * getattr(PROFILES[kind].parameters, name) for name in names}}
+
+
+def _of_instruments() -> Iterator[tuple[str, dict[str, Any]]]:
+    """Instruments that have keys of their own, each with all of these; a number is a little more than what it is."""
+    for kind, model in own_models(InstrumentSettings):
+        own = {name: field.default for name, field in model.model_fields.items()}
+        given = {name: value for name, value in own.items() if name not in InstrumentSettings.model_fields}
+        yield (
+            kind,
+            {"name": kind}
+            | {name: value + 0.001 if isinstance(value, float) else value for name, value in given.items()},
+        )
+
+
 WBC = _of_controller(controller_parameters(None), next(_groups(Scenario.model_fields["wbc"].annotation)))
 RECOVERY = _of_controller(RecoveryParameters(), next(_groups(PlannerSettings.model_fields["recovery"].annotation)))
 
@@ -176,5 +196,7 @@ SCENARIOS: dict[str, dict[str, Any]] = {
         "planner": {"recovery": RECOVERY, "without": ["goes_again"]},
     },
     **{f"wbc-{name}": {"duration": 0.06, "wbc": {name: value}} for name, value in WBC.items()},
+    **{f"law-{name}": {"duration": 0.06, "planner": keys} for name, keys in _of_laws()},
+    **{f"instrument-{name}": {"duration": 0.06, "instruments": [keys]} for name, keys in _of_instruments()},
 }
 """Keys by name, as plain values."""

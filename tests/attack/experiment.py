@@ -9,7 +9,9 @@ from every_key import SENSORS
 from pydantic import BaseModel
 
 import surefoot
+from surefoot.planner.laws.names import PROFILES
 from surefoot.scenarios.errors import ScenarioError, SetupError
+from surefoot.scenarios.file.registries import DEFAULTS, INSTRUMENTS
 from surefoot.scenarios.file.schema import Scenario, own_models
 from surefoot.scenarios.log import Log, read
 from surefoot.scenarios.setup.load import read_scenario
@@ -51,7 +53,8 @@ BASES = {
     "loaded": POINT.replace("0.11}", "0.11, payload_mass: 2.0}") + STEPS + LOADED,
     **{
         profile: POINT + (EARLY if profile == "preview" else STEPS) + f"planner: {{profile: {profile}}}\n"
-        for profile in ("paper", "repaired", "lti", "preview", "dcm")
+        for profile in PROFILES
+        if profile != DEFAULTS["planner"]
     },
 }
 """Scenarios of a few seconds on the pendulum, so that every part of the schema acts in one of them.
@@ -73,10 +76,13 @@ BODIES = {
     "body-ground": BODY
     + f"gait: {{steps: 2, step_length: 0.2, {PACE}}}\nduration: 2.0\n"
     + "errors: {ground: [{x: 0.35, length: 0.3, height: 0.005}]}\n",
-    "body-instrument": BODY
-    + STAND
-    + "duration: 0.5\n"
-    + "instruments: [{name: altimeter, noise: 0.001, period: 0.02, faults: [{kind: jump, time: 0.3, size: 0.1}]}]\n",
+    **{
+        f"body-{name}": BODY
+        + STAND
+        + "duration: 0.5\n"
+        + f"instruments: [{{name: {name}, period: 0.02, faults: [{{kind: jump, time: 0.3, size: 0.1}}]}}]\n"
+        for name in INSTRUMENTS
+    },
     "body-sensed": BODY + STAND + "duration: 0.5\nsensing: {source: ekf}\n",
     "body-fault": BODY + STAND + "duration: 0.5\nfaults: [{kind: qp_failure, time: 0.2, duration: 0.01}]\n",
 }
@@ -154,7 +160,7 @@ VALUES: dict[str, tuple[Any, ...]] = {
     "errors.payload.mass": (2.0,),
     "errors.payload.body": ("pelvis",),
     "instruments": ([{"name": "altimeter"}], [{"name": "altimeter", "period": 0.001}]),
-    "instruments.0.name": ("altimeter",),
+    "instruments.0.name": tuple(INSTRUMENTS),
     "instruments.0.label": ("other",),
     "instruments.0.period": (0.05, 1e-9),
     "instruments.0.noise": (0.01, 1e-300),
@@ -262,7 +268,7 @@ def values_of(key: str, present: Any) -> tuple[Any, ...]:
 
 
 def usual_values() -> dict[str, Any]:
-    """The values of the keys wbc.* and planner.recovery.* that null stands for."""
+    """The values of the keys wbc.* and planner.* that null stands for; a number of laws has that of the first."""
     from surefoot.planner.parameters import RecoveryParameters
     from surefoot.wbc.parameters import WbcParameters
 
@@ -278,6 +284,9 @@ def usual_values() -> dict[str, Any]:
 
     walk(WbcParameters(), "wbc")
     walk(RecoveryParameters(), "planner", "recovery")
+    for profile in PROFILES.values():
+        for name in profile.numbers:
+            found.setdefault(f"planner.{name}", getattr(profile.parameters, name))
     return found
 
 

@@ -9,8 +9,9 @@ import pytest
 import yaml
 from pydantic import BaseModel
 
+from surefoot.planner.rules import RULES
 from surefoot.scenarios.errors import ScenarioError
-from surefoot.scenarios.file.schema import Scenario, TerrainSettings, own_keys
+from surefoot.scenarios.file.schema import PlannerSettings, Scenario, TerrainSettings, own_keys
 from surefoot.scenarios.log import ChannelSpec, FieldSpec, LogWriter, read
 from surefoot.scenarios.setup.load import read_scenario
 from surefoot.scenarios.setup.robot.robots import Robots
@@ -34,6 +35,22 @@ def test_tables_are_up_to_date(reference):
         text = (ROOT / "docs" / page).read_text(encoding="utf-8")
         assert text == reference.updated(text, name, table()), f"{name}: run python docs/reference.py"
         assert table() in text, name
+
+
+def test_the_campaign_of_the_rules_leaves_out_each(reference, monkeypatch):
+    """`make texts` writes its lines, also that of a rule that comes."""
+    text = reference.RULES_CAMPAIGN.read_text(encoding="utf-8")
+    grid = yaml.safe_load(text)["grid"]["mechanism"].values()
+    assert [keys["planner.without"] for keys in grid if "planner.without" in keys] == [
+        [rule.__name__] for rule in RULES
+    ]
+    assert reference.with_rules(text) == text, "run make texts"
+
+    def waits(view):
+        return view
+
+    monkeypatch.setattr(reference, "RULES", (*RULES, waits))
+    assert "[retimes]}\n    rule waits: {planner.without: [waits]}\n    times and" in reference.with_rules(text)
 
 
 def test_a_table_that_is_typed_over_is_found(reference):
@@ -90,7 +107,8 @@ def test_a_killed_run_loses_no_more_than_the_pages_say(reference, tmp_path):
 def test_every_key_of_the_table_is_one_and_takes_its_default(reference):
     rows = re.findall(r"(?m)^\| `([\w.]+)` \| `(.*?)` \|", reference.keys_table())
     keys: dict = {}
-    of_a_kind = {f"terrain.{name}" for name, _ in own_keys(TerrainSettings)}
+    kinds = {"terrain": TerrainSettings, "planner": PlannerSettings}
+    of_a_kind = {f"{group}.{name}" for group, model in kinds.items() for name, _ in own_keys(model)}
     for name, default in (row for row in rows if row[0] not in of_a_kind):
         *groups, last = name.split(".")
         group = keys

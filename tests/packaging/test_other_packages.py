@@ -1,5 +1,6 @@
 """Parts of another package are found by its entry point alone, and as good as our own."""
 
+import csv
 import json
 import sys
 
@@ -56,7 +57,7 @@ def test_a_robot_whose_names_tell_nothing_walks_by_its_roles(disguised):
 @pytest.mark.physics
 def test_the_package_of_the_documentation_brings_all_at_once(documented, site):
     """Metric, law, task, estimator, robot and scenario; where the package is gone, their log is no pass."""
-    found = ran(documented, "two-slow-steps", "--set", "planner.profile=spring", *SHORT)
+    found = ran(documented, "two-slow-steps", "--set", "planner={profile: spring, fading: 5}", *SHORT)
     assert 0.0 < found["com_sway"] < 0.1
     assert found["estimation_error_rms"] == pytest.approx(0.002, rel=0.05)
     path = documented.folder.parent / found["log"]
@@ -88,6 +89,28 @@ def test_the_package_of_the_documentation_brings_all_at_once(documented, site):
 def test_planners_of_the_documentation_walk(documented, profile):
     found = ran(documented, "two-slow-steps", "--set", "gait.steps=1", "--set", f"planner.profile={profile}", "--json")
     assert found["steps_taken"] == 1
+
+
+@pytest.mark.physics
+def test_a_number_of_an_own_law_goes_through_run_log_and_processes_of_a_sweep(documented):
+    """It moves the walk; a run of the log has it, and so has each run of a sweep in two processes."""
+    brief = ("two-slow-steps", "--set", "fidelity=pendulum", "--set", "duration=1", "--set", "criteria={fell: false}")
+    own = ("--set", "planner.profile=spring", "--json")
+    usual, slow = (ran(documented, *brief, *more, *own) for more in ((), ("--set", "planner.fading=1")))
+    assert slow["zmp_error_rms"] != usual["zmp_error_rms"]
+    again = ran(documented, str(documented.folder.parent / slow["log"]), "--json")
+    assert again["zmp_error_rms"] == slow["zmp_error_rms"]
+    spec = documented.folder.parent / "fading.yaml"
+    spec.write_text(
+        "scenario: two-slow-steps\n"
+        "set: {fidelity: pendulum, duration: 1, criteria: {fell: false}, planner.profile: spring}\n"
+        "grid: {planner.fading: [1, 4]}\n"
+    )
+    done = documented.run("sweep", str(spec), "--jobs", "2", "--out", "swept")
+    assert done.returncode == 0, (done.stdout, done.stderr)
+    with (documented.folder.parent / "swept" / "table.csv").open() as file:
+        swept = [float(row["zmp_error_rms.0 [m]"]) for row in csv.DictReader(file)]
+    assert swept == pytest.approx([one["zmp_error_rms"][0] for one in (slow, usual)])
 
 
 @pytest.mark.physics

@@ -5,6 +5,7 @@ import json
 import numpy as np
 import pytest
 
+from surefoot.scenarios.file.registries import INSTRUMENTS
 from surefoot.scenarios.log import read
 
 SPEED = ("--set", "instruments=[{name: speedometer, period: 10 ms, noise: 1 cm/s, label: v}]")
@@ -46,7 +47,7 @@ def test_commands_and_the_processes_that_they_spawn_know_its_keys(documented, tm
         assert answer.returncode in (0, 1), (words, answer.stderr, answer.stdout)
     assert "speedometer" in documented.run("list").stdout
     described = json.loads(documented.run("schema").stdout)["$defs"]["InstrumentSettings"]["properties"]
-    assert described["name"]["enum"] == ["altimeter", "speedometer"]
+    assert described["name"]["enum"] == [*INSTRUMENTS, "speedometer"]
 
 
 @pytest.mark.unit

@@ -139,7 +139,8 @@ class Formulation:
         chosen: dict[str, Any] = {
             "horizon": keys.horizon,
             "moves": None if keys.control_horizon is None else tuple(range(keys.control_horizon)),
-            **{name: getattr(keys, name) for name in LAW_NUMBERS},
+            # A profile that is given may have numbers that the group of the named one has not got.
+            **{name: getattr(keys, name, None) for name in self.profile.numbers},
         }
         usual = self._widened(self.profile.parameters)
         return replace(

@@ -27,6 +27,7 @@ class SlopeKind(TerrainKind):
 
     name = "slope"
     keys = ("angle", "start", "height_noise")
+    uneven = ("angle", "height_noise")
 
     def build(self, ground: Ground) -> Terrain:
         """See `TerrainKind`."""
@@ -103,6 +104,7 @@ class BlocksKind(TerrainKind):
 
     name = "blocks"
     keys = ("riser", "angle", "tread", "height_noise")
+    uneven = ("riser", "angle", "height_noise")
 
     def build(self, ground: Ground) -> Terrain:
         """See `TerrainKind`."""

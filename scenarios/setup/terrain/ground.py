@@ -239,11 +239,14 @@ class TerrainKind:
             ``height_noise`` among them, each box of the true ground is higher or lower than `build` has it, but for
             those under the start.
         settings: model of the group ``terrain``, with the keys that only this kind has, which need no mention above.
+        uneven: keys of sizes that make it uneven, common or its own; with all of them at 0 it is level. One of a size
+            that nothing follows from is refused, and a refused walk is tried on calmer ground, where they are less.
     """
 
     name: str
     keys: tuple[str, ...] = ()
     settings: type[TerrainSettings] = TerrainSettings
+    uneven: tuple[str, ...] = ()
 
     def completed(self, keys: TerrainSettings, gait: Gait) -> Gait:
         """The keys of a gait with those that it leaves open and that follow from this ground."""
@@ -270,25 +273,37 @@ class TerrainKind:
         return iter(())
 
 
-def climb_problems(ground: Ground, facts: RobotFacts, risers: int = 1) -> Iterator[Problem]:
-    """List a terrain.riser of which a step goes up so many at once, which the legs cannot.
+def climb_problems(ground: Ground, facts: RobotFacts, risers: int = 1, name: str = "riser") -> Iterator[Problem]:
+    """List a riser of which a step goes up so many at once, which the legs cannot.
 
     The hips are at their height above the lower foot while the other leg folds on the tread above.
+
+    Args:
+        ground: of the walk.
+        facts: of the robot.
+        risers: that a step goes up.
+        name: key of the height of a riser.
     """
-    hips, riser = ground.standing_height - facts.com_above_hip, ground.keys.riser
+    hips, riser = ground.standing_height - facts.com_above_hip, getattr(ground.keys, name)
     highest = (hips - FOLDED * facts.leg_length) / risers
     if riser > highest:
-        what = f"terrain.riser {riser} m is out of reach of legs {facts.leg_length:.3f} m long"
+        what = f"terrain.{name} {riser} m is out of reach of legs {facts.leg_length:.3f} m long"
         most = max(highest, 0.0)
-        yield Problem(("terrain", "riser"), what, f"use at most {at_most(most)} m{meant(riser, 'm', most)}")
+        yield Problem(("terrain", name), what, f"use at most {at_most(most)} m{meant(riser, 'm', most)}")
 
 
-def unreached(ground: Ground, what: str) -> Iterator[Problem]:
-    """Note a walk that takes steps and leaves off before the ground is anything but level."""
+def unreached(ground: Ground, what: str, name: str = "start") -> Iterator[Problem]:
+    """Note a walk that takes steps and leaves off before the ground is anything but level.
+
+    Args:
+        ground: of the walk.
+        what: what no footstep comes to.
+        name: key of where it begins.
+    """
     count = len(ground.footsteps) - 2
     if count and np.ptp(ground.places[:, 2]) == 0.0 and all(step.normal[2] == 1.0 for step in ground.footsteps):
         said = f"none of {count} footsteps comes to the {what}, so that the walk is one on level ground"
-        yield Problem(("terrain", "start"), said, "let it begin nearer, take more steps, or use kind flat")
+        yield Problem(("terrain", name), said, "let it begin nearer, take more steps, or use kind flat")
 
 
 def uneven_problems(ground: Ground) -> Iterator[Problem]:

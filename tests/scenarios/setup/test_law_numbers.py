@@ -29,11 +29,11 @@ def test_each_is_a_key_and_changes_that_number_alone(name):
 
 @pytest.mark.parametrize("name", LAW_NUMBERS)
 def test_null_is_the_profiles_own(name):
-    for profile in ("default", "paper", "repaired"):
+    for profile in PROFILES:
         assert getattr(parameters(profile=profile), name) == getattr(PROFILES[profile].parameters, name)
 
 
-@pytest.mark.parametrize("profile", ["default", "lti", "paper", "repaired", "preview", "dcm"])
+@pytest.mark.parametrize("profile", PROFILES)
 @pytest.mark.parametrize("name", LAW_NUMBERS)
 def test_a_law_takes_what_it_reads_and_refuses_the_rest(profile, name):
     given = {"planner.profile": profile, f"planner.{name}": 20.0}
@@ -44,7 +44,7 @@ def test_a_law_takes_what_it_reads_and_refuses_the_rest(profile, name):
         resolve(surefoot.load("walk-level", given))
 
 
-@pytest.mark.parametrize("profile", ["default", "lti", "paper", "repaired", "preview", "dcm"])
+@pytest.mark.parametrize("profile", PROFILES)
 @pytest.mark.parametrize("name", LAW_NUMBERS)
 def test_a_law_reads_the_numbers_that_its_profile_names_and_no_others(profile, name):
     """A number far from its own moves a pushed pendulum if the profile names it, and else moves nothing."""

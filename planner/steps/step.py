@@ -217,6 +217,20 @@ def start_step(number: int, place: Footstep, path: Path, gait: GaitParameters, g
     )
 
 
+def _lift_of(start: Footstep, stance: Footstep, place: Footstep) -> float:
+    """Height by which the lower foot rises with a step [m]."""
+    off, other, to = (float(one.position[2]) for one in (start, stance, place))
+    return round(min(to, other) - min(other, off), _MEASURED)
+
+
+def _swing_as(
+    before: tuple[Step, Step], single: float, climb: float, course: SwingCourse, parameters: PlannerParameters
+) -> SwingTrajectory:
+    """The swing of an equal step before, or a new one."""
+    alike = [one.swing for one in before if (one.single_support, one.climb, one.course) == (single, climb, course)]
+    return alike[0] if alike else unit_swing(single, climb, course, parameters)
+
+
 def make_step(
     stride: Twist, before: tuple[Step, Step], gait: GaitParameters, ground: Ground, stop: Stop | None, inserted: bool
 ) -> Step:
@@ -240,20 +254,19 @@ def make_step(
     path, xy = last.path.advanced(stride, foot)
     position, normal = np.append(xy, terrain.heights(xy[None])), terrain.normals(xy[None])[0]
     place = Footstep(foot, position, path.yaw, normal)
-    to, off, other = (float(one.position[2]) for one in (place, start, stance))
-    climb, lift = climb_of(start, place), round(min(to, other) - min(other, off), _MEASURED)
+    climb, lift = climb_of(start, place), _lift_of(start, stance, place)
     half_length, edged = float(ground.half_size[0]), terrain.footholds.edged(climb)
-    leaves = gait.heel_off != 0.0 and rolling.strides(start, stance, half_length)
-    pitch = 0.0
-    if gait.heel_strike != 0.0 and not edged:
-        pitch = rolling.landing_pitch(stance, place, half_length, gait.step_length, gait.heel_strike)
+    rolls = gait.heel_strike != 0.0 and not edged
+    pitch = rolling.landing_pitch(stance, place, half_length, gait.step_length, gait.heel_strike) if rolls else 0.0
     strikes = pitch > 0.0
     course = swing_course(number, start, place, single, gait.swing_height, ground)
     course = replace(course, braking=rolling.BRAKING, lead=rolling.LEAD, sinking=rolling.SINKING) if strikes else course
-    alike = [one.swing for one in before if (one.single_support, one.climb, one.course) == (single, climb, course)]
-    swing = alike[0] if alike else unit_swing(single, climb, course, parameters)
-    way = math.dist(xy, start.position[:2])
+    swing = _swing_as(before, single, climb, course, parameters)
     lift_off = lift_off_after(last, stop)
+    toe_off = None
+    if gait.heel_off != 0.0 and rolling.strides(start, stance, half_length):
+        early = leaves_early(last, stop, parameters)
+        toe_off = rolling.toe_off(foot, ramp_before(last, stop), lift_off, single, gait.heel_off, early)
     step = Step(
         number=number,
         ordinal=last.ordinal + (not inserted),
@@ -267,20 +280,14 @@ def make_step(
         room=terrain.free_area(position, path.yaw, ground.half_size, parameters.size.length),
         course=course,
         swing=swing,
-        hardest=_hardest(swing, way) if edged else 0.0,
+        hardest=_hardest(swing, math.dist(xy, start.position[:2])) if edged else 0.0,
         support=last.support + 1 + (stop is not None),
         stop=stop,
         lift_off=lift_off,
         single_support=single,
         double_support=double,
-        toe_off=(
-            rolling.toe_off(
-                foot, ramp_before(last, stop), lift_off, single, gait.heel_off, leaves_early(last, stop, parameters)
-            )
-            if leaves
-            else None
-        ),
-        heel_strike=(rolling.heel_strike(foot, lift_off + single, single, double, pitch) if strikes else None),
+        toe_off=toe_off,
+        heel_strike=rolling.heel_strike(foot, lift_off + single, single, double, pitch) if strikes else None,
     )
     check_reach(number, seen_from(stance, place), parameters)
     return step

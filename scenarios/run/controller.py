@@ -175,13 +175,8 @@ class Controller:
         """
         if readings.time < self._begin + self._now:
             return self._command
-        if not self._stands:
-            self._landing = self._landing or Landing(self.body, self.posture, self.walk.size)
-            held = self._landing.hold(readings)
-            if held is not None:
-                return held
-            self._stand(self.senses(readings).state.q)
-            self.senses, self._stands = senses_of(self.walk, self._parts), True
+        if not self._stands and (held := self._held(readings)) is not None:
+            return held
         if self._now < 0.0:
             self._begin = readings.time
         now = readings.time - self._begin
@@ -217,6 +212,15 @@ class Controller:
         self.spent = tuple.__new__(Spent, (state_time, plan_time, report.build_time, report.solve_time))
         self._decide(report)
         return self._command
+
+    def _held(self, readings: "Readings | Measurement") -> JointCommand | None:
+        """The command that holds the posture until the feet stand; None from the tick on in which they do."""
+        self._landing = self._landing or Landing(self.body, self.posture, self.walk.size)
+        held = self._landing.hold(readings)
+        if held is None:
+            self._stand(self.senses(readings).state.q)
+            self.senses, self._stands = senses_of(self.walk, self._parts), True
+        return held
 
     def _decide(self, report: WbcReport) -> None:
         """Make the command of a report.

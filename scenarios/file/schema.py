@@ -152,7 +152,18 @@ _KINDS: Mapping[type[BaseModel], tuple[str, Registry[Any]]] = {
 
 def kind_key(model: type[BaseModel]) -> str:
     """The key of a group that names its kind; empty where there are no kinds of it."""
-    return _KINDS.get(model, ("", None))[0]
+    return _KINDS[group][0] if (group := _group_of(model)) is not None else ""
+
+
+def kinds_with(model: type[BaseModel], name: str) -> tuple[str, ...]:
+    """The kinds of a group that have a key of this name beside those of all, whatever kind the model is of."""
+    group = _group_of(model)
+    return () if group is None else tuple(kind for kind, own in own_models(group) if name in own.model_fields)
+
+
+def _group_of(model: type[BaseModel]) -> type[BaseModel] | None:
+    """The group with kinds that a model is of."""
+    return next((group for group in _KINDS if issubclass(model, group)), None)
 
 
 def model_of(model: type[BaseModel], values: Any) -> type[BaseModel]:

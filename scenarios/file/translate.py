@@ -12,7 +12,7 @@ from pydantic_core import ErrorDetails
 from surefoot.scenarios.errors import Key, Problem, dotted, nearest
 from surefoot.scenarios.file.criteria import Bound
 from surefoot.scenarios.file.group import groups_in
-from surefoot.scenarios.file.schema import Scenario, kind_key, model_of
+from surefoot.scenarios.file.schema import Scenario, kind_key, kinds_with, model_of
 from surefoot.scenarios.file.units import meant, unit_of
 
 _EXPECTED = {
@@ -79,8 +79,8 @@ def _problem(detail: ErrorDetails, data: Any, root: type[BaseModel]) -> Problem:
     value, kind, context = detail["input"], detail["type"], detail.get("ctx", {})
     name = dotted(key) or "the file"
     if kind == "extra_forbidden":
-        names = partial(nearest, str(key[-1]), _group(root, key[:-1], data).model_fields)
-        return Problem(key, f"unknown key '{key[-1]}'", names, at_key=True)
+        instead = partial(_instead, str(key[-1]), _group(root, key[:-1], data))
+        return Problem(key, f"unknown key '{key[-1]}'", instead, at_key=True)
     if kind == "missing":
         missing = detail["loc"][-1]
         return Problem(key, f"{name} lacks element {missing}", f"give '{missing}'")
@@ -99,6 +99,12 @@ def _problem(detail: ErrorDetails, data: Any, root: type[BaseModel]) -> Problem:
     return Problem(
         key, f"{name} is {_short(value)}", _EXPECTED.get(kind, detail["msg"][:1].lower() + detail["msg"][1:])
     )
+
+
+def _instead(name: str, model: type[BaseModel]) -> str:
+    """What is right in place of a key that a group has not got: the kind that has it, or the key that was meant."""
+    kinds = ", ".join(kinds_with(model, name))
+    return f"it is a key of {kind_key(model)} {kinds}" if kinds else nearest(name, model.model_fields)
 
 
 def _existing(location: tuple[str | int, ...], data: Any) -> Key:

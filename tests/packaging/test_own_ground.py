@@ -125,7 +125,7 @@ def test_three_steps_go_over_it_in_full_physics_and_no_foot_goes_in(ditch, tmp_p
         ({"terrain.bank": 0.0}, "terrain.bank is 0.0; it must be more than 0.0 m"),
         ({"terrain.bank": "1.5 s"}, "terrain.bank"),
         ({"terrain.bnak": 1.5}, "unknown key 'bnak'; did you mean 'bank'?"),
-        ({"terrain.bank": 1.5, "terrain.kind": "flat"}, "unknown key 'bank'"),
+        ({"terrain.bank": 1.5, "terrain.kind": "flat"}, "unknown key 'bank'; it is a key of kind ditch"),
     ],
 )
 def test_a_key_of_its_own_is_checked_as_any_other_and_unknown_elsewhere(ditch, changes, sentence):

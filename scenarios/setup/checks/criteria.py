@@ -147,7 +147,8 @@ def published() -> dict[str, Any]:
             own = model.model_json_schema()
             for name, described in own["properties"].items():
                 properties[name] = _either(properties.get(name, described), described)
-            schema["$defs"] = own.get("$defs", {}) | schema["$defs"]
+            # A kind that comes leaves the order of what is there as it is.
+            schema["$defs"] |= {name: one for name, one in own.get("$defs", {}).items() if name not in schema["$defs"]}
     bounds = {name: _criterion(name, metric) for metric in filter(None, map(known, METRICS)) for name in metric.bounded}
     keys["criteria"] |= {"properties": bounds, "additionalProperties": False}
     schema["$defs"].pop("Bound")

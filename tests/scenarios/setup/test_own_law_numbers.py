@@ -1,5 +1,6 @@
 """Numbers of a law of one's own are keys of the group `planner`, as those of the package's laws are."""
 
+import json
 import pickle
 from dataclasses import dataclass, fields
 
@@ -8,6 +9,7 @@ import pytest
 import surefoot
 from surefoot.planner import PROFILES, PlannerParameters, Profile
 from surefoot.planner.laws.dcm_feedback import DcmFeedback
+from surefoot.scenarios.cli import texts
 from surefoot.scenarios.file.schema import PlannerSettings, Scenario, own_keys
 from surefoot.scenarios.setup.checks.criteria import published
 from surefoot.scenarios.setup.walk import resolve
@@ -73,7 +75,8 @@ def test_it_moves_the_walk():
         ({"planner.calm": 11.0}, "planner.calm is 11.0; it must be at most 10"),
         ({"planner.clam": 1.0}, "unknown key 'clam'; did you mean 'calm'?"),
         ({"planner.hidden": 1.0}, "unknown key 'hidden'"),
-        ({"planner.calm": 1.0, "planner.profile": "dcm"}, "unknown key 'calm'"),
+        ({"planner.calm": 1.0, "planner.profile": "dcm"}, "unknown key 'calm'; it is a key of profile calm"),
+        ({"planner.calm": 1.0, "planner.profile": "default"}, "unknown key 'calm'; it is a key of profile calm"),
         ({"planner.step_weight": 1.0}, "planner.step_weight with profile 'calm', whose law does not read it"),
     ],
 )
@@ -97,6 +100,14 @@ def test_it_is_described_in_the_schema_and_among_the_keys():
     described = published()["$defs"]["PlannerSettings"]["properties"]["calm"]
     assert described["description"] == "share of the jerk that is applied, null: the profile's own"
     assert dict(own_keys(PlannerSettings))["calm"].description.startswith("calm: share of the jerk")
+
+
+def test_the_schema_that_is_kept_changes_by_it_and_nowhere_else():
+    kept, made = json.loads((texts.FOLDER / "schema.json").read_text(encoding="utf-8")), published()
+    assert list(made["$defs"]) == list(kept["$defs"])
+    group, other = (one["$defs"]["PlannerSettings"]["properties"] for one in (kept, made))
+    assert group.keys() ^ other.keys() == {"calm"}
+    assert {name for name in group if group[name] != other[name]} == {"profile"}
 
 
 def test_a_scenario_with_it_goes_to_another_process_and_comes_back_from_a_log(tmp_path):

@@ -102,7 +102,7 @@ def _problem(detail: ErrorDetails, data: Any, root: type[BaseModel]) -> Problem:
 
 
 def _instead(name: str, model: type[BaseModel]) -> str:
-    """What is right in place of a key that a group has not got: the kind that has it, or the key that was meant."""
+    """The kind that has a key which its group has not got, or the key that was meant."""
     kinds = ", ".join(kinds_with(model, name))
     return f"it is a key of {kind_key(model)} {kinds}" if kinds else nearest(name, model.model_fields)
 

@@ -25,6 +25,9 @@ STARTING = 9.0
 UNWATCHED = 2.0
 """Processor time that a test module is given that the map does not know [s]."""
 
+DEAR = 0.1
+"""Share of the time from which on a test module waits until the others have their place [-]."""
+
 NOTHING_RAN = 2
 """Exit code where no test ran that the change touches."""
 
@@ -45,7 +48,10 @@ class Choice:
 
 
 def choose(changed: Iterable[Edit], known: Touches, root: Path, processor_time: float) -> Choice:
-    """Changed tests come first, then those that name a changed module, those beside it, others; quick ones first."""
+    """Changed tests come first, then those that name a changed module, those beside it, others; quick ones first.
+
+    Of the others dear ones come last: in the time of one of them many quick ones run.
+    """
     ranks: dict[str, int] = {}
     unknown = []
     for edit in changed:
@@ -58,7 +64,8 @@ def choose(changed: Iterable[Edit], known: Touches, root: Path, processor_time: 
             ranks[test] = min(ranks.get(test, rank), rank)
     times = {test: UNWATCHED if (took := known.time(test)) is None else took for test in ranks}
     runs: dict[str, float] = {}
-    for test in sorted(ranks, key=lambda test: (ranks[test], times[test], test)):
+    dear = {test for test, rank in ranks.items() if rank and times[test] > DEAR * processor_time}
+    for test in sorted(ranks, key=lambda test: (test in dear, ranks[test], times[test], test)):
         if sum(runs.values()) + times[test] <= processor_time or (ranks[test] == 0 and not runs):
             runs[test] = times[test]
     return Choice(runs, {test: took for test, took in times.items() if test not in runs}, tuple(unknown))

@@ -146,6 +146,15 @@ def test_a_test_that_names_a_changed_module_comes_first(tree):
     assert next(iter(choice.runs)) == "tests/run/test_names.py"
 
 
+def test_a_dear_one_waits_for_the_quick_ones_though_it_names_the_module(tree):
+    put(tree, "tests/run/test_walk.py", "from surefoot.wbc.law import Law\n")
+    git(tree, "commit", "-q", "-a", "-m", "names it")
+    put(tree, "wbc/law.py", LAW.replace("GAIN * x", "-GAIN * x"))
+    choice = quick.choose(edits(tree, "HEAD"), KNOWN, tree, 30.5)
+    assert set(choice.runs) == OF_FORCE - {"tests/run/test_walk.py"}
+    assert choice.left == {"tests/run/test_walk.py": 30.0}
+
+
 def test_an_unknown_file_has_the_tests_of_its_mirrored_folder(tree):
     put(tree, "wbc/new/task.py", "def f():\n    return 1\n")
     assert touched(tree) == {"tests/wbc/test_law.py", "tests/wbc/test_power.py"}

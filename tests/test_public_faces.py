@@ -21,6 +21,9 @@ REPLACING = {"setattr", "setitem", "delattr", "delitem"}
 
 LAYERS = ("surefoot.planner", "surefoot.wbc")
 
+TO_DERIVE_FROM = {"surefoot.planner.PlannerParameters"}
+"""Classes of theirs that a law of one's own derives from."""
+
 
 def private(tree: ast.Module) -> Iterator[ast.AST]:
     """Names of others that begin with an underscore: read, written, imported, or patched by their text."""
@@ -41,7 +44,7 @@ def subclasses(tree: ast.Module) -> Iterator[ast.AST]:
     for node in ast.walk(tree):
         if isinstance(node, ast.ClassDef):
             bases = [home.get(_root(base), "") for base in node.bases]
-            if any(base.startswith(LAYERS) for base in bases):
+            if any(base.startswith(LAYERS) and base not in TO_DERIVE_FROM for base in bases):
                 yield node
 
 

@@ -29,15 +29,15 @@ class CalmParameters(PlannerParameters):
     hidden: float = number(1.0, "-", "unused")
 
 
-class Calm(DcmFeedback):
+class Calm:
     """DCM feedback with less of the jerk the calmer it is."""
 
     def __init__(self, parameters, com_height):
-        super().__init__(parameters, com_height)
+        self.law = DcmFeedback(parameters, com_height)
         self.share = 1.0 - 0.01 * parameters.calm
 
     def plan(self, problem):
-        motion = super().plan(problem)
+        motion = self.law.plan(problem)
         return type(motion)(self.share * motion.jerk, motion.shifts, motion.zmp_slack, motion.terminal_slack)
 
 

@@ -46,15 +46,18 @@ class Touches:
         return found | {test for test in near if self.time(test) is None} if found else near
 
     def entries(self, edit: Edit, root: Path) -> Mapping[str, frozenset[str]]:
-        """Entries that are known of the file of an edit, under its path now, before, or at the time of the map."""
-        for path in filter(None, (edit.path, edit.before)):
-            source = str(PurePosixPath(path).with_suffix(".py"))
-            for one in (path, source):
-                if one in self.files:
-                    return self.files[one]
+        """Entries that are known of the file of an edit, under its path now or before, and under one that it had once.
+
+        A map that is made anew in part has both.
+        """
+        paths = [path for path in (edit.path, edit.before) if path]
+        sources = [one for path in paths for one in (path, str(PurePosixPath(path).with_suffix(".py")))]
+        known = [self.files[one] for one in sources if one in self.files][:1]
         name = PurePosixPath(edit.path).name
         moved = [path for path in self.files if PurePosixPath(path).name == name and not (root / path).exists()]
-        return self.files[moved[0]] if len(moved) == 1 else {}
+        known += [self.files[moved[0]]] if len(moved) == 1 else []
+        names = {name for entries in known for name in entries}
+        return {name: frozenset().union(*(entries.get(name, ()) for entries in known)) for name in names}
 
     def _there(self, found: Iterable[str], root: Path) -> frozenset[str]:
         """Tests that exist, under the path of now: names of test modules are unique."""

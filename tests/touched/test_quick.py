@@ -121,6 +121,16 @@ def test_a_file_is_known_by_its_name_before_it_moved(tree):
     assert touched(tree) == OF_FORCE, "the map is from before"
 
 
+def test_a_map_that_was_made_anew_in_part_has_a_moved_file_twice(tree):
+    (tree / "wbc" / "tasks").mkdir()
+    git(tree, "mv", "wbc/law.py", "wbc/tasks/law.py")
+    git(tree, "commit", "-q", "-m", "moved")
+    put(tree, "wbc/tasks/law.py", LAW.replace("GAIN * x", "-GAIN * x"))
+    again = {name: frozenset({"tests/docs/test_words.py"}) for name in KNOWN.files["wbc/law.py"]}
+    both = Touches(KNOWN.commit, KNOWN.seconds, {**KNOWN.files, "wbc/tasks/law.py": again})
+    assert set(quick.choose(edits(tree, "HEAD"), both, tree, 1e3).runs) == OF_FORCE | {"tests/docs/test_words.py"}
+
+
 def test_a_test_is_known_where_it_moved(tree):
     git(tree, "mv", "tests/wbc/test_law.py", "tests/run/test_law.py")
     git(tree, "commit", "-q", "-m", "moved")

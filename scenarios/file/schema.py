@@ -142,7 +142,7 @@ class PlannerSettings(LawSettings):
     without: Many[str] = key((), "rules of its recovery that are left out, by their names")
 
 
-_KINDS: Mapping[type[BaseModel], tuple[str, Registry[Any]]] = {
+KIND_GROUPS: Mapping[type[BaseModel], tuple[str, Registry[Any]]] = {
     TerrainSettings: ("kind", TERRAIN_KINDS),
     InstrumentSettings: ("name", INSTRUMENTS),
     PlannerSettings: ("profile", PROFILES),
@@ -152,7 +152,7 @@ _KINDS: Mapping[type[BaseModel], tuple[str, Registry[Any]]] = {
 
 def kind_key(model: type[BaseModel]) -> str:
     """The key of a group that names its kind; empty where there are no kinds of it."""
-    return _KINDS[group][0] if (group := _group_of(model)) is not None else ""
+    return KIND_GROUPS[group][0] if (group := _group_of(model)) is not None else ""
 
 
 def kinds_with(model: type[BaseModel], name: str) -> tuple[str, ...]:
@@ -163,12 +163,12 @@ def kinds_with(model: type[BaseModel], name: str) -> tuple[str, ...]:
 
 def _group_of(model: type[BaseModel]) -> type[BaseModel] | None:
     """The group with kinds that a model is of."""
-    return next((group for group in _KINDS if issubclass(model, group)), None)
+    return next((group for group in KIND_GROUPS if issubclass(model, group)), None)
 
 
 def model_of(model: type[BaseModel], values: Any) -> type[BaseModel]:
     """The model of a group with plain values, also wrong ones: where there are kinds of it, that of the kind."""
-    name, registry = _KINDS.get(model, ("", None))
+    name, registry = KIND_GROUPS.get(model, ("", None))
     kind = values.get(name) if registry is not None and isinstance(values, dict) else None
     if registry is None or not isinstance(kind, str) or kind == model.model_fields[name].default:
         return model
@@ -204,7 +204,7 @@ def _planner_settings(values: dict[str, Any]) -> BaseModel:
 
 def own_models(model: type[BaseModel]) -> Iterator[tuple[str, type[BaseModel]]]:
     """The kinds of a group that have keys of their own, each with its model; none of a group without kinds."""
-    name, registry = _KINDS.get(model, ("", None))
+    name, registry = KIND_GROUPS.get(model, ("", None))
     for kind in () if registry is None else usable(registry):
         own = model_of(model, {name: kind})
         if own is not model:

@@ -92,14 +92,24 @@ def test_planners_of_the_documentation_walk(documented, profile):
 
 
 @pytest.mark.physics
-def test_a_number_of_an_own_law_goes_through_run_log_and_processes_of_a_sweep(documented):
-    """It moves the walk; a run of the log has it, and so has each run of a sweep in two processes."""
+def test_a_number_of_an_own_law_goes_through_run_log_check_and_processes_of_a_sweep(documented):
+    """It moves the walk of two robots; a run of the log has it, a check, and each run of a sweep in two processes."""
     brief = ("two-slow-steps", "--set", "fidelity=pendulum", "--set", "duration=1", "--set", "criteria={fell: false}")
     own = ("--set", "planner.profile=spring", "--json")
     usual, slow = (ran(documented, *brief, *more, *own) for more in ((), ("--set", "planner.fading=1")))
     assert slow["zmp_error_rms"] != usual["zmp_error_rms"]
+    g1 = ("walk-level", "--set", "robot=g1", *brief[1:])
+    others = (ran(documented, *g1, *more, *own) for more in ((), ("--set", "planner.fading=1")))
+    assert len({tuple(one["zmp_error_rms"]) for one in others}) == 2
     again = ran(documented, str(documented.folder.parent / slow["log"]), "--json")
     assert again["zmp_error_rms"] == slow["zmp_error_rms"]
+    file = documented.folder.parent / "slow.yaml"
+    file.write_text("fidelity: pendulum\nduration: 1\nplanner: {profile: spring, fading: 1}\ncriteria: {fell: false}\n")
+    made = documented.run("check", str(file), "--update")
+    assert made.returncode == 0, (made.stdout, made.stderr)
+    assert "slow: same" in documented.run("check", str(file)).stdout
+    file.write_text(file.read_text().replace("fading: 1", "fading: 2"))
+    assert "fading" in documented.run("check", str(file)).stdout
     spec = documented.folder.parent / "fading.yaml"
     spec.write_text(
         "scenario: two-slow-steps\n"

@@ -9,7 +9,7 @@ from typing import Any
 
 from surefoot.scenarios.errors import Problem, nearest
 from surefoot.scenarios.file.criteria import Bound
-from surefoot.scenarios.file.schema import InstrumentSettings, PlannerSettings, Scenario, TerrainSettings, own_models
+from surefoot.scenarios.file.schema import KIND_GROUPS, Scenario, own_models
 from surefoot.scenarios.judge.metric import TRUTH, Metric
 from surefoot.scenarios.judge.metrics import known
 from surefoot.scenarios.judge.names import METRICS
@@ -141,7 +141,7 @@ def published() -> dict[str, Any]:
     files = {"type": "string", "pattern": r"\.ya?ml$"}
     keys["robot"] = {**keys["robot"], "anyOf": [{"enum": list(Robots().names())}, files]}
     keys["robot"].pop("type")
-    for group in (TerrainSettings, InstrumentSettings, PlannerSettings):
+    for group in KIND_GROUPS:
         properties = schema["$defs"][group.__name__]["properties"]
         for _, model in own_models(group):
             own = model.model_json_schema()

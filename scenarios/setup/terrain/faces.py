@@ -27,7 +27,6 @@ class SlopeKind(TerrainKind):
 
     name = "slope"
     keys = ("angle", "start", "height_noise")
-    uneven = ("angle", "height_noise")
 
     def build(self, ground: Ground) -> Terrain:
         """See `TerrainKind`."""
@@ -104,7 +103,6 @@ class BlocksKind(TerrainKind):
 
     name = "blocks"
     keys = ("riser", "angle", "tread", "height_noise")
-    uneven = ("riser", "angle", "height_noise")
 
     def build(self, ground: Ground) -> Terrain:
         """See `TerrainKind`."""

@@ -226,6 +226,10 @@ def _raised(box: Box, height: float) -> Box:
     return replace(box, center=box.center + up, half_size=box.half_size + up)
 
 
+_SIZES = ("riser", "angle", "height_noise")
+"""Common keys of sizes that make the ground uneven."""
+
+
 class TerrainKind:
     """A kind of terrain: how it is built of a scenario's keys, and what makes it impossible.
 
@@ -239,14 +243,20 @@ class TerrainKind:
             ``height_noise`` among them, each box of the true ground is higher or lower than `build` has it, but for
             those under the start.
         settings: model of the group ``terrain``, with the keys that only this kind has, which need no mention above.
-        uneven: keys of sizes that make it uneven, common or its own; with all of them at 0 it is level. One of a size
-            that nothing follows from is refused, and a refused walk is tried on calmer ground, where they are less.
     """
 
     name: str
     keys: tuple[str, ...] = ()
     settings: type[TerrainSettings] = TerrainSettings
-    uneven: tuple[str, ...] = ()
+
+    @property
+    def uneven(self) -> tuple[str, ...]:
+        """Keys of sizes without which it is level: by default the common ones among `keys`.
+
+        A kind with sizes of its own names them. One so small that nothing follows from it is refused. The calmer walk
+        that a refusal proposes has less of them.
+        """
+        return tuple(name for name in _SIZES if name in self.keys)
 
     def completed(self, keys: TerrainSettings, gait: Gait) -> Gait:
         """The keys of a gait with those that it leaves open and that follow from this ground."""

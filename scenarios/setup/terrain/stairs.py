@@ -29,7 +29,6 @@ class StairsKind(TerrainKind):
 
     name = "stairs"
     keys = ("riser", "tread", "count", "direction", "start", "landing", "height_noise")
-    uneven = ("riser", "height_noise")
 
     def completed(self, keys: TerrainSettings, gait: Gait) -> Gait:
         """A step is as long as a tread is deep, unless the scenario gives its length."""

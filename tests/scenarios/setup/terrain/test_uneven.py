@@ -71,5 +71,7 @@ def test_what_legs_cannot_climb_is_named_by_the_key_of_its_kind():
     assert problem.key == ("terrain", "begin")
 
 
-def test_a_kind_names_nothing_uneven_unless_it_does():
-    assert TerrainKind.uneven == KINDS["flat"].uneven == ()
+def test_by_default_the_sizes_are_the_common_ones_that_shape_it():
+    assert TerrainKind().uneven == KINDS["flat"].uneven == ()
+    assert KINDS["slope"].uneven == ("angle", "height_noise")
+    assert KINDS["stairs"].uneven == ("riser", "height_noise")

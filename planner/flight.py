@@ -7,7 +7,7 @@ import numpy as np
 
 from surefoot.planner.geometry.plane import greatest, sole_pose, wrap_angle
 from surefoot.planner.measured import Measured
-from surefoot.planner.state import Swing, WalkState
+from surefoot.planner.state import WalkState
 from surefoot.planner.steps.adaptation import with_roll
 from surefoot.planner.swing.leg_reach import around_stance_leg
 from surefoot.planner.swing.rolling import landing_pitch
@@ -91,7 +91,7 @@ def swinging_to(state: WalkState, landing: Footstep, measured: Measured, held: b
     pitched = _pitched(state, landing, stance)
     if state.adapted and pitched is not state and state.swing.trajectory is not None:
         swing = _arriving_flat(state, swing, time)
-    flown = Swing(state.swing.stage, swing, state.swing.waited, state.swing.again)
+    flown = replace(state.swing, trajectory=swing)
     return replace(pitched, swing=flown, astray=astray, lowering=lowering)
 
 

@@ -11,7 +11,6 @@ cdef class Swing:
     cdef readonly object stage
     cdef readonly SwingTrajectory trajectory
     cdef readonly int waited
-    cdef readonly bint again
 
 cdef class HeightMemory:
     cdef readonly object tick, course, height

@@ -46,13 +46,11 @@ class Swing:
         stage: how far it is.
         trajectory: of its foot; None while that stands.
         waited: ticks for which the clock has waited for its touchdown.
-        again: its foot was sent elsewhere after it had been lifted by a push.
     """
 
     stage: SwingStage = SwingStage.FLYING
     trajectory: SwingTrajectory | None = None
     waited: int = 0
-    again: bool = False
 
 
 @dataclass(frozen=True)
@@ -245,11 +243,11 @@ class WalkState:
         schedule = self.schedule.moved(self.landed + 1, position)
         return replace(self, schedule=schedule, swing=replace(self.swing, stage=stage))
 
-    def swinging_anew(self, clock: TimeScaling, again: bool = False) -> "WalkState":
+    def swinging_anew(self, clock: TimeScaling) -> "WalkState":
         """The state in which the swing begins again, on a clock that shows what it did when its phase began."""
         start = self.phase.start
         schedule = adaptation.with_clock_put_back(self.schedule, self.phase.rolls, clock.now, start)
-        state = replace(self, clock=clock.showing(start), swing=Swing(again=again or self.swing.again))
+        state = replace(self, clock=clock.showing(start), swing=Swing())
         return state if schedule is self.schedule else state.on(schedule)
 
     def landing(self, position: Array, clock: TimeScaling) -> "WalkState":

@@ -104,7 +104,7 @@ def _retimed(state: WalkState, gait: GaitParameters, time: float) -> WalkState:
 def decided(state: WalkState, measured: Measured) -> WalkState:
     """The state in which the next footstep is decided shortly before it lands.
 
-    With no margin left its foot searches for the ground in haste, and one that a push has lifted goes elsewhere.
+    With no margin left its foot searches for the ground in haste.
     """
     swing, p, time = state.swing.trajectory, state.model.parameters, measured.time
     frozen = (p.freeze_catching if state.catching else p.freeze_time) + CLOCK_ROUNDING
@@ -116,9 +116,6 @@ def decided(state: WalkState, measured: Measured) -> WalkState:
         # While the foot searches for the ground a DCM that no CoP holds goes on away from it.
         swing = replace(swing, search=replace(swing.search, hurry_after=late))
         state = replace(state, swing=replace(state.swing, trajectory=swing))
-    may_go = lost and state.model.times and not (state.swing.stage is SwingStage.LANDED or state.swing.again)
-    if may_go and adaptation.lifted(swing, measured.feet, time, state.model.parameters.size.length):
-        return state.swinging_anew(state.clock, again=True)
     return state if state.decided else state.deciding(swing.footstep)
 
 

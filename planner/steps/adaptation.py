@@ -11,7 +11,6 @@ from surefoot.planner.steps.step import Step, Stop, leaves_early
 from surefoot.planner.swing import rolling
 from surefoot.planner.swing.leg_reach import LegReach
 from surefoot.planner.swing.rolling import RollSpan
-from surefoot.planner.swing.trajectory import SwingTrajectory
 from surefoot.planner.types import FeetState, Foot, PhaseKind, Twist
 
 Dcm = tuple[float, float, float]
@@ -19,9 +18,6 @@ Dcm = tuple[float, float, float]
 
 _SLID = 0.005
 """Way from where it landed beyond which a foot that stands has slid, of the reference robot [m]."""
-
-_LIFTED = 0.01
-"""Height over its swing from which on a foot does not land as it was to, of the reference robot [m]."""
 
 
 def with_step_in_place(schedule: Schedule, now: float, foot: Foot | None = None, at_once: bool = True) -> Schedule:
@@ -175,8 +171,3 @@ def lands_short(schedule: Schedule, number: int, feet: FeetState, dcm: Dcm | Non
     short, off = map(float, aside)
     soonest = math.exp(omega * ground.parameters.recovery.least_single)
     return short > float(ground.half_size[1]) and off * soonest < legs.stride + legs.hip_width
-
-
-def lifted(swing: SwingTrajectory, feet: FeetState, time: float, length: float) -> bool:
-    """Return true if a push has lifted the foot off its swing at a time [s]; `length` is the robot's size [-]."""
-    return float(feet.position[swing.foot, 2] - swing.evaluate(time)[0, 2]) > _LIFTED * length

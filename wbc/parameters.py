@@ -185,7 +185,7 @@ class SeparationParameters:
     clearance: float = number(0.003, "m", "distance that must remain")
     attention: float = positive(0.05, "m", "distance from which a pair is looked at")
     horizon: float = positive(0.02, "s", "time constant T of the critically damped approach")
-    slots: int = number(3, "-", "pairs that are looked at in one tick, the nearest ones")
+    slots: int = number(6, "-", "pairs that are looked at in one tick, the nearest ones")
 
     def __post_init__(self) -> None:
         check(self, "wbc", "separation")

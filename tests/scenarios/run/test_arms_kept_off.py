@@ -38,3 +38,23 @@ def touches(robot: str, seed: int) -> Iterator[bool]:
 def test_a_pushed_robot_does_not_hit_itself(robot, seed):
     """Upper arms of TALOS hit its torso for 0.22 and 0.18 s; a forearm of humanoid100 its own body."""
     assert not any(touches(robot, seed))
+
+
+def pushed_on_stairs(slots: int) -> Iterator[bool]:
+    """The same of a walk down stairs that is pushed over its stance foot in its seventh step."""
+    push = {"step": 7, "phase": "single", "fraction": 0.2, "duration": 0.1, "impulse": 0.2, "direction": -math.pi / 2}
+    start = {"gait.initial_stand": 0.4, "start.position_noise": 0.0005, "sensing.source": "truth"}
+    keys = {**start, "duration": 17.0, "pushes": [push], "wbc.separation.slots": slots}
+    with surefoot.Simulation(surefoot.load("stairs-down", keys)) as simulation:
+        end = math.inf
+        while simulation.time < end:
+            tick = simulation.step()
+            yield tick.measurement.self_contact
+            if tick.measurement.external_force.any():
+                end = tick.time + 0.6
+
+
+def test_an_arm_is_seen_beside_legs_that_cross():
+    """Legs that cross are near each other in several pairs, which left none of three for an arm."""
+    assert not any(pushed_on_stairs(6))
+    assert any(pushed_on_stairs(3))  # negative control

@@ -50,7 +50,6 @@ NOTICED = {
     "plan.sampling.STIFFNESS": "tests/planner/plan/test_sampling.py",
     "plan.sampling.SWING": "tests/planner/plan/test_sampling.py",
     "plan.sampling.ROUNDING": "tests/planner/plan/test_sampling.py",
-    "steps.adaptation._LIFTED": "tests/planner/test_planner.py",
     "steps.adaptation._SLID": "tests/planner/steps/test_slid_feet.py",
     "steps.schedule._LAID_OUT": "tests/planner/steps/test_laid_out.py",
     "steps.schedule._STOP_AHEAD": "tests/planner/steps/test_schedule.py",

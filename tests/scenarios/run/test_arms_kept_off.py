@@ -18,17 +18,22 @@ LASTS = 2.0
 
 
 def touches(robot: str, seed: int, **more: object) -> Iterator[bool]:
-    """Yield true at each tick at which the robot touches itself, in a walk of the campaign `random-pushes`."""
+    """Whether the robot touches itself, tick by tick, in a walk of the campaign `random-pushes`."""
     cell = list(cells(read_campaign("random-pushes", (f"robot={robot}",))))[seed]
     point = cell.point(seed, {})
-    with surefoot.Simulation(read_scenario(*point.base.written, {**point.settings, **more})) as simulation:
+    return touching(read_scenario(*point.base.written, {**point.settings, **more}), LASTS)
+
+
+def touching(scenario: surefoot.Scenario, lasts: float) -> Iterator[bool]:
+    """The same of any walk, until so long after its push [s]."""
+    with surefoot.Simulation(scenario) as simulation:
         end = math.inf
         while simulation.time < end:
             tick = simulation.step()
             assert not tick.fell
             yield tick.measurement.self_contact
             if tick.measurement.external_force.any():
-                end = tick.time + LASTS
+                end = tick.time + lasts
 
 
 @pytest.mark.parametrize(
@@ -50,13 +55,7 @@ def pushed_on_stairs(slots: int) -> Iterator[bool]:
     push = {"step": 7, "phase": "single", "fraction": 0.2, "duration": 0.1, "impulse": 0.2, "direction": -math.pi / 2}
     start = {"gait.initial_stand": 0.4, "start.position_noise": 0.0005, "sensing.source": "truth"}
     keys = {**start, "duration": 17.0, "pushes": [push], "wbc.separation.slots": slots}
-    with surefoot.Simulation(surefoot.load("stairs-down", keys)) as simulation:
-        end = math.inf
-        while simulation.time < end:
-            tick = simulation.step()
-            yield tick.measurement.self_contact
-            if tick.measurement.external_force.any():
-                end = tick.time + 0.6
+    return touching(surefoot.load("stairs-down", keys), 0.6)
 
 
 def test_an_arm_is_seen_beside_legs_that_cross():

@@ -18,7 +18,7 @@ LASTS = 2.0
 
 
 def touches(robot: str, seed: int, **more: object) -> Iterator[bool]:
-    """Whether the robot touches itself, tick by tick, in a walk of the campaign `random-pushes`."""
+    """Tell tick by tick whether the robot touches itself, in a walk of the campaign `random-pushes`."""
     cell = list(cells(read_campaign("random-pushes", (f"robot={robot}",))))[seed]
     point = cell.point(seed, {})
     return touching(read_scenario(*point.base.written, {**point.settings, **more}), LASTS)
